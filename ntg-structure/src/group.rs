@@ -1,0 +1,142 @@
+//! Where kernels are evaluated, and what becomes of their rows.
+
+use crate::{Affine, Call, Family, Loop, PhaseRef, Place, Unit};
+
+/// Where a group is evaluated.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Domain {
+    /// Once: the function belongs to no point.
+    Mission,
+    /// At the start of a phase.
+    Start(PhaseRef),
+    /// At the end of a phase.
+    End(PhaseRef),
+    /// At every point of one of the phase's point sets.
+    Path {
+        /// The phase.
+        phase: PhaseRef,
+        /// Index into `Phase::points`.
+        points: usize,
+    },
+}
+
+/// What a kernel's row is.
+///
+/// On a [`Domain::Path`], the rows `Cost`, `Part` and `Integral` are integrands over scaled time:
+/// they are multiplied by the point's quadrature weight and added up. The kernel already holds
+/// the factor `T` (docs/maths.md, section 3).
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Row {
+    /// Adds to the objective, which is always minimised.
+    Cost {
+        /// Index into `Structure::terms`.
+        term: usize,
+    },
+    /// A constraint row of its own, for every member of the loops and every point.
+    Constraint {
+        /// Index into `Structure::constraints`.
+        constraint: usize,
+        /// Row of the group's `bounds` that holds the lower bound; none: minus infinity.
+        lower: Option<usize>,
+        /// Row of the group's `bounds` that holds the upper bound; none: infinity.
+        /// An equality names the same row twice.
+        upper: Option<usize>,
+    },
+    /// Adds to the row that another group on [`Domain::Mission`] makes for this constraint.
+    Part {
+        /// Index into `Structure::constraints`.
+        constraint: usize,
+        /// Which member of the constraint: one for each loop of the group that makes the row.
+        index: Vec<Affine>,
+    },
+    /// Adds to an integral that is a variable of its own: its row is `variable - sum = 0`.
+    Integral {
+        /// Index into `Structure::integrals`.
+        integral: usize,
+        /// Which member, one for each of the integral's loops.
+        index: Vec<Affine>,
+    },
+}
+
+/// A kernel evaluated over a domain, for all members of nested loops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Nested loops, the outermost first; those over agents and phases come first.
+    pub loops: Vec<Loop>,
+    /// Where it is evaluated.
+    pub domain: Domain,
+    /// The kernel and its inputs.
+    pub call: Call,
+    /// What each of its rows is.
+    pub rows: Vec<Row>,
+    /// Bounds of the constraint rows, as functions of parameters and indices alone.
+    pub bounds: Option<Call>,
+}
+
+/// In which block of the spec a constraint stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Block {
+    /// `initial { }`
+    Initial,
+    /// `trajectory { }`
+    Trajectory,
+    /// `final { }`
+    Final,
+    /// `temporal { }`
+    Temporal,
+    /// Continuity where one phase follows another.
+    Continuity,
+}
+
+/// A constraint as the user wrote it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constraint {
+    /// Its name, with the path of its agent and phase, if it has one.
+    pub name: Option<String>,
+    /// Where it stands; the text serves as a name where there is none.
+    pub place: Place,
+    /// The block it stands in.
+    pub block: Block,
+    /// The unit in which violations are reported.
+    pub unit: Unit,
+}
+
+/// A term of the objective.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Its name, as in `minimize fuel: ...`.
+    pub name: Option<String>,
+    /// Where it stands.
+    pub place: Place,
+    /// The unit in which it is reported.
+    pub unit: Unit,
+}
+
+/// An integral that enters some function nonlinearly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Integral {
+    /// Its members: one for every combination of indices.
+    pub loops: Vec<Loop>,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A named expression: a `let`, which appears in solutions and reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named {
+    /// Its name, without the path of its agent and phase.
+    pub name: String,
+    /// Its documentation.
+    pub doc: String,
+    /// The unit in which it is shown.
+    pub unit: Unit,
+    /// Its members, when it is a family; the family's index is the last of `loops`.
+    pub family: Option<Family>,
+    /// The loops over agents and phases, then the family's.
+    pub loops: Vec<Loop>,
+    /// [`Domain::Path`] for an expression along a phase (whatever its point set), or
+    /// [`Domain::Mission`] for a number.
+    pub domain: Domain,
+    /// A call of a kernel with one row.
+    pub call: Call,
+}

@@ -1,0 +1,74 @@
+//! What a problem *is*, as plain data: the contract between the compiler and every back end.
+//!
+//! A [`Structure`] says everything about a problem except the formulas: its parameters, agents,
+//! phases and splines, which functions are evaluated where, and which row of the optimisation
+//! problem each result belongs to.
+//! The formulas are *kernels*, addressed by number: straight-line functions whose code is
+//! generated Rust, an interpreter's tape, or whatever a later back end brings.
+//!
+//! Families (arrays, `for`, `sum`, families of agents and phases) stay families: a [`Call`] names
+//! its inputs through [`Affine`] index expressions, and a [`Loop`] says which values the indices
+//! take. Nothing here grows with the number of members or of collocation points.
+//!
+//! All numbers are in SI units; a [`Unit`] is how a person sees them.
+//! The crate depends on nothing and computes nothing.
+
+mod call;
+mod group;
+mod guess;
+mod index;
+mod kernel;
+mod mission;
+mod quantity;
+
+pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
+pub use group::{Block, Constraint, Domain, Group, Integral, Named, Row, Term};
+pub use guess::{Continuation, Guess, GuessKind, GuessScope};
+pub use index::{Affine, Family, Loop};
+pub use kernel::{Degree, Kernel};
+pub use mission::{
+    Agent, Bounds, Duration, Output, Parameter, Phase, Points, Spline, Start, Table, TableAxis, TableExtrapolation,
+    TableMethod, TableSymmetry, Variable,
+};
+pub use quantity::{Place, Unit};
+
+/// A whole problem, without its formulas.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Structure {
+    /// The problem's name, as in `problem VanDerPol { }`.
+    pub name: String,
+    /// The problem's documentation, one string of lines.
+    pub doc: String,
+    /// How the spec is called in messages: a file's path as the user wrote it.
+    pub source: String,
+    /// `true` when the spec says `maximize`: kernels hold the negated terms, reports negate back.
+    pub maximize: bool,
+    /// The unit in which the objective is reported.
+    pub objective_unit: Unit,
+    /// Parameters, in the order in which they were declared; their values form one flat vector.
+    pub parameters: Vec<Parameter>,
+    /// Tables, addressed by number in kernels.
+    pub tables: Vec<Table>,
+    /// Free numbers that are constant in time.
+    pub variables: Vec<Variable>,
+    /// Independent timelines; a problem without agents has one, unnamed.
+    pub agents: Vec<Agent>,
+    /// Phases of all agents, each agent's in order of time.
+    pub phases: Vec<Phase>,
+    /// The shapes of the kernels.
+    pub kernels: Vec<Kernel>,
+    /// Which kernel is called where, and what becomes of its rows.
+    pub groups: Vec<Group>,
+    /// Terms of the objective, for reports.
+    pub terms: Vec<Term>,
+    /// Constraints as the user wrote them, for reports.
+    pub constraints: Vec<Constraint>,
+    /// Integrals that enter a function nonlinearly: each is a variable with a defining row.
+    pub integrals: Vec<Integral>,
+    /// Named expressions.
+    pub named: Vec<Named>,
+    /// Initial guesses, in the order of the spec.
+    pub guesses: Vec<Guess>,
+    /// Parameters that are solved for in turn.
+    pub continuations: Vec<Continuation>,
+}
