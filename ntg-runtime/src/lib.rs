@@ -1,1 +1,7 @@
-//! (see Cargo.toml)
+//! The runtime of ntg: what a compiled problem needs in order to be solved.
+
+pub mod nlp;
+pub mod problem;
+
+pub use ntg_splines as splines;
+pub use ntg_structure as structure;

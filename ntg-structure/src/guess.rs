@@ -74,6 +74,7 @@ pub struct Guess {
 pub struct Continuation {
     /// Index into `Structure::parameters`.
     pub parameter: usize,
-    /// Its values in order, SI; the last is the parameter's default.
+    /// Its values in order, SI; the last is the parameter's default. Where the program has set
+    /// another value, that value replaces the last step.
     pub steps: Vec<f64>,
 }

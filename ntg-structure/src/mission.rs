@@ -13,8 +13,9 @@ pub struct Parameter {
     pub unit: Unit,
     /// `true` for an array (indexed from 1), even of one member.
     pub array: bool,
-    /// Default values in SI units: one number, or the members of the array.
-    pub default: Vec<f64>,
+    /// Its value in SI units, one number or the members of the array: the spec's default, or
+    /// what the program has set.
+    pub value: Vec<f64>,
 }
 
 /// How an axis of a table goes on.

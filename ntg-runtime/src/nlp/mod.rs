@@ -1,0 +1,168 @@
+//! The nonlinear program, as elements (docs/maths.md, section 4).
+//!
+//! ```text
+//! minimise    f(x) = sum over elements e, rows r with target Objective of  weight * phi_er(u_e)
+//! subject to  row_lower <= c(x) <= row_upper,  c_i = the same sum over rows with target Row(i)
+//!             lower <= x <= upper
+//! where       u_e = map_e x[variables_e] + offset_e
+//! ```
+//!
+//! An element is a small smooth function of a few *slots* `u`: the flat variables at one point and
+//! a few global variables. Derivatives are computed with respect to slots, where they are small,
+//! dense and exact; `map` takes them to the variables of the program. A method may use the points
+//! (convexify each, eliminate each, order by time) because the program has not forgotten them.
+
+use ntg_structure::{Degree, Place};
+
+/// What becomes of one row of one element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// It adds to the objective.
+    Objective,
+    /// It adds to this constraint row.
+    Row(u32),
+}
+
+/// Elements of one shape. They never change while a program is solved.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// How many elements.
+    pub elements: usize,
+    /// Slots of each element.
+    pub slots: usize,
+    /// Rows of each element.
+    pub rows: usize,
+    /// Pattern of first derivatives `(row, slot)`, the same for all elements.
+    pub jacobian: Vec<(usize, usize)>,
+    /// Pattern of weighted second derivatives `(i, j)`, `i >= j`.
+    pub hessian: Vec<(usize, usize)>,
+    /// How each row depends on the slots.
+    pub degree: Vec<Degree>,
+    /// Where each element's variables start in `variables`: `elements + 1` entries.
+    pub variable_start: Vec<usize>,
+    /// Indices of the program's variables, distinct within an element, increasing.
+    pub variables: Vec<u32>,
+    /// Where each element's map starts in `map`: `elements + 1` entries.
+    pub map_start: Vec<usize>,
+    /// For each element a matrix of `slots` rows and one column a variable, row by row.
+    pub map: Vec<f64>,
+    /// The constant part of each slot: entry `slot * elements + element`.
+    pub offset: Vec<f64>,
+    /// Where each row goes: entry `row * elements + element`.
+    pub target: Vec<Target>,
+    /// The factor of each row: entry `row * elements + element`.
+    pub weight: Vec<f64>,
+    /// Scaled time of each element's point within its phase, for ordering; NaN where it has none.
+    pub tau: Vec<f64>,
+}
+
+impl Block {
+    /// The variables of element `e`.
+    pub fn variables(&self, e: usize) -> &[u32] {
+        &self.variables[self.variable_start[e]..self.variable_start[e + 1]]
+    }
+
+    /// The map of element `e`: `slots` rows, one column a variable.
+    pub fn map(&self, e: usize) -> &[f64] {
+        &self.map[self.map_start[e]..self.map_start[e + 1]]
+    }
+}
+
+/// What an evaluation writes, one a block; entry `i` of element `e` is `[i * elements + e]`.
+/// Values and first derivatives are those of the element's functions, without `weight`;
+/// second derivatives are weighted (see [`Nlp::derivatives`]).
+#[derive(Clone, Debug, Default)]
+pub struct BlockValues {
+    /// One number a row.
+    pub values: Vec<f64>,
+    /// One number an entry of the block's Jacobian pattern.
+    pub jacobian: Vec<f64>,
+    /// One number an entry of the block's Hessian pattern.
+    pub hessian: Vec<f64>,
+}
+
+/// The program at one point.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluation {
+    /// The objective (minimised).
+    pub objective: f64,
+    /// The constraint rows.
+    pub rows: Vec<f64>,
+    /// The elements behind them.
+    pub blocks: Vec<BlockValues>,
+}
+
+/// Bounds and scales that stay the same while a program is solved.
+#[derive(Clone, Debug, Default)]
+pub struct Limits {
+    /// Lower bounds of the variables, or minus infinity.
+    pub lower: Vec<f64>,
+    /// Upper bounds of the variables, or infinity.
+    pub upper: Vec<f64>,
+    /// A positive typical size of each variable.
+    pub scale: Vec<f64>,
+    /// Lower bounds of the rows; equal to the upper bound for an equality.
+    pub row_lower: Vec<f64>,
+    /// Upper bounds of the rows.
+    pub row_upper: Vec<f64>,
+    /// A positive typical size of each row, from units and bounds; 1 where nothing is known.
+    pub row_scale: Vec<f64>,
+}
+
+/// An evaluation that is not finite: what, where, and at which point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotFinite {
+    /// The constraint, cost term or subexpression that failed.
+    pub place: Place,
+    /// The value: `NaN` or `inf`.
+    pub value: f64,
+    /// Where along the trajectory, in words: "phase covert, t = 12.5 s (tau = 0.25)".
+    pub point: String,
+}
+
+/// A nonlinear program made of elements.
+pub trait Nlp: Sync {
+    /// Buffers for evaluations, sized once.
+    type Workspace: Send;
+
+    /// Number of variables.
+    fn variables(&self) -> usize {
+        self.limits().lower.len()
+    }
+    /// Number of constraint rows.
+    fn rows(&self) -> usize {
+        self.limits().row_lower.len()
+    }
+    /// Bounds and scales.
+    fn limits(&self) -> &Limits;
+    /// The elements.
+    fn blocks(&self) -> &[Block];
+    /// Fresh buffers, and an [`Evaluation`] with all arrays sized.
+    fn workspace(&self) -> (Self::Workspace, Evaluation);
+
+    /// Objective, rows and element values at `x`. Allocates nothing.
+    ///
+    /// # Errors
+    /// The first value that is not finite.
+    fn values(&self, x: &[f64], work: &mut Self::Workspace, out: &mut Evaluation) -> Result<(), NotFinite>;
+
+    /// As `values`, and first and second derivatives of all elements. The second derivatives of
+    /// an element are those of `sum over its rows of w * weight * phi`, where `w` is
+    /// `objective_weight` for the objective and `multipliers[i]` for row `i`. Allocates nothing.
+    ///
+    /// # Errors
+    /// The first number that is not finite.
+    fn derivatives(
+        &self,
+        x: &[f64],
+        objective_weight: f64,
+        multipliers: &[f64],
+        work: &mut Self::Workspace,
+        out: &mut Evaluation,
+    ) -> Result<(), NotFinite>;
+
+    /// What row `i` is, in the user's words: "`turn` at t = 12.5 s".
+    fn row_name(&self, row: usize) -> String;
+    /// What variable `i` is, in the user's words.
+    fn variable_name(&self, variable: usize) -> String;
+}
