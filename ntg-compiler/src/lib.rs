@@ -1,1 +1,4 @@
 //! (see Cargo.toml)
+pub mod diagnostic;
+pub mod source;
+pub mod syntax;

@@ -1,0 +1,254 @@
+//! Expressions, units, names and paths, as they were written; the lower half of `ast`.
+//!
+//! See `ast` for what holds of these types.
+
+use crate::source::Span;
+
+/// A name, in Unicode form NFC.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ident {
+    /// The name.
+    pub text: String,
+    /// Where.
+    pub span: Span,
+}
+
+/// `strike` or `uav[2]`: one step of a path. Most have no index, a few one; more parse, so that the next
+/// stage can say what is wrong with them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    /// The name.
+    pub name: Ident,
+    /// What stands in the brackets; empty without brackets.
+    pub indices: Vec<Expr>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// `x`, `x[i]`, `uav[2].strike`: a name, perhaps indexed, perhaps inside others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// From the outside to the inside, one at least.
+    pub segments: Vec<Segment>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// `i in first .. last`: an index with the range that it runs over, both ends included.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IndexRange {
+    /// The index.
+    pub index: Ident,
+    /// Its first value.
+    pub first: Expr,
+    /// Its last value.
+    pub last: Expr,
+    /// All of it.
+    pub span: Span,
+}
+
+/// `[km/s^2]`: a unit, as written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// The factors, in the user's order; the first is always multiplied.
+    pub factors: Vec<UnitFactor>,
+    /// From bracket to bracket.
+    pub span: Span,
+}
+
+/// One factor of a unit: `s^2` and the sign before it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitFactor {
+    /// `*` or `/`.
+    pub op: MulOp,
+    /// What is raised.
+    pub base: UnitBase,
+    /// The exponent; 1 where none is written.
+    pub power: i32,
+    /// The factor without the sign.
+    pub span: Span,
+}
+
+/// What a factor of a unit is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UnitBase {
+    /// `1`
+    One,
+    /// `km`; unit symbols are a name space of their own, in which no word is reserved.
+    Symbol(Ident),
+    /// `(kg * m)`
+    Group(Vec<UnitFactor>),
+}
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// All of it, the parentheses around it included.
+    pub span: Span,
+}
+
+/// The forms of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExprKind {
+    /// `0.25 [km/s]`
+    Number(Number),
+    /// `pi`
+    Pi,
+    /// `t`, mission time.
+    Time,
+    /// `tau`, scaled time of the phase.
+    ScaledTime,
+    /// A name, perhaps indexed.
+    Path(Path),
+    /// `-a`
+    Neg(Box<Expr>),
+    /// `a + b - c`, two terms at least; the first one's sign is always plus (`-a + b` begins with a `Neg`).
+    Sum(Vec<(Sign, Expr)>),
+    /// `a * b / c`, two factors at least; the first one's operator is always `Multiply`.
+    Product(Vec<(MulOp, Expr)>),
+    /// `base ^ exponent`
+    Power(Box<Expr>, Box<Expr>),
+    /// `sin(x)`, `pd(range, sig)`: a built-in function, a `fn` or a table, applied.
+    Call(Call),
+    /// `der(e)`, `der(e, 2)`: derivative in real time.
+    Der {
+        /// What is differentiated.
+        of: Box<Expr>,
+        /// How often; once where it is not said.
+        order: Option<Box<Expr>>,
+    },
+    /// `partial(f(s, w), s)`
+    Partial {
+        /// The application of a function or table.
+        of: Call,
+        /// With respect to which of its arguments.
+        argument: Box<Expr>,
+    },
+    /// `integral(e)`, `integral(path, e)`: over real time.
+    Integral {
+        /// Of which phase or agent; else of the scope that it stands in.
+        path: Option<Path>,
+        /// What is integrated.
+        of: Box<Expr>,
+    },
+    /// `initial(e)`, `final(path, e)`: value at an end.
+    Boundary {
+        /// Which end.
+        boundary: Boundary,
+        /// Of which phase or agent; else of the scope that it stands in.
+        path: Option<Path>,
+        /// What is evaluated there.
+        of: Box<Expr>,
+    },
+    /// `start(path)`, `end(path)`, `duration(path)`
+    Event {
+        /// Which of its times.
+        event: Event,
+        /// Of which phase or agent.
+        path: Path,
+    },
+    /// `sum(i in 1 .. N, e)` and its sisters.
+    Reduce(Box<Reduction>),
+}
+
+/// A number with its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// Finite, not negative.
+    pub value: f64,
+    /// Its unit: written after it, or given to it by the list or range that it stands in.
+    pub unit: Option<Unit>,
+}
+
+/// A function or table with its arguments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Call {
+    /// What is applied.
+    pub function: Ident,
+    /// To what; one at least.
+    pub arguments: Vec<Expr>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// The sign of a term.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+}
+
+/// How a factor enters a product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MulOp {
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+}
+
+/// An end of a phase or agent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Boundary {
+    /// `initial`
+    Initial,
+    /// `final`
+    Final,
+}
+
+/// A time of a phase or agent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// `start`
+    Start,
+    /// `end`
+    End,
+    /// `duration`
+    Duration,
+}
+
+/// `sum(i in 1 .. N, body)`, `smooth_max(i in 1 .. N, body, width)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduction {
+    /// What is done with the bodies.
+    pub op: ReduceOp,
+    /// The index and its range.
+    pub over: IndexRange,
+    /// What is taken for each index.
+    pub body: Expr,
+    /// The width of `smooth_max`, which it always has and the others never.
+    pub width: Option<Expr>,
+}
+
+/// What a reduction does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReduceOp {
+    /// Adds.
+    Sum,
+    /// Multiplies.
+    Product,
+    /// Takes the least.
+    Min,
+    /// Takes the greatest.
+    Max,
+    /// Takes the greatest, smoothly.
+    SmoothMax,
+}
+
+impl Expr {
+    /// The number, if this is one with at most a sign before it (what a unit after a list applies to).
+    pub fn signed_literal(&self) -> Option<&Number> {
+        match &self.kind {
+            ExprKind::Number(number) => Some(number),
+            ExprKind::Neg(inner) => match &inner.kind {
+                ExprKind::Number(number) => Some(number),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}

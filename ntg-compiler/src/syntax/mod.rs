@@ -1,0 +1,4 @@
+//! From text to what was written.
+
+pub mod ast;
+mod expression;
