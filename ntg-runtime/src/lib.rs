@@ -2,6 +2,9 @@
 
 pub mod nlp;
 pub mod problem;
+pub mod settings;
+pub mod sqp;
+pub mod status;
 
 pub use ntg_splines as splines;
 pub use ntg_structure as structure;

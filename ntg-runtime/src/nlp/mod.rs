@@ -166,3 +166,14 @@ pub trait Nlp: Sync {
     /// What variable `i` is, in the user's words.
     fn variable_name(&self, variable: usize) -> String;
 }
+
+impl std::fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { place, value, point } = self;
+        write!(f, "`{}` is {value}", place.text)?;
+        if place.line > 0 {
+            write!(f, " (line {}, column {})", place.line, place.column)?;
+        }
+        if point.is_empty() { Ok(()) } else { write!(f, " at {point}") }
+    }
+}

@@ -1,0 +1,158 @@
+//! What a user may decide about a solve.
+//!
+//! Settings are plain data with defaults that suit most problems; [`Settings::validate`] says in
+//! words which field is out of its range. They can be cloned and sent to other threads.
+
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// What the callback answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Stop with [`Status::Cancelled`](crate::status::Status::Cancelled) and the present point.
+    Cancel,
+}
+
+/// What the callback learns, once an iteration, before its step is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Iterations completed; 0 at the start.
+    pub iteration: usize,
+    /// The minimised objective, in the user's units.
+    pub objective: f64,
+    /// Largest scaled violation of a row or bound.
+    pub primal: f64,
+    /// Largest scaled component of the Lagrangian's gradient.
+    pub dual: f64,
+    /// Length of the last step, as a fraction of the one proposed; 0 at the start.
+    pub step: f64,
+    /// Seconds since the solve began.
+    pub seconds: f64,
+}
+
+/// A function that watches a solve and may cancel it.
+pub type OnIteration = Arc<dyn Fn(&Progress) -> Control + Send + Sync>;
+
+/// Whether variables and rows are brought to comparable size (docs/maths.md, section 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Scaling {
+    /// By units, bounds, the guess and the first derivatives at the start.
+    #[default]
+    Automatic,
+    /// Not at all: every scale is 1, apart from those given by name.
+    Off,
+}
+
+/// How to solve. `Settings::default()` suits most problems.
+#[derive(Clone)]
+pub struct Settings {
+    /// Largest scaled stationarity and complementarity residual of a solution
+    /// (docs/maths.md, section 6); between 1e-12 and 0.1. Default 1e-8.
+    pub tolerance: f64,
+    /// Largest scaled violation of a constraint at a solution; between 1e-12 and 0.1. Default 1e-8.
+    pub constraint_tolerance: f64,
+    /// Most iterations; at least 1. Default 500.
+    pub max_iterations: usize,
+    /// Most wall-clock time, checked once an iteration; greater than zero. Default none.
+    pub time_limit: Option<Duration>,
+    /// Called once an iteration; may cancel. Default none.
+    pub on_iteration: Option<OnIteration>,
+    /// Whether to scale automatically. Default [`Scaling::Automatic`].
+    pub scaling: Scaling,
+    /// Typical sizes of outputs and variables, by name, each in its declared unit and positive;
+    /// they take precedence over automatic ones. Default none.
+    pub scales: Vec<(String, f64)>,
+    /// After a solve, constraints and cost are checked on a grid with this many points for each
+    /// point of the transcription; at least 1. Default 20.
+    pub samples: usize,
+    /// Whether steps are corrected for the curvature of the constraints
+    /// (docs/maths.md, section 6, second-order correction). Default true.
+    pub second_order_correction: bool,
+    /// Whether the exact Hessian of the Lagrangian is tried once the set of active constraints
+    /// has settled; without it, the last digits come slowly. Default true.
+    pub exact_hessian: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-8,
+            constraint_tolerance: 1e-8,
+            max_iterations: 500,
+            time_limit: None,
+            on_iteration: None,
+            scaling: Scaling::Automatic,
+            scales: Vec::new(),
+            samples: 20,
+            second_order_correction: true,
+            exact_hessian: true,
+        }
+    }
+}
+
+impl fmt::Debug for Settings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Settings")
+            .field("tolerance", &self.tolerance)
+            .field("constraint_tolerance", &self.constraint_tolerance)
+            .field("max_iterations", &self.max_iterations)
+            .field("time_limit", &self.time_limit)
+            .field("on_iteration", &self.on_iteration.as_ref().map(|_| "a function"))
+            .field("scaling", &self.scaling)
+            .field("scales", &self.scales)
+            .field("samples", &self.samples)
+            .field("second_order_correction", &self.second_order_correction)
+            .field("exact_hessian", &self.exact_hessian)
+            .finish()
+    }
+}
+
+/// A setting that is out of its range.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InvalidSetting {
+    /// The field.
+    pub field: &'static str,
+    /// What is wrong with it and what it must be.
+    pub message: String,
+}
+
+impl fmt::Display for InvalidSetting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "setting `{}`: {}", self.field, self.message)
+    }
+}
+
+impl std::error::Error for InvalidSetting {}
+
+impl Settings {
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidSetting> {
+        let invalid = |field, message| Err(InvalidSetting { field, message });
+        for (field, value) in [("tolerance", self.tolerance), ("constraint_tolerance", self.constraint_tolerance)] {
+            if !(1e-12..=0.1).contains(&value) {
+                return invalid(field, format!("{value} is not between 1e-12 and 0.1"));
+            }
+        }
+        if self.max_iterations == 0 {
+            return invalid("max_iterations", "0 leaves nothing to do; it must be at least 1".into());
+        }
+        if self.time_limit == Some(Duration::ZERO) {
+            return invalid("time_limit", "it must be greater than zero; leave it out for no limit".into());
+        }
+        if self.samples == 0 {
+            return invalid("samples", "it must be at least 1".into());
+        }
+        match self.scales.iter().find(|(_, size)| !(size.is_finite() && *size > 0.0)) {
+            Some((name, size)) => {
+                invalid("scales", format!("the typical size of `{name}` is {size}; it must be positive and finite"))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Why a solve ended, in data and in words.
+
+use crate::nlp::NotFinite;
+use std::fmt;
+
+/// What a bound belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bounded {
+    /// The constraint row with this index.
+    Row(usize),
+    /// The variable with this index.
+    Variable(usize),
+}
+
+/// A bound that is not met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Violation {
+    /// The row or variable.
+    pub of: Bounded,
+    /// Its name in the user's words.
+    pub name: String,
+    /// Its value at the returned point.
+    pub value: f64,
+    /// The bound that is missed.
+    pub bound: f64,
+    /// By how much, positive, in the program's own units.
+    pub violation: f64,
+}
+
+/// Bounds between which no number lies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    /// The row or variable.
+    pub of: Bounded,
+    /// Its name in the user's words.
+    pub name: String,
+    /// The lower bound.
+    pub lower: f64,
+    /// The upper bound, which is smaller, or either is not a number.
+    pub upper: f64,
+}
+
+/// Why a solve ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// All residuals are within their tolerances: a local minimum to first order.
+    Solved,
+    /// The point minimises the violation of the constraints locally, and some stay violated.
+    Infeasible {
+        /// What remains violated, the worst (by scale) first.
+        rows: Vec<Violation>,
+    },
+    /// `Settings::max_iterations` was reached.
+    IterationLimit,
+    /// `Settings::time_limit` was reached.
+    TimeLimit,
+    /// The callback asked to stop.
+    Cancelled,
+    /// No acceptable step could be found, although the tolerances are not met.
+    StepTooSmall,
+    /// The objective falls without limit.
+    Unbounded,
+    /// A function is not finite at the start, or everywhere around a point.
+    NotFinite(NotFinite),
+    /// Lower bounds exceed upper bounds; found before any iteration.
+    Contradiction {
+        /// Every pair that crosses.
+        bounds: Vec<Crossing>,
+    },
+    /// The quadratic subproblems could not be solved, not even in elastic mode.
+    SubproblemFailed,
+}
+
+impl Status {
+    /// Whether a solution was found.
+    pub fn is_solved(&self) -> bool {
+        matches!(self, Self::Solved)
+    }
+
+    /// What a person may try next; empty when solved.
+    pub fn advice(&self) -> &'static str {
+        match self {
+            Self::Solved => "",
+            Self::Infeasible { .. } => {
+                "Relax one of the named constraints, or start from another guess: the constraints may \
+                 contradict each other only near this one."
+            }
+            Self::IterationLimit => {
+                "Raise `max_iterations`, give a better guess, or reach the problem by a continuation from an easier one."
+            }
+            Self::TimeLimit => "Raise `time_limit`, give a better guess, or use fewer intervals first.",
+            Self::Cancelled => "Start again from the returned point to go on.",
+            Self::StepTooSmall => {
+                "Look for kinks (abs, min, max, tables that jump) and badly scaled quantities; give typical sizes by \
+                 `scales`, or start from another guess."
+            }
+            Self::Unbounded => "Bound the variables, or check the sign of the objective (minimize or maximize).",
+            Self::NotFinite(_) => {
+                "Start from a guess at which the named expression is defined, or bound its arguments away from where \
+                 it is not."
+            }
+            Self::Contradiction { .. } => "Correct the bounds: the lower one must not exceed the upper one.",
+            Self::SubproblemFailed => {
+                "Give typical sizes by `scales`, remove constraints that say the same thing twice, or start from \
+                 another guess."
+            }
+        }
+    }
+}
+
+/// How many names a sentence lists before it says "and n more".
+const LISTED: usize = 3;
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Solved => f.write_str("solved"),
+            Self::Infeasible { rows } => {
+                f.write_str("infeasible: no nearby point meets all constraints")?;
+                list(f, rows, |f, row| {
+                    write!(f, "{} misses its bound {:.6e} by {:.3e}", row.name, row.bound, row.violation)
+                })
+            }
+            Self::IterationLimit => f.write_str("the iteration limit was reached"),
+            Self::TimeLimit => f.write_str("the time limit was reached"),
+            Self::Cancelled => f.write_str("cancelled"),
+            Self::StepTooSmall => f.write_str("no further progress: every acceptable step is too small"),
+            Self::Unbounded => f.write_str("unbounded: the objective falls without limit"),
+            Self::NotFinite(what) => write!(f, "not finite: {what}"),
+            Self::Contradiction { bounds } => {
+                f.write_str("contradictory bounds")?;
+                list(f, bounds, |f, c| write!(f, "{} must lie between {:.6e} and {:.6e}", c.name, c.lower, c.upper))
+            }
+            Self::SubproblemFailed => f.write_str("a quadratic subproblem could not be solved"),
+        }
+    }
+}
+
+/// Writes ": a; b; c; and 7 more".
+fn list<T>(
+    f: &mut fmt::Formatter<'_>,
+    items: &[T],
+    one: impl Fn(&mut fmt::Formatter<'_>, &T) -> fmt::Result,
+) -> fmt::Result {
+    for (i, item) in items.iter().take(LISTED).enumerate() {
+        f.write_str(if i == 0 { ": " } else { "; " })?;
+        one(f, item)?;
+    }
+    match items.len().saturating_sub(LISTED) {
+        0 => Ok(()),
+        more => write!(f, "; and {more} more"),
+    }
+}
+
+/// How far a point is from a solution, one way of measuring.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// Largest violation of a row or of a bound on a variable.
+    pub primal: f64,
+    /// Largest component of the gradient of the Lagrangian.
+    pub dual: f64,
+    /// Largest product of a multiplier and the distance to the bound that it belongs to.
+    pub complementarity: f64,
+}
+
+/// How far a point is from a solution, by scale and in the program's own units
+/// (docs/maths.md, section 6, termination).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residuals {
+    /// In scaled variables and rows: what the tolerances are compared with.
+    pub scaled: Residual,
+    /// In the program's own units.
+    pub unscaled: Residual,
+}
