@@ -1,1 +1,86 @@
-//! (see Cargo.toml)
+//! Runs a compiled problem without rustc.
+//!
+//! Takes a `Program` of the compiler, gives a `Problem` of the runtime: each kernel becomes a
+//! *tape*, a list of operations on registers, and each operation runs over many points at once
+//! (docs/maths.md, section 2.6).
+//! Tape and generated code compute the same operations in the same order through the same `math`
+//! module, so that they agree bit for bit.
+
+mod parameters;
+mod run;
+mod tape;
+
+pub use parameters::SetError;
+
+use std::sync::Mutex;
+
+use ntg_compiler::program::Program;
+use ntg_runtime::problem::{Derivatives, Lanes, Problem};
+use ntg_splines::Table;
+use ntg_structure::Structure;
+
+use run::{Columns, run};
+use tape::Tape;
+
+/// A problem that is interpreted. Parameters are set by name; see [`Interpreted::set`].
+pub struct Interpreted {
+    structure: Structure,
+    kernels: Vec<Tapes>,
+    /// Registers that a finished call has left for the next: one set for each thread at work.
+    spare: Mutex<Vec<Vec<f64>>>,
+}
+
+/// The three functions of one kernel.
+struct Tapes {
+    values: Tape,
+    derivatives: Tape,
+    probes: Tape,
+}
+
+impl Interpreted {
+    /// Makes the tapes of all kernels.
+    pub fn new(program: &Program) -> Self {
+        let kernels = (program.kernels.iter())
+            .map(|body| {
+                let all = [&body.values[..], &body.jacobian, &body.hessian].concat();
+                Tapes {
+                    values: Tape::new(&body.dag, &body.values),
+                    derivatives: Tape::new(&body.dag, &all),
+                    probes: Tape::new(&body.dag, &body.probes),
+                }
+            })
+            .collect();
+        Self { structure: program.structure.clone(), kernels, spare: Mutex::new(Vec::new()) }
+    }
+
+    fn with_registers(&self, work: impl FnOnce(&mut Vec<f64>)) {
+        let lock = || self.spare.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut registers = lock().pop().unwrap_or_default();
+        work(&mut registers);
+        lock().push(registers);
+    }
+}
+
+impl Problem for Interpreted {
+    fn structure(&self) -> Structure {
+        self.structure.clone()
+    }
+
+    fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
+        let input = Columns { lanes, first: inputs, second: &[] };
+        self.with_registers(|registers| run(&self.kernels[kernel].values, input, tables, registers, &mut [values]));
+    }
+
+    fn derivatives(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
+        let input = Columns { lanes: point.lanes, first: point.inputs, second: point.weights };
+        let mut parts = [out.values, out.jacobian, out.hessian];
+        self.with_registers(|registers| {
+            run(&self.kernels[kernel].derivatives, input, tables, registers, &mut parts);
+        });
+    }
+
+    fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]) {
+        let input = Columns { lanes, first: inputs, second: &[] };
+        self.with_registers(|registers| run(&self.kernels[kernel].probes, input, tables, registers, &mut [probes]));
+    }
+}

@@ -5,6 +5,18 @@
 //! own, so a kernel can be written, read and compared by itself; two formulas that differ only in
 //! the indices or names of their inputs have the same body and exist once.
 
+mod derive;
+mod environment;
+mod inputs;
+mod kernel;
+mod lower;
+mod mission;
+mod names;
+mod pieces;
+mod points;
+
+pub use lower::lower;
+
 use ntg_structure::Structure;
 
 use crate::expr::{Dag, NodeId};
@@ -29,6 +41,16 @@ pub struct KernelBody {
     pub hessian: Vec<NodeId>,
     /// Subexpressions that may fail to be finite, in order of evaluation.
     pub probes: Vec<NodeId>,
+}
+
+impl KernelBody {
+    /// Whether two kernels are the same function, whatever their inputs are called.
+    pub fn computes_the_same(&self, other: &Self) -> bool {
+        self.inputs == other.inputs
+            && (&self.values, &self.jacobian, &self.hessian, &self.probes)
+                == (&other.values, &other.jacobian, &other.hessian, &other.probes)
+            && self.dag == other.dag
+    }
 }
 
 /// A problem as data and formulas.

@@ -1,0 +1,127 @@
+//! Exact derivatives and structure of a kernel's formulas.
+//!
+//! Takes values over inputs by position, gives the kernel's shape and body: the nonzero first
+//! derivatives, the lower triangle of the weighted second derivatives, the degree of each row, and
+//! the subexpressions to look at when a value is not finite.
+
+use std::collections::HashMap;
+
+use ntg_structure::{Degree as OutDegree, Kernel};
+
+use super::KernelBody;
+use super::kernel::Mode;
+use crate::expr::{Binary, Dag, Degree, Entry, InputId, Node, NodeId, Unary, degree, gradient, hessian};
+use crate::source::Span;
+
+/// Why differentiation cannot fail here.
+const NO_REDUCTIONS: &str = "`kernel.rs` has replaced every reduction by an input";
+
+/// A kernel's values before they are differentiated.
+pub(super) struct Formulas {
+    /// Inputs are the first nodes, in order.
+    pub(super) dag: Dag,
+    pub(super) values: Vec<NodeId>,
+    pub(super) origin: HashMap<NodeId, Span>, // Looked up, never iterated.
+}
+
+/// Shape and body of the kernel, and where its probes stand. The shape's name and the body's
+/// names and labels are the caller's.
+pub(super) fn derive(
+    formulas: Formulas,
+    slots: usize,
+    data: usize,
+    mode: Mode,
+) -> (Kernel, KernelBody, Vec<Option<Span>>) {
+    let Formulas { mut dag, values, origin } = formulas;
+    let (inputs, rows) = (slots + data, values.len());
+    let variables = ids(0, slots);
+    let is_slot = |input: InputId| (input.0 as usize) < slots;
+    let degrees: Vec<OutDegree> = values.iter().map(|v| out_degree(degree(&dag, *v, is_slot))).collect();
+    let (mut pattern, mut jacobian) = (Vec::new(), Vec::new());
+    let (mut hessian_pattern, mut second) = (Vec::new(), Vec::new());
+    if mode == Mode::Solve {
+        for (row, value) in values.iter().enumerate() {
+            let entries = gradient(&mut dag, *value, &variables).expect(NO_REDUCTIONS);
+            for (slot, entry) in entries.into_iter().enumerate() {
+                if dag.is_constant(entry) != Some(0.0) {
+                    pattern.push((row, slot));
+                    jacobian.push(entry);
+                }
+            }
+        }
+        let weights: Vec<NodeId> = ids(inputs, rows).into_iter().map(|weight| dag.input(weight)).collect();
+        let terms: Vec<(NodeId, NodeId)> = weights.into_iter().zip(values.iter().copied()).collect();
+        let mut entries = hessian(&mut dag, &terms, &variables).expect(NO_REDUCTIONS);
+        entries.sort_by_key(|entry| (entry.row, entry.column));
+        for Entry { row, column, value } in entries {
+            hessian_pattern.push((row, column));
+            second.push(value);
+        }
+    }
+    let (probes, spans) = probes(&mut dag, &values, &origin);
+    let shape = Kernel {
+        name: String::new(),
+        slots,
+        data,
+        rows,
+        jacobian: pattern,
+        hessian: hessian_pattern,
+        degree: degrees,
+        probes: Vec::new(),
+    };
+    let body = KernelBody { dag, inputs, names: vec![], labels: vec![], values, jacobian, hessian: second, probes };
+    (shape, body, spans)
+}
+
+fn ids(first: usize, count: usize) -> Vec<InputId> {
+    (first..first + count).map(|i| InputId(u32::try_from(i).expect("fewer than 2^32 inputs"))).collect()
+}
+
+fn out_degree(degree: Degree) -> OutDegree {
+    match degree {
+        Degree::Constant => OutDegree::Constant,
+        Degree::Linear => OutDegree::Linear,
+        Degree::Quadratic => OutDegree::Quadratic,
+        Degree::Nonlinear => OutDegree::Nonlinear,
+    }
+}
+
+/// Operations that can give infinity or NaN from finite operands: first their values, then the
+/// factors in which their derivatives are singular.
+fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (Vec<NodeId>, Vec<Option<Span>>) {
+    let schedule = dag.schedule(values);
+    let (mut nodes, mut spans) = (Vec::new(), Vec::new());
+    for id in &schedule {
+        if may_fail(dag.node(*id)) {
+            nodes.push(*id);
+            spans.push(origin.get(id).copied());
+        }
+    }
+    for id in schedule {
+        let singular = match *dag.node(id) {
+            Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, _, _) => id,
+            Node::Unary(Unary::Asin | Unary::Acos, a) => {
+                let square = dag.powi(a, 2);
+                let one = dag.constant(1.0);
+                dag.sub(one, square)
+            }
+            _ => continue,
+        };
+        let one = dag.constant(1.0);
+        nodes.push(dag.div(one, singular));
+        spans.push(origin.get(&id).copied());
+    }
+    (nodes, spans)
+}
+
+fn may_fail(node: &Node) -> bool {
+    match node {
+        Node::Unary(op, _) => matches!(
+            op,
+            Unary::Sqrt | Unary::Log | Unary::Exp | Unary::Tan | Unary::Asin | Unary::Acos | Unary::Sinh | Unary::Cosh
+        ),
+        Node::Binary(op, _, _) => matches!(op, Binary::Div | Binary::Pow | Binary::Mul),
+        Node::Powi(_, _) | Node::Table { .. } => true,
+        _ => false,
+    }
+}

@@ -1,0 +1,253 @@
+//! Replaces what is meant by what is computed.
+//!
+//! Takes `model::Problem`, gives [`Program`].
+//! Every function goes where it is needed: split into pieces (`pieces.rs`), given its points
+//! (`points.rs`), gathered with the others that are evaluated there under the same loops, and made
+//! into one kernel for each such place (`kernel.rs`), so that they share their subexpressions.
+//! Afterwards: no formula is left outside kernels; equal kernels exist once.
+
+use std::collections::HashMap;
+
+use ntg_structure::{Affine, Call, Domain, Group, Integral, Kernel, Place, Points, Row, Structure};
+
+use super::environment::{Environment, identity, loops as positions};
+use super::kernel::{Mode, Root, call};
+use super::mission;
+use super::names::Names;
+use super::pieces::{Piece, Role, part_of, split};
+use super::points::point_sets;
+use super::{KernelBody, Program};
+use crate::expr::NodeId;
+use crate::model::problem::{self as model, Loop, Problem};
+use crate::source::{Source, Span};
+
+/// Makes a problem's program. `source` is the text that the problem's spans point into.
+pub fn lower(problem: Problem, source: &Source) -> Program {
+    let mut lowering = Lowering {
+        problem,
+        source,
+        kernels: Vec::new(),
+        bodies: Vec::new(),
+        names: Names::default(),
+        integrals: Vec::new(),
+        integral_ids: HashMap::new(),
+        pending: Vec::new(),
+    };
+    let mut structure = mission::structure(&mut lowering);
+    structure.named = mission::named(&mut lowering);
+    let pieces = lowering.pieces();
+    lowering.gather(pieces, &mut structure);
+    while !lowering.pending.is_empty() {
+        let pieces = std::mem::take(&mut lowering.pending);
+        lowering.gather(pieces, &mut structure);
+    }
+    structure.integrals = lowering.integrals;
+    structure.kernels = lowering.kernels;
+    Program { structure, kernels: lowering.bodies }
+}
+
+/// What has been made so far.
+pub(super) struct Lowering<'a> {
+    pub(super) problem: Problem,
+    source: &'a Source,
+    kernels: Vec<Kernel>,
+    bodies: Vec<KernelBody>,
+    names: Names,
+    integrals: Vec<Integral>,
+    integral_ids: HashMap<(NodeId, Vec<Loop>), usize>, // Looked up, never iterated.
+    /// Integrands of integrals that turned out to be variables.
+    pending: Vec<Piece>,
+}
+
+/// Functions that are evaluated together.
+struct Gathered {
+    loops: Vec<ntg_structure::Loop>,
+    domain: Domain,
+    purpose: &'static str,
+    pieces: Vec<Piece>,
+}
+
+impl Lowering<'_> {
+    /// All functions of the optimisation problem.
+    fn pieces(&mut self) -> Vec<Piece> {
+        let mut pieces = Vec::new();
+        for (term, t) in self.problem.objective.clone().into_iter().enumerate() {
+            let cost = || Role::Cost { term };
+            pieces.extend(split(&mut self.problem, &t.loops, t.body, t.span, cost(), &cost));
+        }
+        for (constraint, c) in self.problem.constraints.clone().into_iter().enumerate() {
+            let role = Role::Constraint { constraint, bounds: c.bounds };
+            if c.domain == model::Domain::Mission {
+                let part = part_of(constraint, c.loops.len());
+                pieces.extend(split(&mut self.problem, &c.loops, c.body, c.span, role, &part));
+            } else {
+                pieces.push(Piece { loops: c.loops, domain: c.domain, body: c.body, role, span: c.span });
+            }
+        }
+        pieces
+    }
+
+    /// Puts pieces that are evaluated at the same place under the same loops into one group.
+    fn gather(&mut self, pieces: Vec<Piece>, structure: &mut Structure) {
+        let mut gathered: Vec<Gathered> = Vec::new();
+        for piece in pieces {
+            let loops = positions(&piece.loops);
+            let environment = Environment::of(&piece.loops);
+            for (domain, purpose) in self.domains(&piece, &environment, structure) {
+                let apart = matches!(domain, Domain::Mission);
+                match gathered.iter_mut().find(|g| !apart && g.loops == loops && g.domain == domain) {
+                    Some(group) => group.pieces.push(piece.clone()),
+                    None => {
+                        let pieces = vec![piece.clone()];
+                        gathered.push(Gathered { loops: loops.clone(), domain, purpose, pieces });
+                    }
+                }
+            }
+        }
+        for group in gathered {
+            let group = self.group(group);
+            structure.groups.push(group);
+        }
+    }
+
+    /// Where a piece is evaluated, and what to call a kernel there.
+    fn domains(&self, piece: &Piece, at: &Environment, structure: &mut Structure) -> Vec<(Domain, &'static str)> {
+        match &piece.domain {
+            model::Domain::Mission => vec![(Domain::Mission, "mission")],
+            model::Domain::Start(phase) => vec![(Domain::Start(at.phase(phase)), "initial")],
+            model::Domain::End(phase) => vec![(Domain::End(at.phase(phase)), "final")],
+            model::Domain::Path(phase) => point_sets(&self.problem, phase, piece)
+                .into_iter()
+                .map(|points| {
+                    let purpose = match points {
+                        Points::Gauss { .. } | Points::Uniform { .. } => "path",
+                        Points::Breakpoints => "breakpoints",
+                        Points::LeftLimits => "left_limits",
+                    };
+                    let sets = &mut structure.phases[phase.phase].points;
+                    let points = sets.iter().position(|p| *p == points).unwrap_or_else(|| {
+                        sets.push(points);
+                        sets.len() - 1
+                    });
+                    (Domain::Path { phase: at.phase(phase), points }, purpose)
+                })
+                .collect(),
+        }
+    }
+
+    fn group(&mut self, gathered: Gathered) -> Group {
+        let Gathered { loops, domain, purpose, pieces } = gathered;
+        let roots: Vec<Root<'_>> =
+            pieces.iter().map(|p| Root { body: p.body, loops: &p.loops, label: self.source.snippet(p.span) }).collect();
+        let call = call(self, purpose, Mode::Solve, &roots);
+        let (rows, bounds) = self.rows(&pieces);
+        Group { loops, domain, call, rows, bounds }
+    }
+
+    /// What the rows are, and the call that computes their bounds.
+    fn rows(&mut self, pieces: &[Piece]) -> (Vec<Row>, Option<Call>) {
+        let source = self.source;
+        let row_of = |node: Option<NodeId>, piece: &Piece, list: &mut Vec<(NodeId, Vec<Loop>, String)>| {
+            let node = node?;
+            let found = list.iter().position(|(n, l, _)| *n == node && *l == piece.loops);
+            Some(found.unwrap_or_else(|| {
+                list.push((node, piece.loops.clone(), source.snippet(piece.span)));
+                list.len() - 1
+            }))
+        };
+        let mut list = Vec::new();
+        let rows = pieces
+            .iter()
+            .map(|piece| match &piece.role {
+                Role::Cost { term } => Row::Cost { term: *term },
+                Role::Constraint { constraint, bounds } => Row::Constraint {
+                    constraint: *constraint,
+                    lower: row_of(bounds.lower, piece, &mut list),
+                    upper: row_of(bounds.upper, piece, &mut list),
+                },
+                Role::Part { constraint, index } => Row::Part { constraint: *constraint, index: index.clone() },
+                Role::Integral { integral, index } => Row::Integral { integral: *integral, index: index.clone() },
+            })
+            .collect();
+        let call = (!list.is_empty()).then(|| {
+            let roots: Vec<Root<'_>> =
+                list.iter().map(|(n, l, text)| Root { body: *n, loops: l, label: text.clone() }).collect();
+            call(self, "bounds", Mode::Setup, &roots)
+        });
+        (rows, call)
+    }
+
+    /// The number of a kernel with this shape and body, made if there is no equal one.
+    pub(super) fn kernel(&mut self, mut shape: Kernel, body: KernelBody) -> usize {
+        let equal = |k: usize| {
+            let (s, b) = (&self.kernels[k], &self.bodies[k]);
+            let shapes = (s.slots, s.data, s.rows, &s.probes) == (shape.slots, shape.data, shape.rows, &shape.probes);
+            shapes && b.computes_the_same(&body)
+        };
+        if let Some(k) = (0..self.kernels.len()).find(|k| equal(*k)) {
+            return k;
+        }
+        shape.name = self.names.distinct(&shape.name);
+        self.kernels.push(shape);
+        self.bodies.push(body);
+        self.kernels.len() - 1
+    }
+
+    /// The variable that stands for an integral used under these loops, and which member it is.
+    pub(super) fn integral(&mut self, node: NodeId, loops: &[Loop]) -> (usize, Vec<Affine>) {
+        let index = identity(loops.len());
+        if let Some(known) = self.integral_ids.get(&(node, loops.to_vec())) {
+            return (*known, index);
+        }
+        let integral = self.integrals.len();
+        let span = self.problem.origin.get(&node).copied().unwrap_or_default();
+        self.integrals.push(Integral { loops: positions(loops), place: self.place(span) });
+        self.integral_ids.insert((node, loops.to_vec()), integral);
+        let role = Role::Integral { integral, index: index.clone() };
+        let pieces = split(&mut self.problem, loops, node, span, role.clone(), &|| role.clone());
+        self.pending.extend(pieces);
+        (integral, index)
+    }
+
+    /// Whether the optimisation chooses a phase's duration.
+    pub(super) fn duration_is_free(&self, phase: usize) -> bool {
+        matches!(self.problem.phases[phase].duration, model::Duration::Free(_))
+    }
+
+    /// Whether the optimisation moves a phase's start.
+    pub(super) fn start_is_free(&self, phase: usize) -> bool {
+        let this = &self.problem.phases[phase];
+        matches!(self.problem.agents[this.agent].start, model::Start::Free(_))
+            || (this.family.is_some() && self.duration_is_free(phase))
+            || self.before(phase).any(|p| self.duration_is_free(p))
+    }
+
+    /// Whether a phase starts at time 0, whatever the parameters.
+    pub(super) fn start_is_zero(&self, phase: usize) -> bool {
+        let this = &self.problem.phases[phase];
+        let at_zero = matches!(self.problem.agents[this.agent].start, model::Start::Fixed(None));
+        at_zero && this.after.is_none() && this.family.is_none()
+    }
+
+    /// The phases before a phase.
+    fn before(&self, phase: usize) -> impl Iterator<Item = usize> {
+        std::iter::successors(self.problem.phases[phase].after, |p| self.problem.phases[*p].after)
+    }
+
+    /// How the spec is called in messages.
+    pub(super) fn source_name(&self) -> &str {
+        &self.source.name
+    }
+
+    /// Where something stands, for structures that outlive the source.
+    pub(super) fn place(&self, span: Span) -> Place {
+        let at = self.source.place(span.start);
+        let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        Place { line: number(at.line), column: number(at.column), text: self.source.snippet(span) }
+    }
+
+    /// As `place`, for nodes that the compiler made itself.
+    pub(super) fn place_or_none(&self, span: Option<Span>) -> Place {
+        span.map_or_else(Place::default, |span| self.place(span))
+    }
+}

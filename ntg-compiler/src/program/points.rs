@@ -1,0 +1,43 @@
+//! At which points of a phase a function is needed (docs/maths.md, section 4).
+
+use ntg_structure::Points;
+
+use super::pieces::{Piece, Role};
+use crate::expr::Node;
+use crate::model::problem::{Collocation, Domain, Leaf, PhaseAt, Problem};
+
+/// The point sets at which a piece along a phase is evaluated.
+///
+/// Integrands stand at quadrature points, equalities at the collocation points, inequalities at
+/// the quadrature points and at both ends of every interval: once where the function is
+/// continuous, from both sides where a derivative in it jumps.
+pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> Vec<Points> {
+    let (points, equalities) = match problem.phases[phase.phase].collocation {
+        Collocation::Uniform { points } => return vec![Points::Uniform { points }],
+        Collocation::Gauss { points, equalities } => (points, equalities),
+    };
+    match &piece.role {
+        Role::Constraint { bounds, .. } if bounds.lower.is_some() && bounds.lower == bounds.upper => {
+            vec![Points::Gauss { points: equalities }]
+        }
+        Role::Constraint { .. } => {
+            let mut sets = vec![Points::Gauss { points }, Points::Breakpoints];
+            if jumps(problem, piece) {
+                sets.push(Points::LeftLimits);
+            }
+            sets
+        }
+        _ => vec![Points::Gauss { points }],
+    }
+}
+
+/// Whether the piece holds a derivative that is discontinuous at interior breakpoints.
+fn jumps(problem: &Problem, piece: &Piece) -> bool {
+    let Domain::Path(_) = piece.domain else { return false };
+    problem.dag.schedule(&[piece.body]).iter().any(|id| {
+        let Node::Input(input) = problem.dag.node(*id) else { return false };
+        let Leaf::Flat { phase, output, order, .. } = problem.leaves.leaf(*input) else { return false };
+        let spline = &problem.phases[phase.phase].outputs[*output].spline;
+        spline.breakpoints.len() > 2 && *order >= spline.smoothness
+    })
+}

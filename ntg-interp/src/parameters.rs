@@ -1,0 +1,78 @@
+//! Parameters set by name, in the units that a person uses.
+
+use crate::Interpreted;
+
+/// Why a parameter could not be set.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SetError {
+    /// There is no parameter of that name; the names that there are.
+    Unknown(String, Vec<String>),
+    /// An array got the wrong number of values: name, wanted, got.
+    Count(String, usize, usize),
+    /// An index outside the array, or an index for a parameter that is no array: name, index.
+    Index(String, i64),
+    /// A value that is not finite.
+    NotFinite(String),
+}
+
+impl std::fmt::Display for SetError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Unknown(name, known) if known.is_empty() => {
+                write!(f, "`{name}` cannot be set: the problem has no parameters")
+            }
+            Self::Unknown(name, known) => {
+                write!(f, "there is no parameter `{name}`; the parameters are: `{}`", known.join("`, `"))
+            }
+            Self::Count(name, wanted, got) => write!(f, "`{name}` holds {wanted} values, but {got} are given"),
+            Self::Index(name, index) => write!(f, "`{name}[{index}]` does not exist"),
+            Self::NotFinite(name) => write!(f, "`{name}` must be a finite number"),
+        }
+    }
+}
+
+impl std::error::Error for SetError {}
+
+impl Interpreted {
+    /// Sets all values of a parameter, in SI units: one for a scalar, as many as an array has.
+    ///
+    /// # Errors
+    /// Unknown name, wrong number of values, values that are not finite.
+    pub fn set(&mut self, name: &str, values: &[f64]) -> Result<(), SetError> {
+        let parameter = self.find(name)?;
+        let place = &mut self.structure.parameters[parameter].value;
+        if place.len() != values.len() {
+            return Err(SetError::Count(name.to_owned(), place.len(), values.len()));
+        }
+        if values.iter().any(|v| !v.is_finite()) {
+            return Err(SetError::NotFinite(name.to_owned()));
+        }
+        place.copy_from_slice(values);
+        Ok(())
+    }
+
+    /// Sets one member of an array parameter (counted from 1), in SI units.
+    ///
+    /// # Errors
+    /// Unknown name, an index outside the array, a value that is not finite.
+    pub fn set_member(&mut self, name: &str, index: i64, value: f64) -> Result<(), SetError> {
+        let parameter = &mut self.structure.parameters[self.find(name)?];
+        if !value.is_finite() {
+            return Err(SetError::NotFinite(name.to_owned()));
+        }
+        let member = usize::try_from(index - 1).ok().filter(|_| parameter.array);
+        match member.and_then(|k| parameter.value.get_mut(k)) {
+            Some(place) => *place = value,
+            None => return Err(SetError::Index(name.to_owned(), index)),
+        }
+        Ok(())
+    }
+
+    fn find(&self, name: &str) -> Result<usize, SetError> {
+        let parameters = &self.structure.parameters;
+        parameters
+            .iter()
+            .position(|p| p.name == name)
+            .ok_or_else(|| SetError::Unknown(name.to_owned(), parameters.iter().map(|p| p.name.clone()).collect()))
+    }
+}

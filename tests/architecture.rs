@@ -1,0 +1,170 @@
+//! The floors of the house: what may not know what (ARCHITECTURE.md).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// All Rust files below a folder of the workspace, with their text.
+fn files(folder: &str) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
+            let path = entry.expect("a readable folder").path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = fs::read_to_string(&path).expect("a readable file");
+                found.push((path, text));
+            }
+        }
+    }
+    assert!(!found.is_empty(), "nothing to check in {folder}");
+    found
+}
+
+/// The part of a file that ships: what stands before its tests.
+fn shipped(text: &str) -> &str {
+    text.split("#[cfg(test)]").next().unwrap_or(text)
+}
+
+/// Asserts that no shipped line below `folder` holds one of the words, except in the named file.
+#[track_caller]
+fn forbid(folder: &str, words: &[&str], except: Option<&str>) {
+    for (path, text) in files(folder) {
+        if except.is_some_and(|name| path.ends_with(name)) {
+            continue;
+        }
+        for (number, line) in shipped(&text).lines().enumerate() {
+            let code = line.split("//").next().unwrap_or("");
+            for word in words {
+                assert!(!code.contains(word), "{}:{}: `{word}` does not belong here", path.display(), number + 1);
+            }
+        }
+    }
+}
+
+const FLOORS: [&str; 6] = ["source", "diagnostic", "syntax", "model", "program", "codegen"];
+
+#[test]
+fn no_floor_of_the_compiler_knows_a_floor_above_it() {
+    for (path, text) in files("ntg-compiler/src") {
+        let inside = path.strip_prefix(Path::new(env!("CARGO_MANIFEST_DIR")).join("ntg-compiler/src")).expect("below");
+        let room = inside.components().next().expect("a name").as_os_str().to_string_lossy().replace(".rs", "");
+        let Some(floor) = FLOORS.iter().position(|f| *f == room) else { continue };
+        for above in &FLOORS[floor + 1..] {
+            let word = format!("crate::{above}");
+            assert!(!shipped(&text).contains(&word), "{} looks up to `{above}`", path.display());
+        }
+    }
+}
+
+#[test]
+fn the_algebra_of_expressions_imports_nothing_of_ours() {
+    let words: Vec<String> = FLOORS.iter().map(|f| format!("crate::{f}")).chain(["ntg_".to_owned()]).collect();
+    forbid("ntg-compiler/src/expr", &words.iter().map(String::as_str).collect::<Vec<_>>(), None);
+}
+
+#[test]
+fn the_compiler_does_no_input_or_output_and_reads_no_clock() {
+    forbid(
+        "ntg-compiler/src",
+        &["std::fs", "std::env", "std::time", "std::io", "std::net", "println!", "eprintln!", "proc_macro::"],
+        None,
+    );
+}
+
+#[test]
+fn pest_stays_in_the_syntax_folder() {
+    for room in ["model", "program", "codegen", "expr", "diagnostic"] {
+        forbid(&format!("ntg-compiler/src/{room}"), &["pest"], None);
+    }
+}
+
+#[test]
+fn code_generation_knows_no_calculus_and_the_algebra_no_rust() {
+    forbid("ntg-compiler/src/codegen", &["gradient(", "hessian(", "forward("], None);
+    forbid("ntg-compiler/src/expr", &["quote!", "TokenStream", "format_ident"], None);
+    forbid("ntg-compiler/src/program", &["quote!", "TokenStream"], None);
+    forbid("ntg-compiler/src/model", &["quote!", "TokenStream"], None);
+}
+
+#[test]
+fn only_one_file_names_clarabel() {
+    forbid("ntg-runtime/src", &["clarabel::"], Some("sqp/clarabel.rs"));
+}
+
+#[test]
+fn compiler_and_runtime_do_not_know_each_other() {
+    forbid("ntg-runtime/src", &["ntg_compiler", "ntg_interp", "ntg_macros"], None);
+    forbid("ntg-compiler/src", &["ntg_runtime", "ntg_interp"], None);
+    forbid("ntg-structure/src", &["ntg_"], None);
+    forbid("ntg-splines/src", &["ntg_structure", "ntg_runtime", "ntg_compiler"], None);
+}
+
+#[test]
+fn there_are_no_globals_and_nothing_is_unfinished() {
+    for folder in [
+        "src",
+        "ntg-structure/src",
+        "ntg-splines/src",
+        "ntg-compiler/src",
+        "ntg-macros/src",
+        "ntg-runtime/src",
+        "ntg-interp/src",
+        "ntg-cli/src",
+    ] {
+        forbid(folder, &["static mut", "thread_local!", "todo!(", "unimplemented!(", "#[ignore"], None);
+    }
+}
+
+#[test]
+fn files_stay_small_enough_to_have_one_purpose() {
+    /// Lines beyond which a file is two rooms (CONTRIBUTING, sizes).
+    const MOST_LINES: usize = 600;
+    for folder in [
+        "src",
+        "ntg-structure/src",
+        "ntg-splines/src",
+        "ntg-compiler/src",
+        "ntg-macros/src",
+        "ntg-runtime/src",
+        "ntg-interp/src",
+        "ntg-cli/src",
+    ] {
+        for (path, text) in files(folder) {
+            let lines = text.lines().count();
+            assert!(lines <= MOST_LINES, "{} has {lines} lines", path.display());
+        }
+    }
+}
+
+#[test]
+fn every_code_is_documented_once() {
+    let manual =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/errors.md")).expect("docs/errors.md");
+    for code in ntg_compiler::diagnostic::Code::ALL {
+        let heading = format!("## {} ", code.text());
+        assert_eq!(manual.matches(&heading).count(), 1, "docs/errors.md has one entry `{heading}...`");
+    }
+}
+
+#[test]
+fn every_equation_that_code_cites_is_in_the_manual() {
+    let manual =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/maths.md")).expect("docs/maths.md");
+    for folder in ["ntg-splines/src", "ntg-compiler/src", "ntg-runtime/src", "ntg-interp/src", "ntg-structure/src"] {
+        for (path, text) in files(folder) {
+            for (at, _) in text.match_indices("maths.md, section ") {
+                let number: String = text[at + "maths.md, section ".len()..]
+                    .chars()
+                    .take_while(|c| c.is_ascii_digit() || *c == '.')
+                    .collect();
+                let number = number.trim_end_matches('.');
+                let found = manual.lines().any(|l| {
+                    l.starts_with('#') && l.split_whitespace().nth(1).is_some_and(|n| n.trim_end_matches('.') == number)
+                });
+                assert!(found, "{} cites section {number} of docs/maths.md", path.display());
+            }
+        }
+    }
+}
