@@ -1,0 +1,163 @@
+//! One argument of an interpolant: piecewise polynomial weights of its coefficients.
+//!
+//! Every method of this crate is a tensor product: in each argument a few neighbouring
+//! coefficients act on a cell, each with a weight that is a polynomial there (docs/maths.md,
+//! equation 7.1): B-splines, Hermite polynomials, or hat functions. The polynomials are made
+//! once, in the cell's own coordinate from -1 to 1, where powers are well conditioned and
+//! where the weights of Hermite and hat functions are exact at the nodes.
+//!
+//! Symmetry and extrapolation belong to the argument and are applied here, so that every
+//! derivative includes them (equations 7.2 to 7.5).
+
+use super::{Axis, Extrapolation, MAX_TABLE_ORDER, Symmetry};
+use crate::knots::Side;
+
+/// One argument of an interpolant.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Piece {
+    symmetry: Symmetry,
+    low: f64,
+    high: f64,
+    order: usize,
+    smoothness: usize,     // Derivatives up to this one are continuous.
+    step: usize,           // From the first coefficient of one cell to that of the next.
+    breaks: Vec<f64>,      // Ends of the cells; they cover low ..= high (0 ..= high if even).
+    polynomials: Vec<f64>, // cells × order (coefficient) × order (power).
+}
+
+/// Weights of the coefficients that act at a point.
+pub(super) type Weights = [f64; MAX_TABLE_ORDER];
+
+impl Piece {
+    /// `polynomials` has, for each cell and each of its `order` coefficients, the polynomial
+    /// in the cell's coordinate -1 ..= 1, constant term first.
+    pub(super) fn new(axis: &Axis, breaks: Vec<f64>, form: Form, polynomials: Vec<f64>) -> Self {
+        let low = if axis.symmetry == Symmetry::Even { -axis.last() } else { axis.first() };
+        let Form { order, smoothness, step } = form;
+        Self { symmetry: axis.symmetry, low, high: axis.last(), order, smoothness, step, breaks, polynomials }
+    }
+
+    /// The number of coefficients that act on a cell.
+    pub(super) fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Whether weights, and widths of cells as they enter [`Piece::local`], are finite numbers.
+    pub(super) fn is_finite(&self) -> bool {
+        self.polynomials.iter().all(|c| c.is_finite())
+            && self.breaks.windows(2).all(|pair| (2.0 * (pair[1] - pair[0])).is_finite())
+    }
+
+    /// Writes the weights of derivative `d` at `x` and gives the first coefficient they
+    /// belong to; `None` if that derivative is zero whatever the coefficients.
+    #[inline]
+    pub(super) fn weights(&self, x: f64, d: usize, beyond: Extrapolation, out: &mut Weights) -> Option<usize> {
+        match self.symmetry {
+            Symmetry::Plain => self.bounded(x, d, Side::Right, beyond, out),
+            Symmetry::Periodic => {
+                let x = self.wrapped(x);
+                let cell = self.cell(x, Side::Right);
+                self.local(cell, x, d, out);
+                Some(cell * self.step)
+            }
+            Symmetry::Even => self.mirrored(x, d, beyond, out),
+        }
+    }
+
+    /// Even arguments: the value at `|x|`, with the sign of an odd derivative (equation 7.3).
+    fn mirrored(&self, x: f64, d: usize, beyond: Extrapolation, out: &mut Weights) -> Option<usize> {
+        let odd = d % 2 == 1;
+        // Zero by symmetry wherever the derivative is continuous at 0; never left to rounding.
+        if x == 0.0 && odd && (d <= self.smoothness || self.breaks[0] < 0.0) {
+            return None;
+        }
+        // The limit from the right at -x is the limit from the left at x.
+        let side = if x < 0.0 { Side::Left } else { Side::Right };
+        let start = self.bounded(x.abs(), d, side, beyond, out)?;
+        if x < 0.0 && odd {
+            out[..self.order].iter_mut().for_each(|w| *w = -*w);
+        }
+        Some(start)
+    }
+
+    /// Inside the nodes the interpolant, outside its continuation (equations 7.4 and 7.5).
+    fn bounded(&self, x: f64, d: usize, side: Side, beyond: Extrapolation, out: &mut Weights) -> Option<usize> {
+        let end = x.clamp(self.low, self.high);
+        let cell = self.cell(end, side);
+        let start = cell * self.step;
+        if x == end {
+            self.local(cell, x, d, out);
+            return Some(start);
+        }
+        match (beyond, d) {
+            (_, 0) => self.local(cell, end, 0, out),
+            (Extrapolation::Linear, 1) => self.local(cell, end, 1, out),
+            _ => return None,
+        }
+        if beyond == Extrapolation::Linear && d == 0 {
+            let mut slope = [0.0; MAX_TABLE_ORDER];
+            self.local(cell, end, 1, &mut slope);
+            out.iter_mut().zip(slope).for_each(|(w, s)| *w += (x - end) * s);
+        }
+        Some(start)
+    }
+
+    /// Periodic arguments: the same place within the first period (equation 7.2).
+    fn wrapped(&self, x: f64) -> f64 {
+        if (self.low..self.high).contains(&x) {
+            return x; // Not moved by rounding.
+        }
+        let x = self.low + (x - self.low).rem_euclid(self.high - self.low);
+        if x < self.high { x } else { self.low }
+    }
+
+    fn cell(&self, x: f64, side: Side) -> usize {
+        let inner = &self.breaks[1..self.breaks.len() - 1];
+        match side {
+            Side::Left => inner.partition_point(|b| *b < x),
+            Side::Right => inner.partition_point(|b| *b <= x),
+        }
+    }
+
+    /// Derivative `d` of the polynomials of a cell.
+    #[inline]
+    fn local(&self, cell: usize, x: f64, d: usize, out: &mut Weights) {
+        let order = self.order;
+        let out = &mut out[..order];
+        if d >= order {
+            out.fill(0.0);
+            return;
+        }
+        let (a, b) = (self.breaks[cell], self.breaks[cell + 1]);
+        // Written so that both ends of the cell give -1 and 1 without rounding.
+        let s = 2.0 * (x - a) / (b - a) - 1.0;
+        let polynomials = &self.polynomials[cell * order * order..][..order * order];
+        let polynomials = polynomials.chunks_exact(order);
+        if d == 0 {
+            for (w, polynomial) in out.iter_mut().zip(polynomials) {
+                *w = polynomial.iter().rev().fold(0.0, |sum, c| sum * s + c);
+            }
+            return;
+        }
+        let mut factors = [1.0; MAX_TABLE_ORDER]; // p! / (p - d)! for each power p.
+        for (p, factor) in factors.iter_mut().enumerate().take(order).skip(d) {
+            *factor = (p + 1 - d..=p).map(|q| q as f64).product();
+        }
+        let scale = (2.0 / (b - a)).powi(d as i32);
+        for (w, polynomial) in out.iter_mut().zip(polynomials) {
+            let terms = polynomial.iter().zip(&factors).skip(d).rev();
+            *w = scale * terms.fold(0.0, |sum, (c, factor)| sum * s + factor * c);
+        }
+    }
+}
+
+/// How the weights of a method are laid out.
+#[derive(Clone, Copy)]
+pub(super) struct Form {
+    /// Coefficients that act on a cell; also the order of the polynomials.
+    pub(super) order: usize,
+    /// Derivatives up to this one are continuous.
+    pub(super) smoothness: usize,
+    /// From the first coefficient of one cell to that of the next.
+    pub(super) step: usize,
+}
