@@ -166,7 +166,17 @@ impl Table {
         if args.len() != count || derivative.len() != count || args.iter().any(|x| x.is_nan()) {
             return f64::NAN;
         }
-        let mut weights: [Weights; MAX_ARGUMENTS] = [[0.0; MAX_TABLE_ORDER]; MAX_ARGUMENTS];
+        // Clearing room for eight arguments would cost as much as a table of one.
+        match count {
+            1 => self.eval_within(args, derivative, &mut [[0.0; MAX_TABLE_ORDER]; 1]),
+            2 => self.eval_within(args, derivative, &mut [[0.0; MAX_TABLE_ORDER]; 2]),
+            _ => self.eval_within(args, derivative, &mut [[0.0; MAX_TABLE_ORDER]; MAX_ARGUMENTS]),
+        }
+    }
+
+    /// The same, with room for the weights of each argument.
+    #[inline]
+    fn eval_within(&self, args: &[f64], derivative: &[u8], weights: &mut [Weights]) -> f64 {
         let mut first = 0;
         for (axis, piece) in self.pieces.iter().enumerate() {
             let order = usize::from(derivative[axis]);
@@ -175,11 +185,11 @@ impl Table {
             };
             first += start * self.strides[axis];
         }
-        self.contract(0, first, &weights)
+        self.contract(0, first, weights)
     }
 
     /// The sum over the coefficients that act in arguments `axis ..`, the first of them at `first`.
-    fn contract(&self, axis: usize, first: usize, weights: &[Weights; MAX_ARGUMENTS]) -> f64 {
+    fn contract(&self, axis: usize, first: usize, weights: &[Weights]) -> f64 {
         let weights_here = &weights[axis][..self.pieces[axis].order()];
         if axis + 1 == self.pieces.len() {
             let active = &self.coefficients[first..first + weights_here.len()];

@@ -21,6 +21,7 @@ pub(super) struct Piece {
     order: usize,
     smoothness: usize,     // Derivatives up to this one are continuous.
     step: usize,           // From the first coefficient of one cell to that of the next.
+    density: f64,          // Cells per unit of the argument, on average.
     breaks: Vec<f64>,      // Ends of the cells; they cover low ..= high (0 ..= high if even).
     polynomials: Vec<f64>, // cells × order (coefficient) × order (power).
 }
@@ -34,7 +35,9 @@ impl Piece {
     pub(super) fn new(axis: &Axis, breaks: Vec<f64>, form: Form, polynomials: Vec<f64>) -> Self {
         let low = if axis.symmetry == Symmetry::Even { -axis.last() } else { axis.first() };
         let Form { order, smoothness, step } = form;
-        Self { symmetry: axis.symmetry, low, high: axis.last(), order, smoothness, step, breaks, polynomials }
+        let cells = breaks.len() - 1;
+        let density = cells as f64 / (breaks[cells] - breaks[0]);
+        Self { symmetry: axis.symmetry, low, high: axis.last(), order, smoothness, step, density, breaks, polynomials }
     }
 
     /// The number of coefficients that act on a cell.
@@ -111,8 +114,16 @@ impl Piece {
         if x < self.high { x } else { self.low }
     }
 
+    #[inline]
     fn cell(&self, x: f64, side: Side) -> usize {
-        let inner = &self.breaks[1..self.breaks.len() - 1];
+        let last = self.breaks.len() - 2;
+        // Right at once if the cells are equal; the comparison settles it.
+        let guess = ((x - self.breaks[0]) * self.density) as usize;
+        let guess = guess.min(last);
+        if self.breaks[guess] < x && x < self.breaks[guess + 1] {
+            return guess;
+        }
+        let inner = &self.breaks[1..=last];
         match side {
             Side::Left => inner.partition_point(|b| *b < x),
             Side::Right => inner.partition_point(|b| *b <= x),
@@ -123,31 +134,43 @@ impl Piece {
     #[inline]
     fn local(&self, cell: usize, x: f64, d: usize, out: &mut Weights) {
         let order = self.order;
-        let out = &mut out[..order];
-        if d >= order {
-            out.fill(0.0);
-            return;
-        }
         let (a, b) = (self.breaks[cell], self.breaks[cell + 1]);
         // Written so that both ends of the cell give -1 and 1 without rounding.
         let s = 2.0 * (x - a) / (b - a) - 1.0;
         let polynomials = &self.polynomials[cell * order * order..][..order * order];
-        let polynomials = polynomials.chunks_exact(order);
-        if d == 0 {
-            for (w, polynomial) in out.iter_mut().zip(polynomials) {
-                *w = polynomial.iter().rev().fold(0.0, |sum, c| sum * s + c);
-            }
-            return;
+        // The common orders are written as numbers so that their loops are unrolled.
+        match (d, order) {
+            (0, 2) => values(2, s, polynomials, out),
+            (0, 4) => values(4, s, polynomials, out),
+            (0, _) => values(order, s, polynomials, out),
+            (_, 4) => derivatives(4, d, s, 2.0 / (b - a), polynomials, out),
+            _ => derivatives(order, d, s, 2.0 / (b - a), polynomials, out),
         }
-        let mut factors = [1.0; MAX_TABLE_ORDER]; // p! / (p - d)! for each power p.
-        for (p, factor) in factors.iter_mut().enumerate().take(order).skip(d) {
-            *factor = (p + 1 - d..=p).map(|q| q as f64).product();
-        }
-        let scale = (2.0 / (b - a)).powi(d as i32);
-        for (w, polynomial) in out.iter_mut().zip(polynomials) {
-            let terms = polynomial.iter().zip(&factors).skip(d).rev();
-            *w = scale * terms.fold(0.0, |sum, (c, factor)| sum * s + factor * c);
-        }
+    }
+}
+
+/// Writes the values at `s` of `order` polynomials.
+#[inline(always)]
+fn values(order: usize, s: f64, polynomials: &[f64], out: &mut Weights) {
+    for (w, polynomial) in out[..order].iter_mut().zip(polynomials.chunks_exact(order)) {
+        *w = polynomial.iter().rev().fold(0.0, |sum, c| sum * s + c);
+    }
+}
+
+/// Writes derivative `d` of `order` polynomials at `s`, which changes at the given rate.
+#[inline(always)]
+fn derivatives(order: usize, d: usize, s: f64, rate: f64, polynomials: &[f64], out: &mut Weights) {
+    if d >= order {
+        out[..order].fill(0.0);
+        return;
+    }
+    let mut factors = [0.0; MAX_TABLE_ORDER]; // p! / (p - d)! rate^d for each power p.
+    factors[d] = (1..=d).fold(1.0, |product, q| product * q as f64 * rate);
+    for p in d + 1..order {
+        factors[p] = factors[p - 1] * p as f64 / (p - d) as f64;
+    }
+    for (w, polynomial) in out[..order].iter_mut().zip(polynomials.chunks_exact(order)) {
+        *w = (d..order).rev().fold(0.0, |sum, p| sum * s + factors[p] * polynomial[p]);
     }
 }
 
