@@ -65,6 +65,8 @@ codes! {
     Misplaced "E017" "something that may not stand here";
     MalformedUnit "E018" "a unit that is not written as units are";
     OneProblem "E019" "a spec is exactly one problem";
+
+    SourceTooLarge "E090" "a spec too large to be read";
 }
 
 impl Code {

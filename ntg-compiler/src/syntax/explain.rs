@@ -1,0 +1,227 @@
+//! Where the grammar got stuck, in the words of a person.
+//!
+//! Takes the place, the rules that were tried there and the tokens around it; gives one `Diagnostic`.
+//! The grammar lists rules; a person thinks in few kinds of things (an expression, a name, a `;`), and often the
+//! token that stands there says better what is wrong than any list.
+
+use super::grammar::{Rule, Stuck};
+use super::recover::{Body, text};
+use super::scan::{Scan, Token, TokenKind};
+use super::words::{ITEM_WORDS, LATER_WORDS, is_reserved, nearest_item_word};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+
+mod expected;
+
+use expected::Expected;
+
+/// What stands at the place where the grammar got stuck.
+struct Here<'a> {
+    scan: &'a Scan,
+    /// The token there, or none at the end of the text.
+    index: usize,
+    token: Option<&'a Token>,
+    before: Option<&'a Token>,
+    expected: Expected,
+}
+
+/// What is wrong where the grammar got stuck in a text that begins at byte `base`.
+pub(super) fn explain(scan: &Scan, stuck: &Stuck, base: usize) -> Diagnostic {
+    let at = base + stuck.at;
+    let index = scan.tokens.partition_point(|token| (token.span.end as usize) <= at);
+    let before = index.checked_sub(1).map(|before| &scan.tokens[before]);
+    let expected = Expected::new(&stuck.expected);
+    let here = Here { scan, index, token: scan.tokens.get(index), before, expected };
+    here.missing_semicolon()
+        .or_else(|| here.stray_doc())
+        .or_else(|| here.reserved())
+        .or_else(|| here.unit())
+        .unwrap_or_else(|| here.unexpected())
+}
+
+/// A statement of another place, or one that begins with no word of the language.
+pub(super) fn misplaced(scan: &Scan, body: Body, at: usize, end: usize) -> Option<Diagnostic> {
+    let token = scan.tokens[at..end].iter().find(|token| token.kind != TokenKind::Doc)?;
+    let word = text(scan, token);
+    if word == ";" {
+        let finding = Diagnostic::new(Code::Unexpected, token.span, "there is no statement before this `;`");
+        return Some(finding.help("remove it"));
+    }
+    if token.kind != TokenKind::Word {
+        return None;
+    }
+    if !matches!(body, Body::Items(_)) {
+        return foreign_item(scan, body, token, word);
+    }
+    let is_item = ITEM_WORDS.contains(&word) || matches!(word, "initial" | "final" | "duration" | "start" | "jump");
+    if word == "problem" {
+        let finding = Diagnostic::new(Code::OneProblem, token.span, "a problem does not stand in another one");
+        return Some(finding.help("a spec is exactly one `problem Name { ... }`"));
+    }
+    (!is_item).then(|| no_item(scan, token, word, at, end))
+}
+
+/// A declaration in a block of constraints, a guess or a table.
+fn foreign_item(scan: &Scan, body: Body, token: &Token, word: &str) -> Option<Diagnostic> {
+    let follows = scan.tokens.get(scan.tokens.partition_point(|other| other.span.start <= token.span.start));
+    let is_block = matches!(word, "initial" | "final") && follows.is_some_and(|next| text(scan, next) == "{");
+    if !ITEM_WORDS.contains(&word) && !is_block {
+        return None;
+    }
+    let place = match body {
+        Body::Guess => "a guess",
+        Body::Rows => "a table",
+        _ => "a block of constraints",
+    };
+    let finding = Diagnostic::new(Code::Misplaced, token.span, format!("`{word}` may not stand in {place}"));
+    Some(finding.help("write it before or after, in the problem, the agent or the phase"))
+}
+
+/// A statement among the items that begins with no item's word: a slip of the pen, or a constraint.
+fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Diagnostic {
+    let statement =
+        scan.tokens[at..end].iter().map(|token| text(scan, token)).take_while(|text| !matches!(*text, ";" | "{"));
+    let mut relates = false;
+    for part in statement {
+        relates |= matches!(part, "==" | "<=" | ">=" | "<" | ">" | "!=");
+    }
+    if relates {
+        let finding = Diagnostic::new(Code::Misplaced, token.span, "a constraint stands in no block");
+        return finding.help("write it in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`");
+    }
+    let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
+    match nearest_item_word(word) {
+        Some(meant) => finding.help(format!("did you mean `{meant}`?")),
+        None => finding.help("a statement begins with a word such as `let`, `output`, `param` or `trajectory`"),
+    }
+}
+
+/// A `///` that stands before nothing that could be documented.
+pub(super) fn stray_doc(span: Span) -> Diagnostic {
+    let finding = Diagnostic::new(Code::Comment, span, "this `///` documents nothing");
+    finding.help("write `//`, or move it before a declaration or constraint")
+}
+
+/// Whether a token is the first on its line.
+pub(super) fn begins_line(scan: &Scan, index: usize) -> bool {
+    let start = scan.tokens[index].span.start as usize;
+    let before = index.checked_sub(1).map_or(0, |before| scan.tokens[before].span.end as usize);
+    scan.clean[before..start].contains('\n')
+}
+
+impl Here<'_> {
+    /// A statement that goes straight into the next one.
+    fn missing_semicolon(&self) -> Option<Diagnostic> {
+        let before = self.before?;
+        if !self.expected.has(Rule::semicolon) {
+            return None;
+        }
+        let next_statement = match self.token {
+            None => true,
+            Some(token) if token.kind == TokenKind::Doc => true,
+            Some(token) => {
+                let word = text(self.scan, token);
+                // An operator, a comma or an opening bracket on the next line goes on with the statement, wrongly.
+                let begins = token.kind == TokenKind::Word && begins_line(self.scan, self.index);
+                word == "}" || ITEM_WORDS.contains(&word) || begins
+            }
+        };
+        let end = before.span.end;
+        next_statement.then(|| {
+            let finding = Diagnostic::new(Code::MissingSemicolon, Span { start: end, end }, "a `;` is missing here");
+            finding.help("every statement ends with `;`")
+        })
+    }
+
+    fn stray_doc(&self) -> Option<Diagnostic> {
+        self.token.filter(|token| token.kind == TokenKind::Doc).map(|token| stray_doc(token.span))
+    }
+
+    /// A reserved word where a name stands.
+    fn reserved(&self) -> Option<Diagnostic> {
+        let token = self.token.filter(|token| token.kind == TokenKind::Word)?;
+        let word = text(self.scan, token);
+        let starts_statement = ITEM_WORDS.contains(&word) && begins_line(self.scan, self.index);
+        if !is_reserved(word) || starts_statement || !self.expected.wants_a_name() {
+            return None;
+        }
+        let finding = Diagnostic::new(Code::ReservedWord, token.span, format!("`{word}` is a reserved word"));
+        Some(match word {
+            "t" | "tau" | "pi" if self.expected.has(Rule::name) => finding
+                .help(format!("`{word}` has a meaning in every expression; choose another name, such as `{word}_`")),
+            _ if LATER_WORDS.contains(&word) => {
+                finding.help(format!("it is kept for later versions; choose another name, such as `{word}_`"))
+            }
+            _ => finding.help(format!("choose another name, such as `{word}_`")),
+        })
+    }
+
+    /// Something in brackets that is no unit.
+    fn unit(&self) -> Option<Diagnostic> {
+        if !self.expected.is_inside_unit() {
+            return None;
+        }
+        let finding = Diagnostic::new(Code::MalformedUnit, self.span(), self.message());
+        Some(finding.help("write units as in `[km]`, `[m/s^2]`, `[kg*m^2]`, `[1]`, with whole powers"))
+    }
+
+    /// Everything else: what was expected, and what was found.
+    fn unexpected(&self) -> Diagnostic {
+        let finding = Diagnostic::new(Code::Unexpected, self.span(), self.message());
+        match self.advice() {
+            Some(help) => finding.help(help),
+            None => finding,
+        }
+    }
+
+    fn span(&self) -> Span {
+        let end = self.scan.clean.len();
+        let after_text =
+            self.before.map_or(Span::new(end, end), |before| Span { start: before.span.end, end: before.span.end });
+        self.token.map_or(after_text, |token| token.span)
+    }
+
+    fn message(&self) -> String {
+        format!("expected {}, found {}", self.expected, self.found())
+    }
+
+    fn found(&self) -> String {
+        const SHOWN: usize = 30;
+        let Some(token) = self.token else { return "the end of the text".into() };
+        let word = text(self.scan, token);
+        let short: String = word.chars().take(SHOWN).collect();
+        let dots = if short.len() < word.len() { "..." } else { "" };
+        format!("`{short}{dots}`")
+    }
+
+    /// What to write instead, where the tokens tell.
+    fn advice(&self) -> Option<String> {
+        let word = |token: Option<&Token>| token.map_or("", |token| text(self.scan, token));
+        let (this, before) = (word(self.token), word(self.before));
+        let is_word = self.token.is_some_and(|token| token.kind == TokenKind::Word);
+        let after_number = self.before.is_some_and(|token| token.kind == TokenKind::Number);
+        if this == "**" {
+            return Some("write `^` for a power".into());
+        }
+        if after_number && is_word {
+            return Some(format!(
+                "a unit stands in brackets, `{before} [{this}]`; a product has its sign, `{before} * {this}`"
+            ));
+        }
+        if this == "+" && self.expected.has_expression() {
+            return Some("a number without a sign is positive: remove the `+`".into());
+        }
+        if this == "==" && self.expected.has(Rule::equals) {
+            return Some("here a value is given, with one `=`".into());
+        }
+        if this == "=" && self.expected.has(Rule::semicolon) {
+            return Some(
+                "constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`, with `==`".into(),
+            );
+        }
+        if matches!(this, ")" | "]") && before == "," {
+            return Some("remove the comma before it".into());
+        }
+        None
+    }
+}

@@ -1,0 +1,211 @@
+//! What the grammar would have understood, as few kinds of things, each once, in a fixed order.
+
+use std::fmt;
+
+use crate::syntax::grammar::Rule;
+
+/// The rules that were tried.
+pub(super) struct Expected {
+    rules: Vec<Rule>,
+}
+
+impl Expected {
+    pub(super) fn new(rules: &[Rule]) -> Self {
+        Self { rules: rules.to_vec() }
+    }
+
+    pub(super) fn has(&self, rule: Rule) -> bool {
+        self.rules.contains(&rule)
+    }
+
+    pub(super) fn has_expression(&self) -> bool {
+        self.rules.iter().any(|rule| kind(*rule) == Kind::Expression)
+    }
+
+    /// Whether a name would have done, alone or as an expression.
+    pub(super) fn wants_a_name(&self) -> bool {
+        self.has_expression() || self.rules.iter().any(|rule| kind(*rule) == Kind::Name)
+    }
+
+    /// Whether only parts of a unit would have done.
+    pub(super) fn is_inside_unit(&self) -> bool {
+        let of_unit = |rule: &Rule| kind(*rule) == Kind::Unit && *rule != Rule::unit;
+        let closes =
+            |rule: &Rule| matches!(rule, Rule::right_bracket | Rule::right_parenthesis | Rule::caret | Rule::minus);
+        self.rules.iter().any(of_unit) && self.rules.iter().all(|rule| of_unit(rule) || closes(rule))
+    }
+
+    /// What to name, in the order in which it is said. What may always go on (an index, a path, a unit, an
+    /// operator) is named only if nothing ends the thing.
+    fn words(&self) -> Vec<String> {
+        let mut kinds: Vec<Kind> = self.rules.iter().map(|rule| kind(*rule)).collect();
+        kinds.sort();
+        kinds.dedup();
+        if kinds.iter().any(|kind| !kind.is_minor()) {
+            kinds.retain(|kind| !kind.is_minor());
+        }
+        if kinds.contains(&Kind::Statement) {
+            kinds.retain(|kind| !matches!(kind, Kind::Name | Kind::Keyword(_)));
+        }
+        kinds.iter().map(Kind::words).collect()
+    }
+}
+
+impl fmt::Display for Expected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words = self.words();
+        match words.split_last() {
+            None => f.write_str("something else"),
+            Some((only, [])) => f.write_str(only),
+            Some((last, rest)) => write!(f, "{} or {last}", rest.join(", ")),
+        }
+    }
+}
+
+/// The kinds of things that a message names, in the order in which it does.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Statement,
+    Constraint,
+    Guess,
+    Expression,
+    Name,
+    Unit,
+    Relation,
+    Symmetry,
+    Setting,
+    String,
+    Operator,
+    Keyword(String),
+    Mark(&'static str),
+    /// Marks after which an expression or name goes on.
+    Minor(&'static str),
+    End,
+}
+
+impl Kind {
+    fn is_minor(&self) -> bool {
+        matches!(self, Self::Minor(_) | Self::Unit | Self::Symmetry)
+    }
+
+    fn words(&self) -> String {
+        let words = match self {
+            Self::Statement => "a statement",
+            Self::Constraint => "a constraint",
+            Self::Guess => "a guess",
+            Self::Expression => "an expression",
+            Self::Name => "a name",
+            Self::Unit => "a unit",
+            Self::Relation => "`==`, `<=`, `>=`",
+            Self::Symmetry => "`even`, `periodic`",
+            Self::Setting => "a setting",
+            Self::String => "a file name in quotes",
+            Self::Operator => "an operator",
+            Self::Keyword(word) => return format!("`{word}`"),
+            Self::Mark(mark) | Self::Minor(mark) => return format!("`{mark}`"),
+            Self::End => "the end of the text",
+        };
+        words.into()
+    }
+}
+
+fn kind(rule: Rule) -> Kind {
+    use Rule as R;
+    match rule {
+        R::item
+        | R::constant
+        | R::table
+        | R::table_head
+        | R::param
+        | R::variable
+        | R::output
+        | R::function
+        | R::named
+        | R::continuation
+        | R::duration
+        | R::start
+        | R::phase
+        | R::phase_head
+        | R::agent
+        | R::agent_head
+        | R::jump
+        | R::continuous
+        | R::collocation
+        | R::objective
+        | R::sense
+        | R::block
+        | R::block_head
+        | R::guess
+        | R::guess_head => Kind::Statement,
+        R::statement | R::constraint | R::repeated => Kind::Constraint,
+        R::guess_statement | R::guess_repeated | R::route | R::assign => Kind::Guess,
+        R::expression
+        | R::minus
+        | R::number
+        | R::numeral
+        | R::parenthesis
+        | R::call
+        | R::callee
+        | R::word
+        | R::path
+        | R::values
+        | R::value_list
+        | R::cells
+        | R::row
+        | R::function_word
+        | R::event
+        | R::event_word => Kind::Expression,
+        R::name | R::segment | R::axis | R::output_name | R::objective_name | R::constraint_name | R::index_range => {
+            Kind::Name
+        }
+        R::unit
+        | R::unit_product
+        | R::unit_operator
+        | R::unit_factor
+        | R::unit_one
+        | R::unit_symbol
+        | R::unit_group
+        | R::unit_power
+        | R::unit_digits => Kind::Unit,
+        R::relation => Kind::Relation,
+        R::symmetry => Kind::Symmetry,
+        R::setting => Kind::Setting,
+        R::string => Kind::String,
+        R::operator => Kind::Operator,
+        R::EOI => Kind::End,
+        _ => mark(rule),
+    }
+}
+
+fn mark(rule: Rule) -> Kind {
+    use Rule as R;
+    match rule {
+        R::left_brace | R::rows => Kind::Mark("{"),
+        R::right_brace => Kind::Mark("}"),
+        R::left_parenthesis | R::settings => Kind::Mark("("),
+        R::right_parenthesis => Kind::Mark(")"),
+        R::left_bracket | R::array_size | R::size | R::family | R::indices => Kind::Minor("["),
+        R::right_bracket => Kind::Mark("]"),
+        R::semicolon => Kind::Mark(";"),
+        R::colon => Kind::Mark(":"),
+        R::comma => Kind::Mark(","),
+        R::trailing_comma => Kind::Mark(","),
+        R::caret => Kind::Minor("^"),
+        R::dot => Kind::Minor("."),
+        R::dots => Kind::Mark(".."),
+        R::equals => Kind::Mark("="),
+        R::extent | R::bounds => Kind::Mark("="),
+        R::after => Kind::Keyword("after".into()),
+        R::spline => Kind::Keyword("spline".into()),
+        R::method => Kind::Name,
+        R::place => Kind::Statement,
+        R::problem | R::problem_head => Kind::Keyword("problem".into()),
+        R::for_head => Kind::Keyword("for".into()),
+        R::doc | R::doc_line => Kind::Minor("///"),
+        _ => {
+            // A keyword's rule is called after it.
+            let name = format!("{rule:?}");
+            Kind::Keyword(name.trim_start_matches("kw_").to_owned())
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Blocks of constraints, loops in them, and what each constraint demands.
+
+use super::Build;
+use super::parts::Parts;
+use crate::diagnostic::Code;
+use crate::source::Span;
+use crate::syntax::ast::{Block, BlockPlace, Comparison, Constraint, Expr, For, Relation, Statement};
+use crate::syntax::grammar::{Pair, Rule};
+
+/// A relation as it was taken to be meant, and its place.
+type Sign = (Comparison, Span);
+
+impl Build {
+    pub(super) fn block(&mut self, pair: Pair<'_>) -> Block {
+        let mut parts = Parts::of(pair);
+        let head = parts.required(Rule::block_head);
+        let place = match Parts::of(head).required(Rule::place).as_str() {
+            "initial" => BlockPlace::Initial,
+            "trajectory" => BlockPlace::Trajectory,
+            "final" => BlockPlace::Final,
+            _ => BlockPlace::Temporal,
+        };
+        Block { place, statements: parts.map(|pair| self.statement(pair)).collect() }
+    }
+
+    pub(in crate::syntax) fn statement(&mut self, pair: Pair<'_>) -> Statement<Constraint> {
+        let inner = Parts::of(pair).any();
+        match inner.as_rule() {
+            Rule::repeated => Statement::For(self.repeated(inner, Self::statement)),
+            _ => Statement::One(self.constraint(inner)),
+        }
+    }
+
+    /// `for i in 1 .. N { ... }` around statements that `one` reads.
+    pub(super) fn repeated<T>(&mut self, pair: Pair<'_>, one: fn(&mut Self, Pair<'_>) -> Statement<T>) -> For<T> {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let head = parts.required(Rule::for_head);
+        let over = self.index_range(Parts::of(head).required(Rule::index_range));
+        For { over, body: parts.map(|pair| one(self, pair)).collect(), span }
+    }
+
+    fn constraint(&mut self, pair: Pair<'_>) -> Constraint {
+        let mut parts = Parts::of(pair);
+        let doc = parts.optional(Rule::doc).map(|pair| self.doc(pair));
+        let name = parts.optional(Rule::constraint_name).map(|pair| self.name(&pair));
+        let first = self.expression(parts.required(Rule::expression));
+        let start = name.as_ref().map_or(first.span, |name| name.span);
+        let (relation, end) = if let Some(pair) = parts.optional(Rule::bounds) {
+            let bounds = self.bounds(pair);
+            let end = bounds.span;
+            (Relation::In { value: first, bounds }, end)
+        } else {
+            self.chain(first, parts)
+        };
+        Constraint { doc, name, relation, span: start.to(end) }
+    }
+
+    /// `a <= b`, `a <= b <= c`, and everything like it that must be refused.
+    fn chain(&mut self, first: Expr, mut parts: Parts<'_>) -> (Relation, Span) {
+        let mut signs: Vec<Sign> = vec![];
+        let mut others: Vec<Expr> = vec![];
+        while let Some(pair) = parts.optional(Rule::relation) {
+            signs.push(self.relation(&pair));
+            others.push(self.expression(parts.required(Rule::expression)));
+        }
+        let all = others.last().map_or(first.span, |last| first.span.to(last.span));
+        if let [(one, _), (other, at)] = signs[..]
+            && (one != other || one == Comparison::Equal)
+        {
+            self.mixed(at);
+        } else if let Some((_, at)) = signs.get(2) {
+            self.mixed(*at);
+        }
+        let (comparison, comparison_span) = signs[0];
+        let mut others = others.into_iter();
+        let second = others.next().expect("the grammar puts an expression after each relation");
+        let relation = match others.next() {
+            None => Relation::Compare { left: first, comparison, comparison_span, right: second },
+            Some(last) => Relation::Between { first, comparison, middle: second, last },
+        };
+        (relation, all)
+    }
+
+    fn relation(&mut self, pair: &Pair<'_>) -> Sign {
+        use Comparison::{AtLeast, AtMost, Equal};
+        let span = self.span(pair);
+        let (meant, help) = match pair.as_str() {
+            "==" => return (Equal, span),
+            "<=" => return (AtMost, span),
+            ">=" => return (AtLeast, span),
+            "<" => (AtMost, "write `<=`: numbers of a computer cannot tell the two apart"),
+            ">" => (AtLeast, "write `>=`: numbers of a computer cannot tell the two apart"),
+            "=<" => (AtMost, "write `<=`"),
+            "=>" => (AtLeast, "write `>=`"),
+            "=" => (Equal, "write `==`"),
+            _ => (Equal, "say which side is meant, with `<=` or `>=`"),
+        };
+        let message = format!("`{}` is not a relation of constraints", pair.as_str());
+        self.report(Code::WrongRelation, span, message, help);
+        (meant, span)
+    }
+
+    fn mixed(&mut self, second: Span) {
+        let help = "write `lo <= a <= hi`, `hi >= a >= lo`, or several constraints";
+        self.report(Code::MixedChain, second, "these relations make no double bound", help);
+    }
+}

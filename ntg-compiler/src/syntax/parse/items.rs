@@ -1,0 +1,90 @@
+//! The problem, and which function reads which item.
+
+use super::parts::Parts;
+use super::{Build, Scope};
+use crate::diagnostic::Code;
+use crate::source::Span;
+use crate::syntax::ast::{Item, ItemKind, Problem};
+use crate::syntax::grammar::{Pair, Rule};
+
+impl Build {
+    pub(super) fn problem(&mut self, pair: Pair<'_>) -> Problem {
+        let all = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let doc = parts.optional(Rule::doc).map(|pair| self.doc(pair));
+        let head = parts.required(Rule::problem_head);
+        let span = Span { start: self.span(&head).start, end: all.end };
+        let name = self.name(&Parts::of(head).required(Rule::name));
+        let items = parts.map(|pair| self.item(pair)).collect();
+        Problem { doc, name, items, span }
+    }
+
+    /// The items of an agent or phase.
+    pub(super) fn items(&mut self, scope: Scope, parts: Parts<'_>) -> Vec<Item> {
+        let outer = std::mem::replace(&mut self.scope, scope);
+        let items = parts.map(|pair| self.item(pair)).collect();
+        self.scope = outer;
+        items
+    }
+
+    pub(in crate::syntax) fn item(&mut self, pair: Pair<'_>) -> Item {
+        let mut parts = Parts::of(pair);
+        let doc = parts.optional(Rule::doc).map(|pair| self.doc(pair));
+        let declaration = parts.any();
+        let span = self.span(&declaration);
+        self.check_scope(&declaration);
+        Item { doc, kind: self.declaration(declaration), span }
+    }
+
+    fn declaration(&mut self, pair: Pair<'_>) -> ItemKind {
+        match pair.as_rule() {
+            Rule::constant => ItemKind::Const(self.constant(pair)),
+            Rule::table => ItemKind::Table(self.table(pair)),
+            Rule::param => ItemKind::Param(self.param(pair)),
+            Rule::variable => ItemKind::Variable(self.variable(pair)),
+            Rule::output => ItemKind::Output(self.output(pair)),
+            Rule::function => ItemKind::Function(self.function(pair)),
+            Rule::named => ItemKind::Let(self.named(pair)),
+            Rule::continuation => ItemKind::Continuation(self.continuation(pair)),
+            Rule::duration => ItemKind::Duration(self.duration(pair)),
+            Rule::start => ItemKind::Start(self.start(pair)),
+            Rule::phase => ItemKind::Phase(self.phase(pair)),
+            Rule::agent => ItemKind::Agent(self.agent(pair)),
+            Rule::jump => ItemKind::Jump(self.jump(pair)),
+            Rule::continuous => ItemKind::Continuous(self.continuous(pair)),
+            Rule::collocation => ItemKind::Collocation(self.collocation(pair)),
+            Rule::objective => ItemKind::Objective(self.objective(pair)),
+            Rule::block => ItemKind::Block(self.block(pair)),
+            Rule::guess => ItemKind::Guess(self.guess(pair)),
+            rule => unreachable!("the grammar has no declaration {rule:?}"),
+        }
+    }
+
+    /// Phases and agents do not nest; some statements make sense in a phase only, or nowhere in one.
+    fn check_scope(&mut self, declaration: &Pair<'_>) {
+        let (word, where_to) = match (declaration.as_rule(), self.scope) {
+            (Rule::phase, Scope::Phase) => ("phase", "write it after the phase, with `after`"),
+            (Rule::agent, Scope::Phase | Scope::Agent) => ("agent", "write it directly in the problem"),
+            (Rule::start, Scope::Phase) => {
+                ("start", "write it in the agent: a phase starts when the one before it ends")
+            }
+            (Rule::jump, Scope::Problem | Scope::Agent) => ("jump", "write it in the phase that begins with the jump"),
+            (Rule::continuous, Scope::Problem | Scope::Agent) => {
+                ("continuous", "write it in the later one of the two phases that meet")
+            }
+            _ => return,
+        };
+        self.misplaced_item(declaration, word, where_to);
+    }
+
+    fn misplaced_item(&mut self, declaration: &Pair<'_>, word: &str, where_to: &str) {
+        let place = match self.scope {
+            Scope::Problem => "directly in the problem",
+            Scope::Agent => "in an agent",
+            Scope::Phase => "in a phase",
+        };
+        let start = self.span(declaration).start;
+        let span = Span { start, end: start + word.len() as u32 };
+        self.report(Code::Misplaced, span, format!("`{word}` may not stand {place}"), where_to);
+    }
+}

@@ -1,0 +1,154 @@
+//! Tuples, ranges and bounds: where a unit after the last element reaches the others.
+
+use super::Build;
+use super::parts::Parts;
+use crate::diagnostic::Code;
+use crate::source::Span;
+use crate::syntax::ast::{Bounds, Expr, ExprKind, IndexRange, Unit, Values};
+use crate::syntax::grammar::{Pair, Rule};
+
+/// A tuple as it was read, its unit already given to its elements.
+pub(super) struct List {
+    pub(super) elements: Vec<Expr>,
+    pub(super) is_tuple: bool,
+    /// The unit after the parenthesis.
+    pub(super) unit: Option<Unit>,
+    pub(super) span: Span,
+}
+
+impl Build {
+    /// An expression or a tuple.
+    pub(super) fn values(&mut self, pair: Pair<'_>) -> Values {
+        let mut list = self.list(pair);
+        share_last_unit(&mut list.elements);
+        Values { elements: list.elements, is_tuple: list.is_tuple, span: list.span }
+    }
+
+    /// `-100, -97 [km]` without parentheses, or one tuple with them.
+    pub(in crate::syntax) fn value_list(&mut self, pair: Pair<'_>) -> Values {
+        let span = self.span(&pair);
+        let mut parts: Vec<Pair<'_>> = Parts::of(pair).collect();
+        if parts.len() == 1
+            && let Some(only) = parts.pop()
+        {
+            let mut list = self.list_of(only);
+            share_last_unit(&mut list.elements);
+            return Values { elements: list.elements, is_tuple: list.is_tuple, span };
+        }
+        let mut elements: Vec<Expr> = parts.into_iter().map(|pair| self.expression(pair)).collect();
+        share_last_unit(&mut elements);
+        Values { elements, is_tuple: true, span }
+    }
+
+    /// What stands in a `values` rule.
+    pub(super) fn list(&mut self, values: Pair<'_>) -> List {
+        self.list_of(Parts::of(values).required(Rule::expression))
+    }
+
+    fn list_of(&mut self, expression: Pair<'_>) -> List {
+        if let Some(tuple) = sole_tuple(&expression) {
+            return self.tuple(tuple);
+        }
+        let element = self.expression(expression);
+        let span = element.span;
+        List { elements: vec![element], is_tuple: false, unit: None, span }
+    }
+
+    /// `(1, 2) [km]`: the unit reaches the elements that are bare signed literals.
+    pub(super) fn tuple(&mut self, pair: Pair<'_>) -> List {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let mut elements = vec![];
+        while let Some(element) = parts.optional(Rule::expression) {
+            elements.push(self.expression(element));
+        }
+        parts.optional(Rule::trailing_comma);
+        let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
+        if let Some(unit) = &unit {
+            let mut used = false;
+            for element in &mut elements {
+                used |= give_unit(element, unit);
+            }
+            if !used {
+                let help = "write it after a number, `5 [km]`, or multiply by one, `x * 1 [km]`";
+                self.report(Code::MalformedUnit, unit.span, "this unit belongs to no number", help);
+            }
+        }
+        List { elements, is_tuple: true, unit, span }
+    }
+
+    /// `lower .. upper`; either may be left out.
+    pub(super) fn bounds(&mut self, pair: Pair<'_>) -> Bounds {
+        let span = self.span(&pair);
+        let (mut lower, mut upper, mut past_dots) = (None, None, false);
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::dots => past_dots = true,
+                _ if past_dots => upper = Some(self.expression(part)),
+                _ => lower = Some(self.expression(part)),
+            }
+        }
+        if let (Some(lower), Some(unit)) = (&mut lower, upper.as_ref().and_then(own_unit)) {
+            give_unit(lower, &unit);
+        }
+        Bounds { lower, upper, span }
+    }
+
+    pub(super) fn family(&mut self, pair: Pair<'_>) -> IndexRange {
+        self.index_range(Parts::of(pair).required(Rule::index_range))
+    }
+
+    pub(super) fn index_range(&mut self, pair: Pair<'_>) -> IndexRange {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let index = self.name(&parts.required(Rule::name));
+        let first = self.expression(parts.required(Rule::expression));
+        let last = self.expression(parts.required(Rule::expression));
+        IndexRange { index, first, last, span }
+    }
+}
+
+/// Gives the last element's unit to the other bare literals of a list.
+pub(super) fn share_last_unit(elements: &mut [Expr]) {
+    let Some((last, others)) = elements.split_last_mut() else { return };
+    let Some(unit) = own_unit(last) else { return };
+    for other in others {
+        give_unit(other, &unit);
+    }
+}
+
+/// Gives a unit to an expression that is a bare signed literal without one; says whether it was.
+pub(super) fn give_unit(expr: &mut Expr, unit: &Unit) -> bool {
+    let number = match &mut expr.kind {
+        ExprKind::Number(number) => number,
+        ExprKind::Neg(inner) => match &mut inner.kind {
+            ExprKind::Number(number) => number,
+            _ => return false,
+        },
+        _ => return false,
+    };
+    let bare = number.unit.is_none();
+    if bare {
+        number.unit = Some(unit.clone());
+    }
+    bare
+}
+
+/// The unit of a signed literal.
+pub(super) fn own_unit(expr: &Expr) -> Option<Unit> {
+    expr.signed_literal().and_then(|number| number.unit.clone())
+}
+
+/// The parenthesis that an expression consists of, if it is a tuple or has a unit behind it.
+fn sole_tuple<'t>(expression: &Pair<'t>) -> Option<Pair<'t>> {
+    let mut inner = expression.clone().into_inner();
+    let only = inner.next()?;
+    let is_sole = inner.next().is_none() && only.as_rule() == Rule::parenthesis;
+    (is_sole && is_tuple(&only)).then_some(only)
+}
+
+/// Whether a parenthesis is more than one: by a comma, or by a unit behind it.
+pub(super) fn is_tuple(parenthesis: &Pair<'_>) -> bool {
+    let tells = |rule| matches!(rule, Rule::comma | Rule::trailing_comma | Rule::unit);
+    parenthesis.clone().into_inner().any(|part| tells(part.as_rule()))
+}

@@ -1,0 +1,105 @@
+//! Walking over the parts of a rule: keywords and punctuation are dropped, the rest is taken in order.
+
+use crate::syntax::grammar::{Pair, Pairs, Rule};
+
+/// The parts of a rule that mean something, in order.
+pub(super) struct Parts<'t> {
+    pairs: Pairs<'t>,
+}
+
+impl<'t> Parts<'t> {
+    pub(super) fn of(pair: Pair<'t>) -> Self {
+        Self { pairs: pair.into_inner() }
+    }
+
+    /// The next part if it is a `rule`.
+    pub(super) fn optional(&mut self, rule: Rule) -> Option<Pair<'t>> {
+        self.skip();
+        let is_next = self.pairs.peek().is_some_and(|pair| pair.as_rule() == rule);
+        if is_next { self.pairs.next() } else { None }
+    }
+
+    /// The next part, which the grammar says is a `rule`.
+    pub(super) fn required(&mut self, rule: Rule) -> Pair<'t> {
+        self.optional(rule).expect("the grammar puts this part here")
+    }
+
+    /// The next part, which the grammar says is there.
+    pub(super) fn any(&mut self) -> Pair<'t> {
+        self.next().expect("the grammar puts a part here")
+    }
+
+    fn skip(&mut self) {
+        while self.pairs.peek().is_some_and(|pair| is_mute(pair.as_rule())) {
+            self.pairs.next();
+        }
+    }
+}
+
+impl<'t> Iterator for Parts<'t> {
+    type Item = Pair<'t>;
+
+    fn next(&mut self) -> Option<Pair<'t>> {
+        self.skip();
+        self.pairs.next()
+    }
+}
+
+/// Whether a rule is a keyword or a punctuation mark, which says nothing once it has matched.
+pub(in crate::syntax) fn is_mute(rule: Rule) -> bool {
+    is_punctuation(rule) || is_keyword(rule)
+}
+
+fn is_punctuation(rule: Rule) -> bool {
+    use Rule as R;
+    matches!(
+        rule,
+        R::left_brace
+            | R::right_brace
+            | R::left_parenthesis
+            | R::right_parenthesis
+            | R::left_bracket
+            | R::right_bracket
+            | R::semicolon
+            | R::colon
+            | R::comma
+            | R::caret
+            | R::dot
+            | R::dots
+            | R::equals
+            | R::EOI
+    )
+}
+
+/// `kw_param` and `kw_fit` and the dots are looked for by hand where they decide something.
+fn is_keyword(rule: Rule) -> bool {
+    use Rule as R;
+    matches!(
+        rule,
+        R::kw_after
+            | R::kw_agent
+            | R::kw_collocation
+            | R::kw_const
+            | R::kw_continuation
+            | R::kw_continuous
+            | R::kw_duration
+            | R::kw_fn
+            | R::kw_for
+            | R::kw_from
+            | R::kw_guess
+            | R::kw_in
+            | R::kw_jump
+            | R::kw_let
+            | R::kw_output
+            | R::kw_param
+            | R::kw_phase
+            | R::kw_problem
+            | R::kw_spline
+            | R::kw_start
+            | R::kw_table
+            | R::kw_through
+            | R::kw_to
+            | R::kw_up
+            | R::kw_variable
+    )
+}

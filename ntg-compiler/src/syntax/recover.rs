@@ -1,0 +1,251 @@
+//! Going on after a mistake: the spec is read once more, statement by statement.
+//!
+//! Takes the scan of a spec that the grammar could not match as a whole.
+//! Finds: what is wrong with each statement, in blocks too; words that begin no statement; more or
+//! less than one problem. A statement that the scan has found fault with already is not blamed again.
+//! Afterwards: there is at least one finding if the grammar was right to give up.
+
+use super::explain::{self, explain};
+use super::grammar::{self, Rule, Stuck};
+use super::parse::{Build, Scope};
+use super::scan::{MAX_FINDINGS, Scan, Token, TokenKind};
+use super::words::ITEM_WORDS;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::source::{Source, Span};
+
+/// Everything that is wrong with the statements of a spec.
+pub(super) fn recover(scan: &Scan) -> Vec<Diagnostic> {
+    let mut walk = Walk { scan, closers: closers(scan), found: vec![] };
+    walk.spec();
+    walk.found
+}
+
+/// Adds the scan's findings to the later ones, and drops later ones that stand in a statement in
+/// which the scan found something: they would say the same again.
+pub(super) fn join(scan: &Scan, later: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let blamed = |finding: &Diagnostic| {
+        let statement = statement_around(scan, finding.span.start);
+        let lexical = scan.found.iter().filter(|known| known.code != Code::Comment);
+        lexical.into_iter().any(|known| statement.contains(known.span))
+    };
+    let mut found: Vec<Diagnostic> = later.into_iter().filter(|finding| !blamed(finding)).collect();
+    found.extend(scan.found.iter().cloned());
+    found.sort_by_key(|finding| (finding.span, finding.code));
+    found.dedup_by_key(|finding| (finding.span, finding.code));
+    found
+}
+
+/// The findings of a spec that cannot be read; there is one at least.
+pub(super) fn failure(found: Vec<Diagnostic>, source: &Source) -> Diagnostics {
+    match Diagnostics::or(found) {
+        Err(findings) => findings,
+        Ok(()) => Diagnostic::new(Code::Unexpected, source.span(), "this cannot be read as a spec").into(),
+    }
+}
+
+/// What the statements between two braces are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Body {
+    Items(Scope),
+    Constraints,
+    Guess,
+    Rows,
+}
+
+impl Body {
+    fn rule(self) -> Rule {
+        match self {
+            Self::Items(_) => Rule::item,
+            Self::Constraints => Rule::statement,
+            Self::Guess => Rule::guess_statement,
+            Self::Rows => Rule::row,
+        }
+    }
+}
+
+struct Walk<'a> {
+    scan: &'a Scan,
+    /// For each token that opens a brace, the token that closes it.
+    closers: Vec<usize>,
+    found: Vec<Diagnostic>,
+}
+
+impl Walk<'_> {
+    fn spec(&mut self) {
+        let tokens = &self.scan.tokens;
+        let Some(first) = tokens.iter().position(|token| token.kind != TokenKind::Doc) else {
+            let at = tokens.first().map_or(Span::new(0, 0), |token| token.span);
+            return self.one_problem(at, "there is no problem here");
+        };
+        let Some(brace) = self.next_brace(first, tokens.len()) else {
+            return self.head(Rule::whole_problem_head, 0, tokens.len());
+        };
+        self.head(Rule::whole_problem_head, 0, brace);
+        let closer = self.closers[brace];
+        self.body(Body::Items(Scope::Problem), brace + 1, closer);
+        if let Some(more) = tokens.get(closer + 1) {
+            self.one_problem(more.span, "the problem ends before this");
+        }
+    }
+
+    fn one_problem(&mut self, span: Span, message: &str) {
+        let help = "a spec is exactly one `problem Name { ... }`";
+        self.found.push(Diagnostic::new(Code::OneProblem, span, message).help(help));
+    }
+
+    /// The statements from token `at` to before token `end`, which closes their brace.
+    fn body(&mut self, body: Body, mut at: usize, end: usize) {
+        let first = at;
+        while at < end && self.found.len() < MAX_FINDINGS {
+            let (start, stop) = (self.start(at), self.start(end));
+            at = match grammar::front(body.rule(), &self.scan.clean[start..stop]) {
+                Ok(pair) => {
+                    let length = pair.as_str().len();
+                    let mut build = match body {
+                        Body::Items(scope) => Build::within(start, scope),
+                        _ => Build::new(start),
+                    };
+                    match body {
+                        Body::Items(_) => drop(build.item(pair)),
+                        Body::Constraints => drop(build.statement(pair)),
+                        Body::Guess => drop(build.guess_statement(pair)),
+                        Body::Rows => drop(build.row(pair, at == first)),
+                    }
+                    self.found.append(&mut build.found);
+                    self.token_from(start + length).max(at + 1)
+                }
+                Err(stuck) => self.broken(body, at, end, &stuck),
+            };
+        }
+    }
+
+    /// Reports what is wrong with the statement at token `at`; gives the token to go on from.
+    fn broken(&mut self, body: Body, at: usize, end: usize, stuck: &Stuck) -> usize {
+        if let Some(next) = self.broken_block(body, at, end) {
+            return next;
+        }
+        let finding = match explain::misplaced(self.scan, body, at, end) {
+            Some(finding) => finding,
+            None => explain(self.scan, stuck, self.start(at)),
+        };
+        let semicolon_missing = finding.code == Code::MissingSemicolon;
+        self.found.push(finding);
+        let stuck_at = self.token_from(self.start(at) + stuck.at);
+        if semicolon_missing && stuck_at > at { stuck_at.min(end) } else { self.next_statement(body, at, end) }
+    }
+
+    /// A statement with braces: its head and its statements are looked at one by one.
+    fn broken_block(&mut self, body: Body, at: usize, end: usize) -> Option<usize> {
+        let words = (at..end).find(|index| self.scan.tokens[*index].kind != TokenKind::Doc)?;
+        let brace = self.next_brace(words, end)?;
+        let (rule, inner) = self.block_kind(body, words)?;
+        let from = if matches!(rule, Rule::whole_for_head) { words } else { at };
+        if from > at {
+            let documents_nothing = explain::stray_doc(self.scan.tokens[at].span);
+            self.found.push(documents_nothing);
+        }
+        self.head(rule, from, brace);
+        let closer = self.closers[brace];
+        self.body(inner, brace + 1, closer);
+        Some(closer + 1)
+    }
+
+    /// Which head a statement with braces has, and what stands in it.
+    fn block_kind(&self, body: Body, word: usize) -> Option<(Rule, Body)> {
+        let inner = match (self.text(word), body) {
+            ("for", Body::Constraints | Body::Guess) => (Rule::whole_for_head, body),
+            ("phase", Body::Items(_)) => (Rule::whole_phase_head, Body::Items(Scope::Phase)),
+            ("agent", Body::Items(_)) => (Rule::whole_agent_head, Body::Items(Scope::Agent)),
+            ("initial" | "trajectory" | "final" | "temporal", Body::Items(_)) => {
+                (Rule::whole_block_head, Body::Constraints)
+            }
+            ("guess", Body::Items(_)) => (Rule::whole_guess_head, Body::Guess),
+            ("table", Body::Items(_)) => (Rule::whole_table_head, Body::Rows),
+            ("param", Body::Items(_)) if self.text(word + 1) == "table" => (Rule::whole_table_head, Body::Rows),
+            _ => return None,
+        };
+        Some(inner)
+    }
+
+    /// Reports what is wrong between token `from` and the brace at token `to`.
+    fn head(&mut self, rule: Rule, from: usize, to: usize) {
+        let (start, stop) = (self.start(from), self.start(to));
+        if let Err(stuck) = grammar::front(rule, &self.scan.clean[start..stop]) {
+            let finding = explain(self.scan, &stuck, start);
+            self.found.push(finding);
+        }
+    }
+
+    /// The token after the statement's `;` or closing brace, or the first one that begins a line with a
+    /// word that only a declaration begins with.
+    fn next_statement(&self, body: Body, at: usize, end: usize) -> usize {
+        let mut index = at;
+        while index < end {
+            match self.text(index) {
+                ";" => return index + 1,
+                "{" => {
+                    return (self.closers[index] + 1 + usize::from(self.text(self.closers[index] + 1) == ";")).min(end);
+                }
+                word if index > at && matches!(body, Body::Items(_)) => {
+                    let before = self.text(index - 1) == "param";
+                    if ITEM_WORDS.contains(&word) && !before && explain::begins_line(self.scan, index) {
+                        return index;
+                    }
+                }
+                _ => {}
+            }
+            index += 1;
+        }
+        end
+    }
+
+    /// The first `{` before the statement's `;`.
+    fn next_brace(&self, from: usize, end: usize) -> Option<usize> {
+        (from..end).take_while(|index| self.text(*index) != ";").find(|index| self.text(*index) == "{")
+    }
+
+    /// The first token that begins at `byte` or after it.
+    fn token_from(&self, byte: usize) -> usize {
+        self.scan.tokens.partition_point(|token| (token.span.start as usize) < byte)
+    }
+
+    fn start(&self, token: usize) -> usize {
+        self.scan.tokens.get(token).map_or(self.scan.clean.len(), |token| token.span.start as usize)
+    }
+
+    fn text(&self, token: usize) -> &str {
+        self.scan.tokens.get(token).map_or("", |token| text(self.scan, token))
+    }
+}
+
+/// The clean text of a token.
+pub(super) fn text<'a>(scan: &'a Scan, token: &Token) -> &'a str {
+    &scan.clean[token.span.start as usize..token.span.end as usize]
+}
+
+/// For each token, itself, or the token that closes the brace that it opens.
+fn closers(scan: &Scan) -> Vec<usize> {
+    let mut closers: Vec<usize> = (0..scan.tokens.len()).collect();
+    let mut open = vec![];
+    for (index, token) in scan.tokens.iter().enumerate() {
+        match text(scan, token) {
+            "{" => open.push(index),
+            "}" => {
+                if let Some(opener) = open.pop() {
+                    closers[opener] = index;
+                }
+            }
+            _ => {}
+        }
+    }
+    closers
+}
+
+/// The stretch between the `;` or braces on both sides of a byte.
+fn statement_around(scan: &Scan, byte: u32) -> Span {
+    let ends = |token: &&Token| matches!(text(scan, token), ";" | "{" | "}");
+    let here = scan.tokens.partition_point(|token| token.span.end <= byte);
+    let before = scan.tokens[..here].iter().rev().find(ends).map_or(0, |token| token.span.end);
+    let after = scan.tokens[here..].iter().find(ends).map_or(scan.clean.len(), |token| token.span.end as usize);
+    Span::new(before as usize, after)
+}

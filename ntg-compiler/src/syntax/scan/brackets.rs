@@ -1,0 +1,211 @@
+//! Which bracket closes which, how deep they nest, and which one was forgotten.
+//!
+//! A `(` or `[` never spans a `;` or a brace in this language, so one that does was forgotten, and the rest
+//! of the spec can still be read. A forgotten `}` shows only at the end of the text; the opener to
+//! blame is then the one inside which something began that may not stand there.
+
+use super::{MAX_DEPTH, MAX_FINDINGS, Token, TokenKind};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+use crate::syntax::words::ITEM_WORDS;
+
+/// Brackets that are open, and the chains of `-` and `^` inside them.
+#[derive(Default)]
+pub(super) struct Brackets {
+    open: Vec<Frame>,
+    /// The chain outside all brackets.
+    outer_chain: usize,
+    /// Brackets and chains together.
+    depth: usize,
+    /// The last token.
+    last: Option<Token>,
+    /// The first word of the statement.
+    first_word: Option<Span>,
+    /// Openers inside which something began that may not stand there.
+    suspects: Vec<Span>,
+    too_deep: bool,
+    unmatched_brace: bool,
+}
+
+struct Frame {
+    opener: u8,
+    span: Span,
+    /// The first word of the statement that a brace opens, `trajectory` or `phase`.
+    head: Option<Span>,
+    /// How many unary minus signs and `^` wait for their operand.
+    chain: usize,
+}
+
+impl Brackets {
+    /// Takes the next token. A closing bracket that closes nothing becomes a blank in the clean text.
+    pub(super) fn token(&mut self, token: Token, text: &str, clean: &mut [u8], found: &mut Vec<Diagnostic>) {
+        let byte = text.as_bytes()[token.span.start as usize];
+        match token.kind {
+            TokenKind::Open => self.open(byte, token.span, found),
+            TokenKind::Close => {
+                if !self.close(byte, token.span, found) && byte != b'}' {
+                    clean[token.span.start as usize] = b' ';
+                }
+            }
+            TokenKind::Word => self.word(token.span, text),
+            TokenKind::Punctuation => self.punctuation(byte, found),
+            TokenKind::Number | TokenKind::String | TokenKind::Doc => {}
+        }
+        self.check_depth(token.span, found);
+        if token.kind != TokenKind::Doc {
+            self.last = Some(token);
+        }
+    }
+
+    /// Reports what is still open at the end; gives whether the grammar can make nothing of the text.
+    pub(super) fn finish(mut self, end: usize, found: &mut Vec<Diagnostic>) -> bool {
+        if self.too_deep {
+            return true; // The scan stopped there, so nothing is known of the rest.
+        }
+        self.drop_parentheses(found);
+        let missing = self.open.len();
+        self.suspects.truncate(missing);
+        let rest = missing - self.suspects.len();
+        // What no suspicion explains is blamed on the innermost braces.
+        let openers = self.open.iter().rev().map(|frame| frame.span).take(rest);
+        let blamed: Vec<Span> = self.suspects.iter().copied().chain(openers).collect();
+        for span in blamed {
+            let finding = unclosed(span, "{").label(Span::new(end, end), "the text ends here");
+            report(found, finding);
+        }
+        missing > 0 || self.unmatched_brace
+    }
+
+    /// Whether `MAX_DEPTH` was passed.
+    pub(super) fn is_too_deep(&self) -> bool {
+        self.too_deep
+    }
+
+    fn open(&mut self, opener: u8, span: Span, found: &mut Vec<Diagnostic>) {
+        let mut head = None;
+        if opener == b'{' {
+            self.drop_parentheses(found);
+            head = self.first_word.take();
+        }
+        self.open.push(Frame { opener, span, head, chain: 0 });
+        self.depth += 1;
+    }
+
+    /// Gives whether the bracket closes anything.
+    fn close(&mut self, closer: u8, span: Span, found: &mut Vec<Diagnostic>) -> bool {
+        let opener = match closer {
+            b')' => b'(',
+            b']' => b'[',
+            _ => b'{',
+        };
+        if opener == b'{' {
+            self.drop_parentheses(found);
+            self.first_word = None;
+        }
+        let inner = self.open.iter().rev().take_while(|frame| opener == b'{' || frame.opener != b'{');
+        let Some(above) = inner.map(|frame| frame.opener).position(|open| open == opener) else {
+            let message = format!("this `{}` closes nothing", closer as char);
+            report(
+                found,
+                Diagnostic::new(Code::Unopened, span, message).help("remove it, or write its opening bracket"),
+            );
+            self.unmatched_brace |= opener == b'{';
+            return false;
+        };
+        for _ in 0..above {
+            self.drop_top(found);
+        }
+        self.pop();
+        true
+    }
+
+    fn word(&mut self, span: Span, text: &str) {
+        let word = |span: Span| &text[span.start as usize..span.end as usize];
+        if !self.at_statement_start(text) {
+            return;
+        }
+        self.first_word = Some(span);
+        let Some(frame) = self.open.last() else { return };
+        let Some(head) = frame.head.map(word) else { return };
+        let this = word(span);
+        let misplaced = match head {
+            "phase" => matches!(this, "phase" | "agent" | "problem"),
+            "agent" => matches!(this, "agent" | "problem"),
+            "problem" => this == "problem",
+            _ => {
+                let block =
+                    matches!(this, "initial" | "final") && text[span.end as usize..].trim_start().starts_with('{');
+                block || ITEM_WORDS.contains(&this)
+            }
+        };
+        if misplaced && self.suspects.last() != Some(&frame.span) {
+            self.suspects.push(frame.span);
+        }
+    }
+
+    fn at_statement_start(&self, text: &str) -> bool {
+        self.last.is_none_or(|last| matches!(text.as_bytes()[last.span.start as usize], b';' | b'{' | b'}'))
+    }
+
+    fn punctuation(&mut self, byte: u8, found: &mut Vec<Diagnostic>) {
+        let operand_before =
+            self.last.is_some_and(|last| matches!(last.kind, TokenKind::Word | TokenKind::Number | TokenKind::Close));
+        let nests = byte == b'^' || (byte == b'-' && !operand_before);
+        if byte == b';' {
+            self.drop_parentheses(found);
+            self.first_word = None;
+        }
+        let chain = self.open.last_mut().map_or(&mut self.outer_chain, |frame| &mut frame.chain);
+        if nests {
+            *chain += 1;
+            self.depth += 1;
+        } else {
+            self.depth -= std::mem::take(chain);
+        }
+    }
+
+    /// Reports every `(` and `[` above the innermost brace: nothing can close it any more.
+    fn drop_parentheses(&mut self, found: &mut Vec<Diagnostic>) {
+        while self.open.last().is_some_and(|frame| frame.opener != b'{') {
+            self.drop_top(found);
+        }
+    }
+
+    fn drop_top(&mut self, found: &mut Vec<Diagnostic>) {
+        if let Some(frame) = self.pop() {
+            let opener = (frame.opener as char).to_string();
+            report(found, unclosed(frame.span, &opener));
+        }
+    }
+
+    fn pop(&mut self) -> Option<Frame> {
+        let frame = self.open.pop()?;
+        self.depth -= 1 + frame.chain;
+        Some(frame)
+    }
+
+    fn check_depth(&mut self, span: Span, found: &mut Vec<Diagnostic>) {
+        if self.depth > MAX_DEPTH && !self.too_deep {
+            self.too_deep = true;
+            let message = format!("this is nested more than {MAX_DEPTH} deep");
+            let help = "give the inner parts names of their own with `let`";
+            report(found, Diagnostic::new(Code::TooDeep, span, message).help(help));
+        }
+    }
+}
+
+fn unclosed(span: Span, opener: &str) -> Diagnostic {
+    let closer = match opener {
+        "(" => ")",
+        "[" => "]",
+        _ => "}",
+    };
+    let finding = Diagnostic::new(Code::Unclosed, span, format!("this `{opener}` is never closed"));
+    finding.help(format!("write `{closer}` where it ends"))
+}
+
+fn report(found: &mut Vec<Diagnostic>, finding: Diagnostic) {
+    if found.len() < MAX_FINDINGS {
+        found.push(finding);
+    }
+}

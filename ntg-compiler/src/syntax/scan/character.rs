@@ -1,0 +1,71 @@
+//! Characters that the language does not use: rustc would refuse most of them inline.
+
+use super::Scanner;
+use crate::diagnostic::{Code, Diagnostic};
+
+impl Scanner<'_> {
+    /// Refuses a character, says what to write instead, and writes that into the clean text where it fits.
+    pub(super) fn unknown_character(&mut self, c: char) {
+        let start = self.pos;
+        let mut length = c.len_utf8();
+        let (mut instead, mut help) = advice(c);
+        if c == '\'' {
+            length = self.rest().bytes().take_while(|byte| *byte == b'\'').count();
+            help = self.prime(length);
+            instead = "";
+        }
+        let name = if c.is_control() || c.is_whitespace() || c == '\u{feff}' {
+            format!("the character U+{:04X}", c as u32)
+        } else {
+            format!("`{}`", &self.rest()[..length.min(30)])
+        };
+        let message = format!("{name} is not part of the language");
+        self.report(Diagnostic::new(Code::UnknownCharacter, self.ahead(length), message).help(help));
+        self.replace(start, start + length, instead);
+        self.pos += length;
+    }
+
+    /// Primes after a name mean a derivative to every engineer.
+    fn prime(&self, count: usize) -> String {
+        let before = self.text[..self.pos].rsplit(|c| !unicode_ident::is_xid_continue(c)).next();
+        match (before.filter(|name| name.starts_with(unicode_ident::is_xid_start)), count) {
+            (Some(name), 1) => format!("write `der({name})` for the derivative"),
+            (Some(name), _) => format!("write `der({name}, {count})` for the derivative"),
+            (None, _) => "derivatives are written `der(x)`, strings in double quotes".into(),
+        }
+    }
+}
+
+/// What to put into the clean text, never longer than the character, and what to tell. A sign or a power is
+/// not put in: long chains of them would nest without having been counted.
+fn advice(c: char) -> (&'static str, String) {
+    let (instead, help) = match c {
+        '≤' => ("<=", "write `<=`"),
+        '≥' => (">=", "write `>=`"),
+        '≠' => ("==", "a constraint is written with `==`, `<=` or `>=`"),
+        '×' | '·' | '∗' | '⋅' => ("*", "write `*`"),
+        '÷' | '∕' => ("/", "write `/`"),
+        '−' | '–' | '—' => ("", "write the sign `-` of the keyboard"),
+        '²' => ("", "write `^2`"),
+        '³' => ("", "write `^3`"),
+        '°' => ("", "write the unit in brackets, `30 [deg]`"),
+        '√' => ("", "write `sqrt(...)`"),
+        '∞' => ("", "leave the bound out, `1 ..` or `.. 5`"),
+        '∫' => ("", "write `integral(...)`"),
+        '∂' => ("", "write `partial(f(x, y), x)`, or `der(x)` for a derivative in time"),
+        '∈' => ("in", "write `in`"),
+        '∑' => ("", "write `sum(i in 1 .. N, ...)`"),
+        '∏' => ("", "write `prod(i in 1 .. N, ...)`"),
+        '…' | '‥' => ("..", "write `..`"),
+        '“' | '”' | '„' => ("", "write `\"`"),
+        '‘' | '’' | '′' => ("", "derivatives are written `der(x)`"),
+        '%' => ("", "write a share as a number, `0.05`; comments begin with `//`"),
+        '#' => ("", "comments begin with `//`"),
+        '!' => ("", "write each constraint with `==`, `<=` or `>=`"),
+        '&' => ("", "write two statements: all of them hold"),
+        '|' => ("", "write `abs(x)` for a magnitude"),
+        _ if c.is_whitespace() || c.is_control() => ("", "write an ordinary blank"),
+        _ => ("", "remove it"),
+    };
+    (instead, help.into())
+}
