@@ -1,0 +1,147 @@
+//! A call at many points: slots refreshed from the variables, values and derivatives of elements.
+//!
+//! Takes a call and the sites at which it is wanted; gives one batch for each shape among them
+//! (most calls have one). Data are evaluated once, when the batch is built.
+
+use super::compose::{Composition, PlanWork};
+use super::error::SetupError;
+use super::frame::Frame;
+use super::node::{Node, NodeWork, Site};
+use super::shape::{Shape, Traced, trace};
+use super::slots::{AffineMap, SlotMaps};
+use crate::nlp::BlockValues;
+use crate::problem::{Derivatives, Lanes, Problem};
+use ntg_splines::Table;
+use ntg_structure::{Call, Degree, Kernel, ReduceOp};
+
+/// Elements of one call and one shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Batch {
+    pub(crate) node: Node,
+    pub(crate) slots: SlotMaps,
+    pub(crate) sites: Vec<Site>,
+    composition: Option<Composition>,
+}
+
+/// Buffers of a batch.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BatchWork {
+    /// The elements' slots.
+    pub(crate) u: Vec<f64>,
+    pub(crate) node: NodeWork,
+    plan: PlanWork,
+}
+
+/// A batch and the affine maps of its elements' slots.
+pub(crate) type Mapped = (Batch, Vec<Vec<AffineMap>>);
+
+/// One batch for each shape among the sites, in order of first appearance.
+pub(crate) fn batches(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Mapped>, SetupError> {
+    let mut shapes: Vec<(Shape, Vec<Site>, Vec<Traced>)> = vec![];
+    for site in sites {
+        let traced = trace(frame, call, &site)?;
+        match shapes.iter_mut().find(|(shape, ..)| *shape == traced.shape) {
+            Some((_, sites, all)) => {
+                sites.push(site);
+                all.push(traced);
+            }
+            None => shapes.push((traced.shape.clone(), vec![site], vec![traced])),
+        }
+    }
+    shapes.into_iter().map(|(_, sites, traced)| Batch::new(frame, call, sites, &traced)).collect()
+}
+
+impl Batch {
+    fn new(frame: &Frame, call: &Call, sites: Vec<Site>, traced: &[Traced]) -> Result<Mapped, SetupError> {
+        let node = Node::build(frame, call, &sites, &traced[0].sources)?;
+        let map = |(site, traced): (&Site, &Traced)| {
+            traced.sources.iter().map(|source| frame.layout.affine(*source, &site.point)).collect()
+        };
+        let maps: Vec<Vec<AffineMap>> = sites.iter().zip(traced).map(map).collect();
+        let slots = SlotMaps::new(traced[0].sources.len(), &maps);
+        let composition = (!node.edges.is_empty()).then(|| Composition::new(&node, &frame.structure.kernels));
+        Ok((Self { node, slots, sites, composition }, maps))
+    }
+
+    /// Patterns of the elements' first and second derivatives.
+    pub(crate) fn patterns(&self, kernels: &[Kernel]) -> [Vec<(usize, usize)>; 2] {
+        match &self.composition {
+            Some(composition) => [composition.jacobian.clone(), composition.hessian.clone()],
+            None => {
+                let kernel = &kernels[self.node.kernel];
+                [kernel.jacobian.clone(), kernel.hessian.clone()]
+            }
+        }
+    }
+
+    /// How each row depends on the element's slots.
+    pub(crate) fn degrees(&self, kernels: &[Kernel]) -> Vec<Degree> {
+        degrees(&self.node, kernels)
+    }
+
+    /// Fresh buffers.
+    pub(crate) fn work(&self) -> BatchWork {
+        let plan = self.composition.as_ref().map_or_else(PlanWork::default, |c| c.work(self.sites.len()));
+        BatchWork { u: vec![0.0; self.slots.len()], node: self.node.work(), plan }
+    }
+
+    /// Computes `work.node.values`: row `r` of element `e` is `[r * elements + e]`.
+    pub(crate) fn values(&self, problem: &dyn Problem, tables: &[Table], x: &[f64], work: &mut BatchWork) {
+        self.slots.refresh(x, &mut work.u);
+        self.node.values(problem, tables, &work.u, &mut work.node);
+    }
+
+    /// Computes values and derivatives of all elements. Before: `work.node.weights` is set.
+    pub(crate) fn derivatives(
+        &self,
+        problem: &dyn Problem,
+        kernels: &[Kernel],
+        tables: &[Table],
+        x: &[f64],
+        work: &mut BatchWork,
+        out: &mut BlockValues,
+    ) {
+        self.slots.refresh(x, &mut work.u);
+        self.node.inputs(problem, tables, &work.u, &mut work.node);
+        match &self.composition {
+            Some(composition) => {
+                self.node.derivatives(problem, kernels, tables, &mut work.node);
+                out.values.copy_from_slice(&work.node.values);
+                composition.apply(&self.node, &work.node, &mut work.plan, &mut out.jacobian, &mut out.hessian);
+            }
+            None if self.node.lanes() > 0 => {
+                let point = Lanes { lanes: self.node.lanes(), inputs: &work.node.inputs, weights: &work.node.weights };
+                let BlockValues { values, jacobian, hessian } = out;
+                problem.derivatives(self.node.kernel, point, tables, Derivatives { values, jacobian, hessian });
+            }
+            None => {}
+        }
+    }
+}
+
+/// Degrees of a node's rows; a reduction keeps a degree only where it is a sum that enters linearly.
+fn degrees(node: &Node, kernels: &[Kernel]) -> Vec<Degree> {
+    let kernel = &kernels[node.kernel];
+    let inner: Vec<Degree> = node.edges.iter().map(|edge| edge_degree(edge, kernels)).collect();
+    let degree = |row: usize| {
+        let reductions = kernel.jacobian.iter().filter(|(r, k)| *r == row && *k >= node.slots);
+        reductions.fold(kernel.degree[row], |degree, (_, k)| match (degree, inner[k - node.slots]) {
+            (degree, Degree::Constant | Degree::Linear) => degree,
+            (Degree::Linear, inner) => inner,
+            (Degree::Constant, _) => Degree::Constant,
+            // A quadratic sum may enter linearly beside quadratic slots: still quadratic; whether it
+            // does is not said, so the weaker statement holds.
+            (Degree::Quadratic | Degree::Nonlinear, _) => Degree::Nonlinear,
+        })
+    };
+    (0..node.rows).map(degree).collect()
+}
+
+fn edge_degree(edge: &super::node::Edge, kernels: &[Kernel]) -> Degree {
+    let body = degrees(&edge.child, kernels)[0];
+    match (edge.op, body) {
+        (_, Degree::Constant) => Degree::Constant,
+        (ReduceOp::Sum, body) => body,
+        _ => Degree::Nonlinear,
+    }
+}

@@ -1,0 +1,185 @@
+//! Conditions that boundary conditions alone decide, checked before any iteration.
+//!
+//! Takes the elements; gives the system of linear equalities at single points, from which the
+//! default guess takes known values. Finds: equalities that contradict each other, and rows at
+//! the ends of phases whose inputs are all fixed and that miss their bounds. A row exactly on its
+//! bound is no contradiction.
+
+use super::elements::{Elements, GroupBatch};
+use super::error::SetupError;
+use super::frame::Frame;
+use super::linear::{Combination, LinearSystem};
+use super::names;
+use super::rows::{RowKind, constraint_words};
+use super::slots::AffineMap;
+use crate::nlp::{Block, BlockValues, Target};
+use ntg_structure::{Degree, Domain};
+
+/// A miss smaller than this part of the numbers it comes from is rounding.
+const ROUNDING: f64 = 1e-7;
+
+/// Collects the linear equalities that stand at single points.
+pub(crate) fn linear_system(
+    frame: &Frame,
+    elements: &Elements,
+    bounds: &[(f64, f64)],
+) -> Result<LinearSystem, SetupError> {
+    let mut system = LinearSystem::default();
+    for (variable, (lower, upper)) in bounds.iter().enumerate() {
+        if lower == upper {
+            let map = AffineMap { terms: vec![(super::layout::narrow(variable), 1.0)], offset: -lower };
+            // One equation for each variable: they cannot contradict each other.
+            let _ = system.add(&(&map).into());
+        }
+    }
+    let mut combinations = combinations(frame, elements);
+    for (row, combination) in combinations.iter_mut().enumerate() {
+        let Some(combination) = combination else { continue };
+        let bound = elements.lower[row];
+        if bound == elements.upper[row] {
+            combination.add_scaled(-1.0, &Combination::constant(bound));
+            if let Err(residual) = system.add(combination) {
+                return Err(contradiction(frame, elements, row, bound + residual, bound));
+            }
+        }
+    }
+    for (row, combination) in combinations.iter().enumerate() {
+        let (lower, upper) = (elements.lower[row], elements.upper[row]);
+        let Some(combination) = combination.as_ref().filter(|_| lower < upper) else { continue };
+        if let Some(known) = system.known(combination) {
+            check(frame, elements, row, known.constant, known.tolerance())?;
+        }
+    }
+    known_rows(frame, elements, &system)?;
+    Ok(system)
+}
+
+/// For every row its linear combination, if it is linear and stands at a single point.
+fn combinations(frame: &Frame, elements: &Elements) -> Vec<Option<Combination>> {
+    let mut rows: Vec<Option<Combination>> = elements.rows.iter().map(|_| Some(Combination::default())).collect();
+    let zero = vec![0.0; frame.layout.variables];
+    for (index, block) in elements.blocks.iter().enumerate() {
+        let group = elements.batches.get(index);
+        let linear = |row: usize| block.degree[row] <= Degree::Linear;
+        let point = group.is_some_and(|g| !matches!(frame.structure.groups[g.group].domain, Domain::Path { .. }));
+        let values =
+            group.filter(|_| point && (0..block.rows).any(linear)).map(|g| derivatives(frame, g, block, &zero));
+        for row in 0..block.rows {
+            for element in 0..block.elements {
+                let at = row * block.elements + element;
+                let Target::Row(target) = block.target[at] else { continue };
+                let target = &mut rows[target as usize];
+                match (&values, target.as_mut()) {
+                    (Some(values), Some(sum)) if linear(row) && values.values[at].is_finite() => {
+                        sum.add_scaled(block.weight[at], &affine_row(block, values, element, row));
+                    }
+                    _ => *target = None,
+                }
+            }
+        }
+    }
+    rows
+}
+
+fn derivatives(frame: &Frame, group: &GroupBatch, block: &Block, x: &[f64]) -> BlockValues {
+    let mut work = group.batch.work();
+    let sized = |entries: usize| vec![0.0; entries * block.elements];
+    let mut out = BlockValues {
+        values: sized(block.rows),
+        jacobian: sized(block.jacobian.len()),
+        hessian: sized(block.hessian.len()),
+    };
+    let (kernels, tables) = (&frame.structure.kernels, frame.tables);
+    group.batch.derivatives(frame.problem, kernels, tables, x, &mut work, &mut out);
+    out
+}
+
+/// A linear row as a function of the variables, from its value and gradient at zero.
+fn affine_row(block: &Block, values: &BlockValues, element: usize, row: usize) -> Combination {
+    let mut sum = Combination::constant(values.values[row * block.elements + element]);
+    let (variables, map) = (block.variables(element), block.map(element));
+    for (entry, (_, slot)) in block.jacobian.iter().enumerate().filter(|(_, (r, _))| *r == row) {
+        let slope = values.jacobian[entry * block.elements + element];
+        for (variable, c) in variables.iter().zip(&map[slot * variables.len()..]) {
+            if slope * c != 0.0 {
+                sum.add(*variable, slope * c);
+            }
+        }
+    }
+    sum
+}
+
+/// Checks rows at the ends of phases whose slots are all determined.
+fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Result<(), SetupError> {
+    for (index, group) in elements.batches.iter().enumerate() {
+        let block = &elements.blocks[index];
+        let ends: Vec<usize> = (0..block.elements).filter(|e| at_end(block.tau[*e])).collect();
+        if ends.is_empty() {
+            continue;
+        }
+        let mut u = vec![f64::NAN; block.slots * block.elements];
+        let mut determined = vec![];
+        for element in ends {
+            let slots: Option<Vec<f64>> =
+                (0..block.slots).map(|s| system.value(&slot_map(block, element, s))).collect();
+            for (slot, value) in slots.iter().flatten().enumerate() {
+                u[slot * block.elements + element] = *value;
+            }
+            determined.extend(slots.map(|_| element));
+        }
+        if determined.is_empty() {
+            continue;
+        }
+        let mut work = group.batch.node.work();
+        group.batch.node.values(frame.problem, frame.tables, &u, &mut work);
+        for element in determined {
+            for row in 0..block.rows {
+                let at = row * block.elements + element;
+                let Target::Row(target) = block.target[at] else { continue };
+                let (target, value) = (target as usize, work.values[at]);
+                if elements.rows[target].maker == (index, element, row) && value.is_finite() {
+                    check(frame, elements, target, value, ROUNDING * value.abs())?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn at_end(tau: f64) -> bool {
+    tau == 0.0 || tau == 1.0
+}
+
+fn slot_map(block: &Block, element: usize, slot: usize) -> AffineMap {
+    let variables = block.variables(element);
+    let row = &block.map(element)[slot * variables.len()..][..variables.len()];
+    let terms = variables.iter().copied().zip(row.iter().copied()).filter(|t| t.1 != 0.0).collect();
+    AffineMap { terms, offset: block.offset[slot * block.elements + element] }
+}
+
+/// Compares a determined value with its row's bounds.
+fn check(frame: &Frame, elements: &Elements, row: usize, value: f64, rounding: f64) -> Result<(), SetupError> {
+    let (lower, upper) = (elements.lower[row], elements.upper[row]);
+    let RowKind::Constraint(constraint) = elements.rows[row].kind else { return Ok(()) };
+    let smallest = ROUNDING * frame.structure.constraints[constraint].unit.factor;
+    for (bound, miss) in [(lower, lower - value), (upper, value - upper)] {
+        if miss > rounding + ROUNDING * bound.abs() + smallest * ROUNDING {
+            return Err(contradiction(frame, elements, row, value, bound));
+        }
+    }
+    Ok(())
+}
+
+fn contradiction(frame: &Frame, elements: &Elements, row: usize, value: f64, bound: f64) -> SetupError {
+    let info = &elements.rows[row];
+    let RowKind::Constraint(constraint) = info.kind else {
+        return SetupError::malformed("the definition of an integral contradicts a boundary condition");
+    };
+    let declared = &frame.structure.constraints[constraint];
+    let words = constraint_words(declared, &info.indices);
+    let what = match names::fixed_point(frame.structure, frame.layout, &info.point) {
+        point if point.is_empty() => words,
+        point => format!("{words} at {point}"),
+    };
+    SetupError::Contradiction { what, value, bound, unit: declared.unit.clone(), place: declared.place.clone() }
+}

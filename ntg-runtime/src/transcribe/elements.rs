@@ -1,0 +1,265 @@
+//! Groups as blocks of elements, and their rows as rows of the program (docs/maths.md, section 4.4).
+//!
+//! Takes a [`Structure`](ntg_structure::Structure) with its layout; gives blocks, the batches that
+//! evaluate them, and rows with bounds. Afterwards: every row has a maker, every element row a
+//! target; the last block, if integrals are variables, holds their identities.
+
+use super::batch::{Batch, Mapped, batches};
+use super::error::SetupError;
+use super::frame::Frame;
+use super::instances::members;
+use super::layout::{Layout, narrow, outside};
+use super::node::Site;
+use super::points::{Point, point_set};
+use super::rows::{RowInfo, RowKind, group_bounds};
+use super::slots::AffineMap;
+use crate::nlp::{Block, Target};
+use ntg_structure::{Affine, Degree, Domain, Group, PhaseRef, Points, Row};
+use std::collections::BTreeMap;
+
+/// A batch with the group that it belongs to.
+#[derive(Clone, Debug)]
+pub(crate) struct GroupBatch {
+    pub(crate) group: usize,
+    pub(crate) batch: Batch,
+}
+
+/// Everything that depends on groups.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Elements {
+    pub(crate) blocks: Vec<Block>,
+    /// One for each block but the block of identities.
+    pub(crate) batches: Vec<GroupBatch>,
+    pub(crate) rows: Vec<RowInfo>,
+    pub(crate) lower: Vec<f64>,
+    pub(crate) upper: Vec<f64>,
+    /// Rows on [`Domain::Mission`] by constraint and indices, for parts.
+    makers: BTreeMap<(usize, Vec<i64>), u32>,
+    /// The row that defines each integral member, counted over all integrals.
+    integral_rows: Vec<u32>,
+}
+
+/// Builds all elements.
+pub(crate) fn elements(frame: &Frame) -> Result<Elements, SetupError> {
+    let mut all = Elements::default();
+    for (index, group) in frame.structure.groups.iter().enumerate() {
+        let kernel = frame.structure.kernels.get(group.call.kernel);
+        if kernel.is_some_and(|kernel| kernel.rows != group.rows.len()) {
+            return Err(SetupError::malformed("a group has not one meaning for each row of its kernel"));
+        }
+        for (batch, maps) in batches(frame, &group.call, sites(frame, group, point_set)?)? {
+            all.add(frame, index, group, (batch, maps))?;
+        }
+    }
+    all.add_identities(frame);
+    all.add_parts(frame)?;
+    Ok(all)
+}
+
+/// The sites of a group, with the points of its phase made by `make`.
+pub(crate) fn sites(
+    frame: &Frame,
+    group: &Group,
+    make: impl Fn(&Points, &[f64], usize) -> Vec<Point>,
+) -> Result<Vec<Site>, SetupError> {
+    domain_sites(frame, &group.loops, &group.domain, make)
+}
+
+/// The sites of any loops and domain.
+pub(crate) fn domain_sites(
+    frame: &Frame,
+    loops: &[ntg_structure::Loop],
+    domain: &Domain,
+    make: impl Fn(&Points, &[f64], usize) -> Vec<Point>,
+) -> Result<Vec<Site>, SetupError> {
+    let mut sites = vec![];
+    for indices in members(loops) {
+        let phase = |reference: &PhaseRef| frame.layout.phase(frame.structure, reference, &indices);
+        let points = match domain {
+            Domain::Mission => vec![Point::NONE],
+            Domain::Start(reference) => vec![Point::start(phase(reference)?)],
+            Domain::End(reference) => vec![Point::end(phase(reference)?)],
+            Domain::Path { phase: reference, points } => {
+                let phase = phase(reference)?;
+                let member = &frame.layout.phases[phase];
+                let Some(set) = frame.structure.phases[member.phase].points.get(*points) else {
+                    return Err(SetupError::malformed(format!("there is no point set number {points}")));
+                };
+                make(set, &member.breakpoints, phase)
+            }
+        };
+        sites.extend(points.into_iter().map(|point| Site { indices: indices.clone(), point }));
+    }
+    Ok(sites)
+}
+
+impl Elements {
+    fn add(&mut self, frame: &Frame, index: usize, group: &Group, mapped: Mapped) -> Result<(), SetupError> {
+        let (batch, maps) = mapped;
+        let kernels = &frame.structure.kernels;
+        let [jacobian, hessian] = batch.patterns(kernels);
+        let count = batch.sites.len();
+        let mut block = Block {
+            elements: count,
+            slots: maps.first().map_or(0, Vec::len),
+            rows: group.rows.len(),
+            jacobian,
+            hessian,
+            degree: batch.degrees(kernels),
+            target: vec![Target::Objective; group.rows.len() * count],
+            weight: vec![1.0; group.rows.len() * count],
+            tau: batch.sites.iter().map(|site| site.point.tau).collect(),
+            ..Block::default()
+        };
+        map_block(&mut block, &maps);
+        let mut bounds = (vec![], vec![]);
+        for (element, site) in batch.sites.iter().enumerate() {
+            if element == 0 || bounds.0 != site.indices {
+                bounds = (site.indices.clone(), group_bounds(frame, group, &site.indices)?);
+            }
+            for (row, meaning) in group.rows.iter().enumerate() {
+                let at = row * count + element;
+                match meaning {
+                    Row::Constraint { constraint, .. } => {
+                        let maker = (self.blocks.len(), element, row);
+                        block.target[at] = self.add_row(*constraint, site, bounds.1[row], maker);
+                    }
+                    _ => block.weight[at] = weight(group, site)?,
+                }
+            }
+        }
+        self.blocks.push(block);
+        self.batches.push(GroupBatch { group: index, batch });
+        Ok(())
+    }
+
+    fn add_row(&mut self, constraint: usize, site: &Site, bounds: (f64, f64), maker: (usize, usize, usize)) -> Target {
+        let row = narrow(self.rows.len());
+        if site.point.phase.is_none() {
+            self.makers.insert((constraint, site.indices.clone()), row);
+        }
+        let (kind, indices) = (RowKind::Constraint(constraint), site.indices.clone());
+        self.rows.push(RowInfo { kind, indices, point: site.point, maker });
+        self.lower.push(bounds.0);
+        self.upper.push(bounds.1);
+        Target::Row(row)
+    }
+
+    /// The block of `variable - sum = 0`: one element for each member of each integral
+    /// (docs/maths.md, equation 4.12); the sums are added by [`Elements::add_parts`].
+    fn add_identities(&mut self, frame: &Frame) {
+        let (mut maps, mut targets) = (vec![], vec![]);
+        for (integral, members) in frame.layout.integral_members.iter().enumerate() {
+            for (member, indices) in members.iter().enumerate() {
+                let row = narrow(self.rows.len());
+                let variable = frame.layout.integral_first[integral] + narrow(member);
+                self.rows.push(RowInfo {
+                    kind: RowKind::Integral(integral),
+                    indices: indices.clone(),
+                    point: Point::NONE,
+                    maker: (self.blocks.len(), maps.len(), 0),
+                });
+                self.lower.push(0.0);
+                self.upper.push(0.0);
+                self.integral_rows.push(row);
+                targets.push(Target::Row(row));
+                maps.push(vec![AffineMap { terms: vec![(variable, 1.0)], offset: 0.0 }]);
+            }
+        }
+        if maps.is_empty() {
+            return;
+        }
+        let count = maps.len();
+        let mut block = Block {
+            elements: count,
+            slots: 1,
+            rows: 1,
+            jacobian: vec![(0, 0)],
+            degree: vec![Degree::Linear],
+            target: targets,
+            weight: vec![1.0; count],
+            tau: vec![f64::NAN; count],
+            ..Block::default()
+        };
+        map_block(&mut block, &maps);
+        self.blocks.push(block);
+    }
+
+    /// Sends parts of constraints and of integrals to the rows that other elements have made.
+    fn add_parts(&mut self, frame: &Frame) -> Result<(), SetupError> {
+        for (block, GroupBatch { group, batch }) in self.blocks.iter_mut().zip(&self.batches) {
+            let group = &frame.structure.groups[*group];
+            for (row, meaning) in group.rows.iter().enumerate() {
+                for (element, site) in batch.sites.iter().enumerate() {
+                    let at = row * batch.sites.len() + element;
+                    let target = match meaning {
+                        Row::Cost { .. } | Row::Constraint { .. } => continue,
+                        Row::Part { constraint, index } => {
+                            let index = evaluate(index, &site.indices);
+                            match self.makers.get(&(*constraint, index.clone())) {
+                                Some(row) => *row,
+                                None => return Err(no_maker(frame, *constraint, &index)),
+                            }
+                        }
+                        Row::Integral { integral, index } => {
+                            block.weight[at] = -block.weight[at];
+                            let index = evaluate(index, &site.indices);
+                            let variable = frame.layout.integral(frame.structure, *integral, &index)?;
+                            let first = first_integral(frame.layout);
+                            self.integral_rows[(variable - first) as usize]
+                        }
+                    };
+                    block.target[at] = Target::Row(target);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The quadrature weight of an integrand, 1 for what belongs to no path.
+fn weight(group: &Group, site: &Site) -> Result<f64, SetupError> {
+    match group.domain {
+        Domain::Path { .. } if site.point.weight.is_nan() => {
+            Err(SetupError::malformed("an integrand stands on points without weights"))
+        }
+        Domain::Path { .. } => Ok(site.point.weight),
+        _ => Ok(1.0),
+    }
+}
+
+fn first_integral(layout: &Layout) -> u32 {
+    layout.integral_first.first().copied().unwrap_or(0)
+}
+
+fn evaluate(index: &[Affine], indices: &[i64]) -> Vec<i64> {
+    index.iter().map(|affine| affine.at(indices)).collect()
+}
+
+fn no_maker(frame: &Frame, constraint: usize, index: &[i64]) -> SetupError {
+    let place = frame.structure.constraints.get(constraint).map(|c| c.place.clone()).unwrap_or_default();
+    outside(format!("the constraint `{}`", place.text), index, place)
+}
+
+/// Fills variables, maps and offsets of a block (docs/maths.md, equation 4.5).
+fn map_block(block: &mut Block, maps: &[Vec<AffineMap>]) {
+    block.variable_start = vec![0];
+    block.map_start = vec![0];
+    block.offset = vec![0.0; block.slots * maps.len()];
+    for (element, slots) in maps.iter().enumerate() {
+        let mut variables: Vec<u32> = slots.iter().flat_map(|map| map.terms.iter().map(|t| t.0)).collect();
+        variables.sort_unstable();
+        variables.dedup();
+        for (slot, map) in slots.iter().enumerate() {
+            block.offset[slot * maps.len() + element] = map.offset;
+            let first = block.map.len();
+            block.map.resize(first + variables.len(), 0.0);
+            for (variable, coefficient) in &map.terms {
+                block.map[first + variables.partition_point(|v| v < variable)] += coefficient;
+            }
+        }
+        block.variables.extend(variables);
+        block.variable_start.push(block.variables.len());
+        block.map_start.push(block.map.len());
+    }
+}

@@ -1,0 +1,168 @@
+//! Why a problem cannot be set up: found before any iteration, in the user's words.
+//!
+//! Most mistakes are found when a spec is compiled. These are the ones that only the values of
+//! parameters, tables and indices decide, or the program that calls the runtime.
+
+use ntg_splines::KnotError;
+use ntg_structure::{Place, Unit};
+use std::fmt;
+
+/// Why no optimisation problem could be made.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// A parameter, bound or time is infinite or not a number.
+    NotFinite {
+        /// What it is, in words.
+        what: String,
+        /// The value.
+        value: f64,
+        /// Where it stands.
+        place: Place,
+    },
+    /// A lower bound lies above its upper bound.
+    CrossingBounds {
+        /// What is bounded.
+        what: String,
+        /// The lower bound, in SI units.
+        lower: f64,
+        /// The upper bound, in SI units.
+        upper: f64,
+        /// The unit in which both are shown.
+        unit: Unit,
+        /// Where it stands.
+        place: Place,
+    },
+    /// Boundary conditions fix a value that a constraint forbids.
+    Contradiction {
+        /// The constraint that cannot be met.
+        what: String,
+        /// The value that the other conditions leave, in SI units.
+        value: f64,
+        /// The bound that it misses, in SI units.
+        bound: f64,
+        /// The unit in which both are shown.
+        unit: Unit,
+        /// Where the constraint stands.
+        place: Place,
+    },
+    /// An index outside a family, an array of parameters or an array of outputs.
+    IndexOutOfRange {
+        /// What is indexed.
+        what: String,
+        /// The index.
+        index: i64,
+        /// The first member.
+        first: i64,
+        /// The last member.
+        last: i64,
+        /// Where the indexed thing stands, or the constraint that names it.
+        place: Place,
+    },
+    /// A phase that lasts no time.
+    Duration {
+        /// The phase, in words.
+        phase: String,
+        /// Its duration or the upper bound of it, in seconds.
+        seconds: f64,
+        /// Where the phase stands.
+        place: Place,
+    },
+    /// A spline that does not exist.
+    Knots {
+        /// The output, with its phase.
+        output: String,
+        /// What is wrong.
+        error: KnotError,
+        /// Where the phase stands.
+        place: Place,
+    },
+    /// A table that cannot be interpolated.
+    Table {
+        /// The table.
+        table: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// A guess or a scale that names nothing, or has the wrong shape.
+    Guess {
+        /// What is wrong, and what could be meant.
+        message: String,
+    },
+    /// The structure contradicts itself: a defect of the back end that made it.
+    Malformed {
+        /// What does not fit.
+        message: String,
+    },
+}
+
+impl SetupError {
+    /// The code under which the language's documentation explains the same mistake, if it does.
+    pub fn code(&self) -> Option<&'static str> {
+        match self {
+            Self::CrossingBounds { .. } => Some("CrossedBounds"),
+            Self::Contradiction { .. } => Some("ContradictedBoundary"),
+            _ => None,
+        }
+    }
+
+    /// Where in the spec the mistake shows, if it has a place.
+    pub fn place(&self) -> Option<&Place> {
+        let place = match self {
+            Self::NotFinite { place, .. }
+            | Self::CrossingBounds { place, .. }
+            | Self::Contradiction { place, .. }
+            | Self::IndexOutOfRange { place, .. }
+            | Self::Duration { place, .. }
+            | Self::Knots { place, .. } => place,
+            Self::Table { .. } | Self::Guess { .. } | Self::Malformed { .. } => return None,
+        };
+        (place.line > 0).then_some(place)
+    }
+
+    /// A defect of the back end, in words.
+    pub(crate) fn malformed(message: impl Into<String>) -> Self {
+        Self::Malformed { message: message.into() }
+    }
+}
+
+impl fmt::Display for SetupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { what, value, .. } => write!(f, "{what} is {value}; it must be a finite number")?,
+            Self::CrossingBounds { what, lower, upper, unit, .. } => {
+                let (lower, upper) = (show(*lower, unit), show(*upper, unit));
+                write!(f, "the bounds of {what} cross: no number lies between {lower} and {upper}")?;
+            }
+            Self::Contradiction { what, value, bound, unit, .. } => {
+                let (value, bound) = (show(*value, unit), show(*bound, unit));
+                write!(f, "{what} cannot hold: the other conditions there make it {value}, and its bound is {bound}")?;
+            }
+            Self::IndexOutOfRange { what, index, first, last, .. } if last < first => {
+                write!(f, "{what} has no member {index}: it is empty")?;
+            }
+            Self::IndexOutOfRange { what, index, first, last, .. } => {
+                write!(f, "{what} has no member {index}: its members are {first} .. {last}")?;
+            }
+            Self::Duration { phase, seconds, .. } => {
+                write!(f, "{phase} would last {seconds} s; a duration must be positive and finite")?;
+            }
+            Self::Knots { output, error, .. } => write!(f, "the spline of {output}: {error}")?,
+            Self::Table { table, message } => write!(f, "table `{table}`: {message}")?,
+            Self::Guess { message } => f.write_str(message)?,
+            Self::Malformed { message } => write!(f, "the compiled problem contradicts itself: {message}")?,
+        }
+        match self.place() {
+            Some(place) => write!(f, " (line {}, column {}: `{}`)", place.line, place.column, place.text),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for SetupError {}
+
+/// A value in its declared unit, with the unit's symbol.
+pub(crate) fn show(value: f64, unit: &Unit) -> String {
+    let number = value / unit.factor;
+    if unit.symbol.is_empty() { format!("{number}") } else { format!("{number} {}", unit.symbol) }
+}

@@ -1,0 +1,143 @@
+//! The program's numbers: objective, rows and element derivatives at a point.
+//!
+//! Allocates nothing while all is finite (docs/maths.md, equation 4.3).
+
+use super::Transcription;
+use super::batch::BatchWork;
+use super::fault;
+use crate::nlp::{Block, BlockValues, Evaluation, Limits, Nlp, NotFinite, Target};
+
+/// Buffers for the evaluations of a [`Transcription`].
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    pub(crate) batches: Vec<BatchWork>,
+}
+
+impl Nlp for Transcription<'_> {
+    type Workspace = Workspace;
+
+    fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    fn blocks(&self) -> &[Block] {
+        &self.elements.blocks
+    }
+
+    fn workspace(&self) -> (Workspace, Evaluation) {
+        let batches = self.elements.batches.iter().map(|group| group.batch.work()).collect();
+        let block = |block: &Block| BlockValues {
+            values: vec![0.0; block.rows * block.elements],
+            jacobian: vec![0.0; block.jacobian.len() * block.elements],
+            hessian: vec![0.0; block.hessian.len() * block.elements],
+        };
+        let blocks = self.elements.blocks.iter().map(block).collect();
+        (Workspace { batches }, Evaluation { objective: 0.0, rows: vec![0.0; self.rows()], blocks })
+    }
+
+    fn values(&self, x: &[f64], work: &mut Workspace, out: &mut Evaluation) -> Result<(), NotFinite> {
+        let Evaluation { blocks, .. } = out;
+        for ((group, work), out) in self.elements.batches.iter().zip(&mut work.batches).zip(blocks.iter_mut()) {
+            group.batch.values(self.problem, &self.model.tables, x, work);
+            out.values.copy_from_slice(&work.node.values);
+        }
+        self.identities(x, blocks);
+        self.finite_values(x, out)?;
+        self.add_up(out);
+        Ok(())
+    }
+
+    fn derivatives(
+        &self,
+        x: &[f64],
+        objective_weight: f64,
+        multipliers: &[f64],
+        work: &mut Workspace,
+        out: &mut Evaluation,
+    ) -> Result<(), NotFinite> {
+        let (kernels, tables) = (&self.model.structure.kernels, &self.model.tables);
+        let blocks = self.elements.blocks.iter().zip(&mut out.blocks);
+        for ((group, work), (block, out)) in self.elements.batches.iter().zip(&mut work.batches).zip(blocks) {
+            let weights = work.node.weights.iter_mut();
+            for ((to, weight), target) in weights.zip(&block.weight).zip(&block.target) {
+                *to = weight
+                    * match target {
+                        Target::Objective => objective_weight,
+                        Target::Row(row) => multipliers[*row as usize],
+                    };
+            }
+            group.batch.derivatives(self.problem, kernels, tables, x, work, out);
+        }
+        self.identities(x, &mut out.blocks);
+        self.finite_values(x, out)?;
+        self.finite_derivatives(x, out)?;
+        self.add_up(out);
+        Ok(())
+    }
+
+    fn row_name(&self, row: usize) -> String {
+        self.name_of_row(row)
+    }
+
+    fn variable_name(&self, variable: usize) -> String {
+        self.name_of_variable(variable)
+    }
+}
+
+impl Transcription<'_> {
+    /// The block of identities, whose function is its one slot.
+    fn identities(&self, x: &[f64], out: &mut [BlockValues]) {
+        let first = self.elements.batches.len();
+        for (block, out) in self.elements.blocks.iter().zip(out).skip(first) {
+            for (value, variable) in out.values.iter_mut().zip(&block.variables) {
+                *value = x[*variable as usize];
+            }
+            out.jacobian.fill(1.0);
+        }
+    }
+
+    /// Adds elements to objective and rows.
+    fn add_up(&self, out: &mut Evaluation) {
+        out.objective = 0.0;
+        out.rows.fill(0.0);
+        for (block, values) in self.elements.blocks.iter().zip(&out.blocks) {
+            for ((value, weight), target) in values.values.iter().zip(&block.weight).zip(&block.target) {
+                match target {
+                    Target::Objective => out.objective += weight * value,
+                    Target::Row(row) => out.rows[*row as usize] += weight * value,
+                }
+            }
+        }
+    }
+
+    fn finite_values(&self, x: &[f64], out: &Evaluation) -> Result<(), NotFinite> {
+        for (block, values) in out.blocks.iter().enumerate() {
+            if !all_finite(&values.values) {
+                let at = first_fault(&values.values);
+                return Err(fault::in_values(self, x, block, at, values.values[at]));
+            }
+        }
+        Ok(())
+    }
+
+    fn finite_derivatives(&self, x: &[f64], out: &Evaluation) -> Result<(), NotFinite> {
+        for (block, values) in out.blocks.iter().enumerate() {
+            for (entries, first) in [(&values.jacobian, true), (&values.hessian, false)] {
+                if !all_finite(entries) {
+                    let at = first_fault(entries);
+                    return Err(fault::in_derivatives(self, x, block, (at, first), entries[at]));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether all are finite, without a branch for each.
+fn all_finite(values: &[f64]) -> bool {
+    values.iter().fold(true, |finite, value| finite & value.is_finite())
+}
+
+fn first_fault(values: &[f64]) -> usize {
+    values.iter().position(|value| !value.is_finite()).unwrap_or(0)
+}

@@ -1,0 +1,127 @@
+//! What the inputs of calls are, once families are expanded and parameters have values.
+//!
+//! Takes slots and data of a [`Call`] with the indices of the loops around it; gives the concrete
+//! thing a slot stands for ([`Source`]) and the number that a datum is. Finds: indices outside
+//! families and arrays, parameters that are not finite.
+
+use super::error::SetupError;
+use super::instances::index_at;
+use super::layout::Layout;
+use super::node::{Node, Site};
+use super::points::Point;
+use super::shape::trace;
+use super::slots::Source;
+use super::times::Clock;
+use crate::problem::Problem;
+use ntg_splines::Table;
+use ntg_structure::{At, Call, Data, Place, Slot, Structure};
+
+/// Everything that gives calls their meaning.
+#[derive(Clone, Copy)]
+pub(crate) struct Frame<'a> {
+    pub(crate) problem: &'a dyn Problem,
+    pub(crate) structure: &'a Structure,
+    pub(crate) tables: &'a [Table],
+    pub(crate) layout: &'a Layout,
+    pub(crate) clock: &'a Clock,
+}
+
+impl Frame<'_> {
+    /// The indices that a phase's own calls are evaluated with: the agent's, then the phase's.
+    pub(crate) fn phase_indices(&self, phase: usize) -> Vec<i64> {
+        let member = &self.layout.phases[phase];
+        self.layout.agents[member.agent].index.into_iter().chain(member.index).collect()
+    }
+
+    /// The single result of a call without slots.
+    pub(crate) fn number(&self, call: &Call, indices: &[i64]) -> Result<f64, SetupError> {
+        Ok(self.numbers(call, indices, Point::NONE)?[0])
+    }
+
+    /// The results of a call without slots.
+    pub(crate) fn numbers(&self, call: &Call, indices: &[i64], point: Point) -> Result<Vec<f64>, SetupError> {
+        self.evaluate(call, indices, point, &[])
+    }
+
+    /// The results of any call at one point, for known variables.
+    pub(crate) fn evaluate(
+        &self,
+        call: &Call,
+        indices: &[i64],
+        point: Point,
+        x: &[f64],
+    ) -> Result<Vec<f64>, SetupError> {
+        let site = Site { indices: indices.to_vec(), point };
+        let traced = trace(self, call, &site)?;
+        let node = Node::build(self, call, &[site], &traced.sources)?;
+        let slots: Vec<f64> =
+            traced.sources.iter().map(|source| self.layout.affine(*source, &point).value(x)).collect();
+        let mut work = node.work();
+        node.values(self.problem, self.tables, &slots, &mut work);
+        Ok(work.values)
+    }
+
+    /// What a slot stands for.
+    pub(crate) fn source(&self, slot: &Slot, site: &Site) -> Result<Source, SetupError> {
+        let (structure, layout, indices) = (self.structure, self.layout, &site.indices);
+        match slot {
+            Slot::Flat { phase, at, output, index, derivative } => {
+                let phase = layout.phase(structure, phase, indices)?;
+                let output = layout.output(structure, phase, *output, index_at(index.as_ref(), indices))?;
+                let at = match at {
+                    At::Here if site.point.phase != Some(phase) => {
+                        return Err(SetupError::malformed("an output is used at a point of another phase"));
+                    }
+                    at => *at,
+                };
+                Ok(Source::Flat { phase, at, output, derivative: *derivative })
+            }
+            Slot::Duration(phase) => Ok(Source::Duration(layout.phase(structure, phase, indices)?)),
+            Slot::Start(phase) => Ok(Source::Start(layout.phase(structure, phase, indices)?)),
+            Slot::Variable { variable, index } => {
+                let index = index_at(index.as_ref(), indices);
+                Ok(Source::Global(layout.variable(structure, *variable, index)?))
+            }
+            Slot::Integral { integral, index } => {
+                let index: Vec<i64> = index.iter().map(|affine| affine.at(indices)).collect();
+                Ok(Source::Global(layout.integral(structure, *integral, &index)?))
+            }
+        }
+    }
+
+    /// The number that a datum is.
+    pub(crate) fn data(&self, data: &Data, site: &Site) -> Result<f64, SetupError> {
+        let indices = &site.indices;
+        match data {
+            Data::Parameter { parameter, index } => {
+                self.parameter(*parameter, index.as_ref().map(|index| index.at(indices)))
+            }
+            Data::Index(index) => Ok(index.at(indices) as f64),
+            Data::Tau => Ok(site.point.tau),
+            Data::Duration(phase) => {
+                let phase = self.layout.phase(self.structure, phase, indices)?;
+                self.clock.durations[phase].ok_or_else(|| SetupError::malformed("a free duration is used as data"))
+            }
+            Data::Start(phase) => {
+                let phase = self.layout.phase(self.structure, phase, indices)?;
+                self.clock.starts[phase].ok_or_else(|| SetupError::malformed("a free start is used as data"))
+            }
+        }
+    }
+
+    fn parameter(&self, parameter: usize, index: Option<i64>) -> Result<f64, SetupError> {
+        let Some(declared) = self.structure.parameters.get(parameter) else {
+            return Err(SetupError::malformed(format!("there is no parameter number {parameter}")));
+        };
+        let index = index.unwrap_or(1);
+        let position = usize::try_from(index - 1).ok();
+        let value = position.and_then(|position| declared.value.get(position)).copied();
+        value.ok_or_else(|| SetupError::IndexOutOfRange {
+            what: format!("parameter `{}`", declared.name),
+            index,
+            first: 1,
+            last: i64::try_from(declared.value.len()).unwrap_or(i64::MAX),
+            place: Place::default(),
+        })
+    }
+}

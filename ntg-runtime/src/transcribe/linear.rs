@@ -1,0 +1,141 @@
+//! What linear boundary conditions fix before anything is solved.
+//!
+//! Takes linear equalities `sum of c[i] x[i] + constant = 0`; keeps them in echelon form by
+//! Gaussian elimination with the largest coefficient as pivot. Finds: equations that contradict
+//! those before them. Afterwards: the value of any linear combination that they determine.
+
+use super::slots::AffineMap;
+use std::collections::BTreeMap;
+
+/// A coefficient smaller than this part of the equation's largest is rounding.
+const NEGLIGIBLE: f64 = 1e-11;
+/// A residual larger than this part of the numbers it comes from is a contradiction.
+const CONTRADICTION: f64 = 1e-8;
+
+/// `sum of terms + constant`, and the size of the numbers that went into the constant.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Combination {
+    terms: BTreeMap<u32, f64>,
+    pub(crate) constant: f64,
+    size: f64,
+}
+
+/// Equations in echelon form: no equation holds the pivot of one before it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LinearSystem {
+    equations: Vec<(u32, Combination)>,
+}
+
+impl From<&AffineMap> for Combination {
+    fn from(map: &AffineMap) -> Self {
+        let mut sum = Self { constant: map.offset, size: map.offset.abs(), ..Self::default() };
+        map.terms.iter().for_each(|(variable, c)| sum.add(*variable, *c));
+        sum
+    }
+}
+
+impl Combination {
+    /// Only a constant.
+    pub(crate) fn constant(constant: f64) -> Self {
+        Self { constant, size: constant.abs(), ..Self::default() }
+    }
+
+    /// Adds `c x[variable]`.
+    pub(crate) fn add(&mut self, variable: u32, c: f64) {
+        *self.terms.entry(variable).or_insert(0.0) += c;
+    }
+
+    /// Adds `times` another combination.
+    pub(crate) fn add_scaled(&mut self, times: f64, other: &Self) {
+        other.terms.iter().for_each(|(variable, c)| self.add(*variable, times * c));
+        self.constant += times * other.constant;
+        self.size += (times * other.constant).abs();
+    }
+
+    fn largest(&self) -> Option<(u32, f64)> {
+        let larger = |best: Option<(u32, f64)>, (v, c): (&u32, &f64)| match best {
+            Some((_, held)) if held.abs() >= c.abs() => best,
+            _ => Some((*v, *c)),
+        };
+        self.terms.iter().fold(None, larger)
+    }
+
+    /// How far the constant may be from a bound by rounding alone.
+    pub(crate) fn tolerance(&self) -> f64 {
+        CONTRADICTION * self.size
+    }
+}
+
+impl LinearSystem {
+    /// Adds the equation `row = 0`.
+    ///
+    /// # Errors
+    /// The residual that is left where the equations so far make it impossible.
+    pub(crate) fn add(&mut self, row: &Combination) -> Result<(), f64> {
+        let reduced = self.reduce(row);
+        match reduced.largest() {
+            Some((pivot, _)) => {
+                self.equations.push((pivot, reduced));
+                Ok(())
+            }
+            None if reduced.constant.abs() > reduced.tolerance() => Err(reduced.constant),
+            None => Ok(()),
+        }
+    }
+
+    /// The value of a combination, if the equations determine it.
+    pub(crate) fn known(&self, row: &Combination) -> Option<Combination> {
+        if row.terms.len() > 0 && self.equations.is_empty() {
+            return None;
+        }
+        let reduced = self.reduce(row);
+        reduced.terms.is_empty().then_some(reduced)
+    }
+
+    /// The value of an affine map, if the equations determine it.
+    pub(crate) fn value(&self, map: &AffineMap) -> Option<f64> {
+        self.known(&map.into()).map(|row| row.constant)
+    }
+
+    fn reduce(&self, row: &Combination) -> Combination {
+        let mut row = row.clone();
+        let size = row.largest().map_or(0.0, |(_, c)| c.abs());
+        for (pivot, equation) in &self.equations {
+            if let Some(c) = row.terms.remove(pivot) {
+                let times = -c / equation.terms[pivot];
+                row.add_scaled(times, equation);
+                row.terms.remove(pivot);
+            }
+        }
+        row.terms.retain(|_, c| c.abs() > NEGLIGIBLE * size);
+        row
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(terms: &[(u32, f64)], constant: f64) -> Combination {
+        (&AffineMap { terms: terms.to_vec(), offset: constant }).into()
+    }
+
+    #[test]
+    fn two_equations_determine_two_unknowns() {
+        let mut system = LinearSystem::default();
+        system.add(&row(&[(0, 1.0), (1, 2.0)], -5.0)).expect("the first equation contradicts nothing");
+        assert!(system.known(&row(&[(0, 1.0)], 0.0)).is_none());
+        system.add(&row(&[(0, 3.0), (1, -1.0)], -1.0)).expect("x = 1, y = 2 solves both");
+        let sum = system.known(&row(&[(0, 1.0), (1, 1.0)], 0.5)).expect("both are determined");
+        assert!((sum.constant - 3.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_repeated_equation_is_no_contradiction_and_a_shifted_one_is() {
+        let mut system = LinearSystem::default();
+        system.add(&row(&[(0, 0.1), (3, 0.7)], -0.3)).expect("the first equation contradicts nothing");
+        assert!(system.add(&row(&[(0, 0.3), (3, 2.1)], -0.9)).is_ok());
+        let residual = system.add(&row(&[(0, 0.1), (3, 0.7)], -0.4)).expect_err("the constants differ");
+        assert!((residual + 0.1).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,178 @@
+//! From a problem to a nonlinear program (docs/maths.md, section 4).
+//!
+//! Takes a [`Problem`] with the values of its parameters; gives a [`Transcription`], which is an
+//! [`Nlp`](crate::nlp::Nlp): variables are spline coefficients, free times, declared variables and
+//! integrals; elements are the problem's functions at points of collocation.
+//!
+//! Finds, before any iteration: parameters that are not finite, tables and splines that do not
+//! exist, indices outside families, durations that are not positive, bounds that cross, boundary
+//! conditions that contradict each other. Afterwards: nothing of the structure has to be looked
+//! up while solving; only slots are refreshed.
+
+pub(crate) mod backward;
+pub(crate) mod batch;
+pub(crate) mod compose;
+mod contradictions;
+pub(crate) mod elements;
+mod error;
+mod evaluate;
+mod fault;
+pub(crate) mod frame;
+pub(crate) mod instances;
+pub(crate) mod layout;
+pub(crate) mod linear;
+pub(crate) mod names;
+pub(crate) mod node;
+pub(crate) mod points;
+mod reduce;
+pub(crate) mod rows;
+mod scale;
+pub(crate) mod shape;
+pub(crate) mod slots;
+mod tables;
+pub(crate) mod times;
+
+pub use error::SetupError;
+pub(crate) use error::show;
+pub use evaluate::Workspace;
+
+use crate::nlp::Limits;
+use crate::problem::Problem;
+use elements::Elements;
+use frame::Frame;
+use layout::Layout;
+use linear::LinearSystem;
+use ntg_splines::Table;
+use ntg_structure::{Place, Structure};
+use rows::RowKind;
+use std::sync::Arc;
+use times::Clock;
+
+/// A problem with everything that its parameters decide, without its formulas.
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    pub(crate) structure: Structure,
+    pub(crate) tables: Vec<Table>,
+    pub(crate) layout: Layout,
+    pub(crate) clock: Clock,
+}
+
+/// A problem as a nonlinear program.
+pub struct Transcription<'p> {
+    pub(crate) problem: &'p dyn Problem,
+    pub(crate) model: Arc<Model>,
+    pub(crate) elements: Elements,
+    pub(crate) limits: Limits,
+    pub(crate) linear: LinearSystem,
+}
+
+impl<'p> Transcription<'p> {
+    /// Transcribes a problem with the present values of its parameters.
+    ///
+    /// # Errors
+    /// [`SetupError`]: what parameters decide and cannot be solved.
+    pub fn new(problem: &'p dyn Problem) -> Result<Self, SetupError> {
+        Self::with(problem, problem.structure())
+    }
+
+    /// Transcribes a problem with parameters as in `structure` (one step of a continuation).
+    pub(crate) fn with(problem: &'p dyn Problem, structure: Structure) -> Result<Self, SetupError> {
+        let model = Model::new(problem, structure)?;
+        let frame = model.frame(problem);
+        let bounds = rows::variable_bounds(&frame)?;
+        let elements = elements::elements(&frame)?;
+        let linear = contradictions::linear_system(&frame, &elements, &bounds)?;
+        let limits = Limits {
+            lower: bounds.iter().map(|b| b.0).collect(),
+            upper: bounds.iter().map(|b| b.1).collect(),
+            scale: vec![1.0; bounds.len()],
+            row_lower: elements.lower.clone(),
+            row_upper: elements.upper.clone(),
+            row_scale: vec![1.0; elements.rows.len()],
+        };
+        Ok(Self { problem, model: Arc::new(model), elements, limits, linear })
+    }
+
+    /// How many of the variables are spline coefficients; the others (free durations, free
+    /// starts, declared variables, integrals) follow them.
+    pub fn coefficients(&self) -> usize {
+        self.model.layout.coefficients
+    }
+
+    /// Everything that gives calls their meaning.
+    pub(crate) fn frame(&self) -> Frame<'_> {
+        self.model.frame(self.problem)
+    }
+
+    pub(crate) fn name_of_row(&self, row: usize) -> String {
+        let Some(info) = self.elements.rows.get(row) else { return format!("row {row}") };
+        let structure = &self.model.structure;
+        let words = match info.kind {
+            RowKind::Constraint(constraint) => {
+                rows::constraint_words(&structure.constraints[constraint], &info.indices)
+            }
+            RowKind::Integral(integral) => format!("the integral `{}`", structure.integrals[integral].place.text),
+        };
+        match names::fixed_point(structure, &self.model.layout, &info.point) {
+            point if point.is_empty() => words,
+            point => format!("{words} at {point}"),
+        }
+    }
+
+    pub(crate) fn name_of_variable(&self, variable: usize) -> String {
+        let (structure, layout) = (&self.model.structure, &self.model.layout);
+        let is = |candidate: u32| candidate as usize == variable;
+        for phase in 0..layout.phases.len() {
+            for (output, member) in layout.phases[phase].outputs.iter().enumerate() {
+                if let Some(i) = member.coefficients.iter().position(|c| is(*c)) {
+                    return format!("coefficient {} of `{}`", i + 1, names::output(structure, layout, phase, output));
+                }
+            }
+            if matches!(layout.phases[phase].duration, layout::Time::Free(v) if is(v)) {
+                return format!("the duration of {}", times::phase_words(structure, layout, phase));
+            }
+        }
+        if let Some(agent) = layout.agents.iter().position(|a| matches!(a.start, layout::Time::Free(v) if is(v))) {
+            return format!("the start of agent `{}`", names::agent(structure, layout, agent));
+        }
+        for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
+            let members = instances::family_members(declared.family);
+            if let Some(index) = variable.checked_sub(*first as usize).and_then(|m| members.get(m)) {
+                return format!("variable `{}`", names::indexed(&declared.name, *index));
+            }
+        }
+        for (declared, (first, members)) in
+            structure.integrals.iter().zip(layout.integral_first.iter().zip(&layout.integral_members))
+        {
+            if variable.checked_sub(*first as usize).is_some_and(|m| m < members.len()) {
+                return format!("the integral `{}`", declared.place.text);
+            }
+        }
+        format!("variable {variable}")
+    }
+}
+
+impl Model {
+    fn new(problem: &dyn Problem, structure: Structure) -> Result<Self, SetupError> {
+        for parameter in &structure.parameters {
+            for (i, value) in parameter.value.iter().enumerate() {
+                if !value.is_finite() {
+                    let index = parameter.array.then(|| i64::from(layout::narrow(i)) + 1);
+                    let what = format!("parameter `{}`", names::indexed(&parameter.name, index));
+                    return Err(SetupError::NotFinite { what, value: *value, place: Place::default() });
+                }
+            }
+        }
+        let tables = tables::interpolants(&structure.tables)?;
+        let mut layout = Layout::new(&structure)?;
+        times::fix(problem, &structure, &tables, &mut layout)?;
+        let clock = Clock::fixed(&layout);
+        Ok(Self { structure, tables, layout, clock })
+    }
+
+    /// Everything that gives calls their meaning.
+    pub(crate) fn frame<'a>(&'a self, problem: &'a dyn Problem) -> Frame<'a> {
+        let Self { structure, tables, layout, clock } = self;
+        Frame { problem, structure, tables, layout, clock }
+    }
+}

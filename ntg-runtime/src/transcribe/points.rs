@@ -1,0 +1,190 @@
+//! Points of collocation with their weights and sides (docs/maths.md, section 4.1).
+//!
+//! Takes a [`Points`] and the breakpoints of a phase (the union of its outputs'); gives scaled
+//! times, quadrature weights that add up to 1 (or none), and the side from which derivatives that
+//! jump are taken. The same set can be made finer for the check after a solve (section 9).
+
+use ntg_splines::{Side, gauss, trapezoid};
+use ntg_structure::Points;
+
+/// Breakpoints nearer to each other than this are one.
+const SAME: f64 = 1e-12;
+
+/// One point of one phase, or of no phase at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Point {
+    /// The phase, as an index into the layout's phases; none for what belongs to no point.
+    pub(crate) phase: Option<usize>,
+    /// Scaled time; NaN without a phase.
+    pub(crate) tau: f64,
+    /// From which side values are taken where they jump.
+    pub(crate) side: Side,
+    /// Quadrature weight in scaled time; NaN where there is none.
+    pub(crate) weight: f64,
+}
+
+impl Point {
+    /// No point at all.
+    pub(crate) const NONE: Self = Self { phase: None, tau: f64::NAN, side: Side::Right, weight: f64::NAN };
+
+    /// The start of a phase.
+    pub(crate) fn start(phase: usize) -> Self {
+        Self { phase: Some(phase), tau: 0.0, side: Side::Right, weight: f64::NAN }
+    }
+
+    /// The end of a phase.
+    pub(crate) fn end(phase: usize) -> Self {
+        Self { phase: Some(phase), tau: 1.0, side: Side::Left, weight: f64::NAN }
+    }
+}
+
+/// The points of a set in a phase, by increasing scaled time.
+pub(crate) fn point_set(points: &Points, breakpoints: &[f64], phase: usize) -> Vec<Point> {
+    let point = |tau, side, weight| Point { phase: Some(phase), tau, side, weight };
+    let last = breakpoints.len() - 1;
+    match *points {
+        Points::Gauss { points } => gauss_points(breakpoints, points, phase),
+        Points::Uniform { points } => {
+            let rule = trapezoid(points);
+            let ends = points.saturating_sub(1);
+            rule.nodes
+                .iter()
+                .zip(&rule.weights)
+                .enumerate()
+                .map(|(i, (&tau, &weight))| {
+                    let side = if i == ends && i > 0 { Side::Left } else { Side::Right };
+                    point(snap(tau, breakpoints), side, weight)
+                })
+                .collect()
+        }
+        Points::Breakpoints => breakpoints
+            .iter()
+            .enumerate()
+            .map(|(i, &tau)| point(tau, if i == last { Side::Left } else { Side::Right }, f64::NAN))
+            .collect(),
+        Points::LeftLimits => {
+            breakpoints.get(1..last).unwrap_or(&[]).iter().map(|&tau| point(tau, Side::Left, f64::NAN)).collect()
+        }
+    }
+}
+
+/// The points of the check after a solve: `samples` stretches for each point of the set, both
+/// one-sided limits at every breakpoint, no weights (docs/maths.md, equation 9.1).
+pub(crate) fn fine_set(points: &Points, breakpoints: &[f64], phase: usize, samples: usize) -> Vec<Point> {
+    let intervals = breakpoints.len() - 1;
+    let stretches = match *points {
+        Points::Gauss { points } => samples * points,
+        Points::Uniform { points } => (samples * points).div_ceil(intervals),
+        // These sets have one point an interval and accompany Gauss points that are refined.
+        Points::Breakpoints => samples,
+        Points::LeftLimits => return vec![], // The sets they accompany take both limits here.
+    }
+    .max(1);
+    let mut fine = vec![];
+    for pair in breakpoints.windows(2) {
+        for i in 0..=stretches {
+            let tau =
+                if i == stretches { pair[1] } else { pair[0] + (pair[1] - pair[0]) * i as f64 / stretches as f64 };
+            let side = if i == stretches { Side::Left } else { Side::Right };
+            fine.push(Point { phase: Some(phase), tau, side, weight: f64::NAN });
+        }
+    }
+    fine
+}
+
+/// Composite Gauss points for the true cost: each interval in `samples` parts
+/// (docs/maths.md, equation 9.2). The rule has at least three points a part.
+pub(crate) fn fine_quadrature(points: &Points, breakpoints: &[f64], phase: usize, samples: usize) -> Vec<Point> {
+    /// Gauss points in each part where the transcription itself uses no Gauss rule.
+    const POINTS: usize = 3;
+    let (order, parts) = match *points {
+        Points::Gauss { points } => (points.max(POINTS), samples),
+        Points::Uniform { points } => (POINTS, (samples * points).div_ceil(breakpoints.len() - 1)),
+        Points::Breakpoints | Points::LeftLimits => return vec![],
+    };
+    let refined: Vec<f64> = breakpoints
+        .windows(2)
+        .flat_map(|pair| (0..parts).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / parts as f64))
+        .chain(breakpoints.last().copied())
+        .collect();
+    gauss_points(&refined, order, phase)
+}
+
+/// Gauss points in every interval (docs/maths.md, equation 4.2).
+fn gauss_points(breakpoints: &[f64], order: usize, phase: usize) -> Vec<Point> {
+    let rule = gauss(order);
+    let mut set = Vec::with_capacity(order * breakpoints.len());
+    for pair in breakpoints.windows(2) {
+        let width = pair[1] - pair[0];
+        for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
+            set.push(Point {
+                phase: Some(phase),
+                tau: pair[0] + width * node,
+                side: Side::Right,
+                weight: width * weight,
+            });
+        }
+    }
+    set
+}
+
+/// The breakpoint that `tau` is meant to be, so that its side is the right one.
+fn snap(tau: f64, breakpoints: &[f64]) -> f64 {
+    let at = breakpoints.partition_point(|b| *b < tau - SAME);
+    match breakpoints.get(at) {
+        Some(b) if (b - tau).abs() <= SAME => *b,
+        _ => tau,
+    }
+}
+
+/// The union of several sets of breakpoints, increasing.
+pub(crate) fn union<'a>(sets: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+    let mut all: Vec<f64> = sets.flatten().copied().chain([0.0, 1.0]).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|next, kept| (*next - *kept).abs() <= SAME);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const THIRDS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+
+    #[test]
+    fn weights_integrate_cubics_exactly() {
+        for points in [Points::Gauss { points: 2 }, Points::Gauss { points: 5 }] {
+            let set = point_set(&points, &THIRDS, 0);
+            let integral: f64 = set.iter().map(|p| p.weight * p.tau.powi(3)).sum();
+            assert!((integral - 0.25).abs() < 1e-15);
+        }
+        let fine = fine_quadrature(&Points::Uniform { points: 7 }, &THIRDS, 0, 20);
+        let integral: f64 = fine.iter().map(|p| p.weight * p.tau.powi(5)).sum();
+        assert!((integral - 1.0 / 6.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn uniform_points_take_the_right_value_except_at_the_end() {
+        let set = point_set(&Points::Uniform { points: 4 }, &THIRDS, 0);
+        let taus: Vec<f64> = set.iter().map(|p| p.tau).collect();
+        assert_eq!(taus, THIRDS);
+        assert_eq!(set[1].side, Side::Right);
+        assert_eq!(set[3].side, Side::Left);
+        assert_eq!(set.iter().map(|p| p.weight).sum::<f64>(), 1.0);
+    }
+
+    #[test]
+    fn left_limits_stand_at_inner_breakpoints_only() {
+        let set = point_set(&Points::LeftLimits, &THIRDS, 0);
+        assert_eq!(set.iter().map(|p| p.tau).collect::<Vec<_>>(), THIRDS[1..3]);
+        assert!(set.iter().all(|p| p.side == Side::Left));
+        assert!(point_set(&Points::LeftLimits, &[0.0, 1.0], 0).is_empty());
+    }
+
+    #[test]
+    fn the_union_keeps_each_breakpoint_once() {
+        let thirds: Vec<f64> = (0..=3).map(|i| f64::from(i) / 3.0).collect();
+        let sixths: Vec<f64> = (0..=6).map(|i| f64::from(i) / 6.0).collect();
+        assert_eq!(union([&thirds[..], &sixths[..]].into_iter()).len(), 7);
+    }
+}
