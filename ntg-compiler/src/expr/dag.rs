@@ -14,15 +14,14 @@
 //!
 //! Afterwards: no two nodes of one `Dag` are the same operation on the same operands.
 
-use std::collections::{HashMap, HashSet};
-
+use super::hash::{Map, Set};
 use super::node::{InputId, Node, NodeId, Number};
 
 /// A graph of expressions; see the module's header.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dag {
     nodes: Vec<Node>,
-    ids: HashMap<Node, NodeId>, // Looked up, never iterated.
+    ids: Map<Node, NodeId>,
 }
 
 impl Dag {
@@ -69,6 +68,11 @@ impl Dag {
         self.is_constant(id) == Some(value)
     }
 
+    /// Whether a node is a constant or an input.
+    pub fn is_leaf(&self, id: NodeId) -> bool {
+        matches!(self.node(id), Node::Const(_) | Node::Input(_))
+    }
+
     /// Every node that the roots need, bodies of reductions included, in increasing order.
     pub fn schedule(&self, roots: &[NodeId]) -> Vec<NodeId> {
         self.reachable(roots, true)
@@ -95,7 +99,7 @@ impl Dag {
     }
 
     fn reachable(&self, roots: &[NodeId], into_bodies: bool) -> Vec<NodeId> {
-        let mut seen: HashSet<NodeId> = HashSet::new();
+        let mut seen: Set<NodeId> = Set::default();
         let mut found = Vec::new();
         let mut open: Vec<NodeId> = roots.to_vec();
         while let Some(id) = open.pop() {

@@ -4,12 +4,23 @@
 //! [`InputId`], and what it stands for is the client's affair.
 //! The mathematics is docs/maths.md, section 2.
 
+pub mod derivative;
+pub mod eval;
+pub mod structure;
+
 mod dag;
+mod hash;
 mod node;
 mod rewrite;
 mod scalar;
 mod simplify;
 
+#[cfg(test)]
+mod tests;
+
 pub use dag::Dag;
+pub use derivative::{DerivativeError, Entry, forward, forward_all, gradient, hessian};
+pub use eval::{Environment, EvalError, eval, eval_in};
 pub use node::{Binary, Fold, InputId, Node, NodeId, Number, Unary};
 pub use scalar::Scalar;
+pub use structure::{Degree, degree, hessian_pattern, kinks, singular_operations};

@@ -5,16 +5,15 @@
 //! of an input folds as if it had been written there.
 //! Afterwards: the old roots are still valid; nothing is ever removed from a graph.
 
-use std::collections::HashMap;
-
 use super::dag::Dag;
+use super::hash::Map;
 use super::node::{InputId, Node, NodeId};
 
 impl Dag {
     /// The roots with every input for which `replace` gives a node replaced by that node,
     /// also inside reductions. `replace` is asked once for each input.
     pub fn substitute(&mut self, roots: &[NodeId], mut replace: impl FnMut(InputId) -> Option<NodeId>) -> Vec<NodeId> {
-        let mut images: HashMap<NodeId, NodeId> = HashMap::new(); // Looked up, never iterated.
+        let mut images: Map<NodeId, NodeId> = Map::default();
         for id in self.schedule(roots) {
             let node = self.node(id);
             let image = match node {
@@ -39,7 +38,7 @@ impl Dag {
         roots: &[NodeId],
         mut map_input: impl FnMut(&mut Self, InputId) -> NodeId,
     ) -> Vec<NodeId> {
-        let mut images: HashMap<NodeId, NodeId> = HashMap::new(); // Looked up, never iterated.
+        let mut images: Map<NodeId, NodeId> = Map::default();
         for id in from.schedule(roots) {
             let image = match from.node(id) {
                 Node::Input(input) => map_input(self, *input),
@@ -51,7 +50,7 @@ impl Dag {
     }
 
     /// Makes a node again, with other operands.
-    fn rebuild(&mut self, node: &Node, image: impl Fn(NodeId) -> NodeId) -> NodeId {
+    pub fn rebuild(&mut self, node: &Node, image: impl Fn(NodeId) -> NodeId) -> NodeId {
         match node {
             Node::Const(number) => self.constant(number.value()),
             Node::Input(input) => self.input(*input),

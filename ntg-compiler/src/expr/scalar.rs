@@ -59,7 +59,8 @@ impl Scalar for f64 {
             Binary::Mul => a * b,
             Binary::Div => a / b,
             Binary::Pow => a.powf(b),
-            Binary::Atan2 => a.atan2(b),
+            // Adding zero turns -0.0 into 0.0: the sign of a zero must not turn the angle around.
+            Binary::Atan2 => (a + 0.0).atan2(b + 0.0),
             Binary::Hypot => a.hypot(b),
             // The test for NaN lets one on either side through instead of hiding it.
             Binary::Min => {

@@ -17,6 +17,9 @@ use super::dag::Dag;
 use super::node::{Binary, Fold, Node, NodeId, Unary};
 use super::scalar::Scalar;
 
+/// Larger exponents are left to the general power, whose error does not grow with them.
+const MAX_INTEGER_EXPONENT: f64 = 1024.0;
+
 impl Dag {
     /// An operation on one node.
     pub fn unary(&mut self, op: Unary, x: NodeId) -> NodeId {
@@ -259,7 +262,7 @@ impl Dag {
             let root = self.sqrt(x);
             return Some(if exponent < 0.0 { self.powi(root, -1) } else { root });
         }
-        let is_integer = exponent.fract() == 0.0 && exponent.abs() < f64::from(i32::MAX);
+        let is_integer = exponent.fract() == 0.0 && exponent.abs() <= MAX_INTEGER_EXPONENT;
         #[expect(clippy::cast_possible_truncation, reason = "an integer whose magnitude was just compared")]
         is_integer.then(|| self.powi(x, exponent as i32))
     }
