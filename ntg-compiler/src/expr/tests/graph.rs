@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::recipe::{INPUTS, point, tame, wild};
 use super::{inputs, value};
-use crate::expr::{Binary, Dag, Fold, InputId, Node, NodeId, Unary, degree, eval, forward, gradient, hessian};
+use crate::expr::{Binary, Dag, Degree, Fold, InputId, Node, NodeId, degree, eval, forward, gradient, hessian};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
@@ -131,25 +131,37 @@ fn substitution_reaches_into_reductions() {
     assert_eq!(dag.schedule_outside(&[total]), vec![total], "bodies are not computed outside");
 }
 
+/// `x0 + sin(0.1 x1) + sin(1.1 x1) + ...`, added one after the other.
+fn long_sum(dag: &mut Dag, x: &[NodeId], terms: u32) -> NodeId {
+    (0..terms).fold(x[0], |sum, k| {
+        let step = dag.constant(f64::from(k) + 0.1);
+        let scaled = dag.mul(step, x[1]);
+        let wave = dag.sin(scaled);
+        dag.add(sum, wave)
+    })
+}
+
 #[test]
 fn a_sum_of_200_000_terms_needs_no_stack() {
     let mut dag = Dag::new();
     let x = inputs(&mut dag, 3);
-    let mut sum = x[0];
-    for k in 0..200_000 {
-        let step = dag.constant(f64::from(k) + 0.1);
-        let scaled = dag.mul(step, x[1]);
-        let wave = dag.unary(Unary::Sin, scaled);
-        sum = dag.add(sum, wave);
-    }
-    let wrt = [InputId(0), InputId(1)];
-    let slopes = gradient(&mut dag, sum, &wrt).expect("no reductions");
+    let sum = long_sum(&mut dag, &x, 200_000);
+    let slopes = gradient(&mut dag, sum, &[InputId(0), InputId(1)]).expect("no reductions");
     assert!(dag.is(slopes[0], 1.0));
     assert!(eval(&dag, &slopes, |_| 0.5, |_, _, _| f64::NAN).is_ok_and(|found| found[1].is_finite()));
-    assert_eq!(hessian(&mut dag, &[(x[2], sum)], &wrt).expect("no reductions").len(), 1);
     let along = forward(&mut dag, sum, |input| (input.0 == 1).then_some(x[2])).expect("no products");
     assert_eq!(dag.inputs_of(&[along]), vec![InputId(1), InputId(2)]);
     assert_eq!(dag.substitute(&[sum], |_| None), vec![sum]);
     assert_eq!(Dag::new().transplant(&dag, &[sum], |dag, input| dag.input(input)).len(), 1);
-    assert_eq!(degree(&dag, sum, |_| false), crate::expr::Degree::Constant);
+    assert_eq!(degree(&dag, sum, |_| false), Degree::Constant);
+}
+
+#[test]
+fn the_hessian_of_a_long_sum_needs_no_stack() {
+    let mut dag = Dag::new();
+    let x = inputs(&mut dag, 3);
+    // Deep enough to exhaust the stack of a test if a pass recursed.
+    let sum = long_sum(&mut dag, &x, 30_000);
+    let entries = hessian(&mut dag, &[(x[2], sum)], &[InputId(0), InputId(1)]).expect("no reductions");
+    assert_eq!(entries.iter().map(|entry| (entry.row, entry.column)).collect::<Vec<_>>(), vec![(1, 1)]);
 }
