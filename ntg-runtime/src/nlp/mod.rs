@@ -12,6 +12,17 @@
 //! dense and exact; `map` takes them to the variables of the program. A method may use the points
 //! (convexify each, eliminate each, order by time) because the program has not forgotten them.
 
+mod assemble;
+mod csc;
+pub mod kkt;
+mod scales;
+mod structure;
+
+pub use assemble::Assembly;
+pub use csc::Csc;
+pub use scales::Scales;
+pub use structure::Pattern;
+
 use ntg_structure::{Degree, Place};
 
 /// What becomes of one row of one element.

@@ -1,0 +1,122 @@
+//! How far a point is from a solution, from the program's own data (docs/maths.md, section 6).
+//!
+//! Every method ends by this test and by no other; a sub-solver's opinion does not count.
+//!
+//! ```text
+//! primal           max over rows and variables of the violation of their bounds
+//! dual             max over variables of | f' - J^T lambda - mu |
+//! complementarity  max over bounds of  max(multiplier, 0) * distance to the bound
+//! ```
+//!
+//! A positive multiplier belongs to the lower bound, a negative one to the upper bound. A multiplier
+//! that belongs to no bound counts as dual residual, a row's by its own size.
+
+use super::{Csc, Limits, Scales};
+use crate::status::{Residual, Residuals};
+
+/// Where the mean size of the multipliers exceeds this, dual residuals are measured relative to it.
+pub const LARGE_MULTIPLIER: f64 = 100.0;
+
+/// A point, its multipliers, and the first derivatives there, all in the program's own units.
+#[derive(Clone, Copy, Debug)]
+pub struct Point<'a> {
+    /// The variables.
+    pub x: &'a [f64],
+    /// The rows.
+    pub rows: &'a [f64],
+    /// The gradient of the objective.
+    pub gradient: &'a [f64],
+    /// The Jacobian of the rows.
+    pub jacobian: &'a Csc,
+    /// Multipliers of the rows: the derivative of the optimal objective by the active bound.
+    pub row_multipliers: &'a [f64],
+    /// Multipliers of the bounds of the variables.
+    pub bound_multipliers: &'a [f64],
+}
+
+/// The violation of `lower <= value <= upper`.
+pub fn violation(value: f64, lower: f64, upper: f64) -> f64 {
+    (lower - value).max(value - upper).max(0.0)
+}
+
+/// The product of a multiplier and the distance to its bound; none where that bound is infinite.
+fn complementarity(multiplier: f64, value: f64, lower: f64, upper: f64) -> Option<f64> {
+    let distance = if multiplier > 0.0 { value - lower } else { upper - value };
+    if multiplier == 0.0 {
+        Some(0.0)
+    } else if distance.is_finite() {
+        Some((multiplier * distance).abs())
+    } else {
+        None
+    }
+}
+
+/// The residuals (6.2) to (6.4) of a point. Allocates nothing.
+pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residuals {
+    let mut found = Residuals::default();
+    for (j, &size) in scales.variables.iter().enumerate() {
+        let mut dual = point.gradient[j] - point.bound_multipliers[j];
+        dual -= point.jacobian.column(j).map(|(i, a)| a * point.row_multipliers[i]).sum::<f64>();
+        let (value, mu) = (point.x[j], point.bound_multipliers[j]);
+        found.primal(violation(value, limits.lower[j], limits.upper[j]), 1.0 / size);
+        found.dual(dual, scales.objective * size);
+        match complementarity(mu, value, limits.lower[j], limits.upper[j]) {
+            Some(product) => found.complementarity(product, scales.objective),
+            None => found.dual(mu, scales.objective * size),
+        }
+    }
+    for (i, &factor) in scales.rows.iter().enumerate() {
+        let (value, lambda) = (point.rows[i], point.row_multipliers[i]);
+        found.primal(violation(value, limits.row_lower[i], limits.row_upper[i]), factor);
+        match complementarity(lambda, value, limits.row_lower[i], limits.row_upper[i]) {
+            Some(product) => found.complementarity(product, scales.objective),
+            None => found.dual(lambda, scales.objective / factor),
+        }
+    }
+    let relax = relaxation(scales, point);
+    found.scaled.dual /= relax;
+    found.scaled.complementarity /= relax;
+    found
+}
+
+/// Equation (6.5): 1, or more where the multipliers are large on average.
+fn relaxation(scales: &Scales, point: &Point<'_>) -> f64 {
+    let rows = point.row_multipliers.iter().zip(&scales.rows).map(|(lambda, factor)| (lambda / factor).abs());
+    let bounds = point.bound_multipliers.iter().zip(&scales.variables).map(|(mu, size)| (mu * size).abs());
+    let (sum, count) = rows.chain(bounds).fold((0.0, 0.0), |(sum, count), size| {
+        if size > 0.0 { (sum + size, count + 1.0) } else { (sum, count) }
+    });
+    let mean = if count > 0.0 { scales.objective * sum / count } else { 0.0 };
+    (mean / LARGE_MULTIPLIER).max(1.0)
+}
+
+impl Residuals {
+    /// Takes in one violation, in the program's units.
+    fn primal(&mut self, size: f64, factor: f64) {
+        grow(&mut self.unscaled.primal, &mut self.scaled.primal, size, factor);
+    }
+
+    /// Takes in one component of the Lagrangian's gradient.
+    fn dual(&mut self, size: f64, factor: f64) {
+        grow(&mut self.unscaled.dual, &mut self.scaled.dual, size, factor);
+    }
+
+    /// Takes in one product of multiplier and distance.
+    fn complementarity(&mut self, size: f64, factor: f64) {
+        grow(&mut self.unscaled.complementarity, &mut self.scaled.complementarity, size, factor);
+    }
+}
+
+/// Both maxima; a number that is not one stays visible as infinity.
+fn grow(unscaled: &mut f64, scaled: &mut f64, size: f64, factor: f64) {
+    let size = if size.is_nan() { f64::INFINITY } else { size.abs() };
+    *unscaled = unscaled.max(size);
+    *scaled = scaled.max(size * factor);
+}
+
+impl Residual {
+    /// The largest of the three.
+    pub fn largest(&self) -> f64 {
+        self.primal.max(self.dual).max(self.complementarity)
+    }
+}

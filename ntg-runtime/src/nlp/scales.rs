@@ -1,0 +1,71 @@
+//! Typical sizes of variables, rows and objective (docs/maths.md, section 5).
+//!
+//! Takes the sizes that the transcription knows and the first derivatives at the start; gives
+//! factors with which every variable, row and the objective become comparable to 1.
+
+use super::{Csc, Limits};
+use crate::settings::Scaling;
+
+/// Slopes of scaled rows and of the scaled objective larger than this are scaled down, as in
+/// A. Wächter and L. T. Biegler, *Mathematical Programming* 106 (2006), section 3.8.
+const LARGEST_SLOPE: f64 = 100.0;
+/// An objective whose slopes are all smaller than this is scaled up, so that the tolerance on the
+/// gradient still asks for something.
+const SMALLEST_SLOPE: f64 = 1e-2;
+/// No factor leaves the range from this to its reciprocal.
+const SMALLEST_FACTOR: f64 = 1e-8;
+
+/// Scaled quantities are `x / variables`, `rows * c` and `objective * f`, entry by entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scales {
+    /// A typical size of each variable.
+    pub variables: Vec<f64>,
+    /// The factor of each row.
+    pub rows: Vec<f64>,
+    /// The factor of the objective.
+    pub objective: f64,
+}
+
+impl Scales {
+    /// The scales of a program, equations (5.1) to (5.3): `gradient`, `jacobian` and the upper
+    /// triangle of the objective's `curvature` are those at the start.
+    pub fn new(limits: &Limits, scaling: Scaling, gradient: &[f64], jacobian: &Csc, curvature: &Csc) -> Self {
+        let variables: Vec<f64> = limits.scale.iter().map(|&size| positive(size)).collect();
+        if scaling == Scaling::Off {
+            return Self { variables, rows: vec![1.0; limits.row_lower.len()], objective: 1.0 };
+        }
+        let mut rows: Vec<f64> = limits.row_scale.iter().map(|&size| 1.0 / positive(size)).collect();
+        let mut slope = vec![0.0_f64; rows.len()];
+        for (j, size) in variables.iter().enumerate() {
+            for (i, a) in jacobian.column(j) {
+                slope[i] = slope[i].max((rows[i] * a * size).abs());
+            }
+        }
+        for (factor, slope) in rows.iter_mut().zip(&slope) {
+            if *slope > LARGEST_SLOPE {
+                *factor *= (LARGEST_SLOPE / slope).max(SMALLEST_FACTOR);
+            }
+        }
+        let slope = gradient.iter().zip(&variables).map(|(g, size)| (g * size).abs()).fold(0.0, f64::max);
+        let bend = (0..variables.len())
+            .filter_map(|j| curvature.position(j, j).map(|at| curvature.value[at].abs() * variables[j].powi(2)))
+            .fold(0.0, f64::max);
+        Self { variables, rows, objective: objective_factor(slope.max(bend)) }
+    }
+}
+
+/// A size that may divide.
+fn positive(size: f64) -> f64 {
+    if size.is_finite() && size > 0.0 { size } else { 1.0 }
+}
+
+/// Brings the largest slope of the objective into the range from 0.01 to 100.
+fn objective_factor(slope: f64) -> f64 {
+    if slope > LARGEST_SLOPE {
+        (LARGEST_SLOPE / slope).max(SMALLEST_FACTOR)
+    } else if slope > 0.0 && slope < SMALLEST_SLOPE {
+        (SMALLEST_SLOPE / slope).min(1.0 / SMALLEST_FACTOR)
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,89 @@
+//! Elastic mode: what to do where the subproblem has no solution (docs/maths.md, section 6, (6.13)).
+//!
+//! Rows may be violated at a price. The price rises until the step reduces the violation, as far as
+//! it can be reduced at all, by a fair share; so the step descends on the merit function with that
+//! price. Where even the highest price buys no reduction, the point is a stationary point of the
+//! violation: the program is infeasible there.
+//!
+//! Reference: R. H. Byrd, J. Nocedal and R. A. Waltz, *Optimization Methods and Software* 23 (2008).
+
+use super::clarabel::Verdict;
+use super::globalise::linearised_violation;
+use super::step::Step;
+use super::subproblem::{Model, Subproblem};
+
+/// The first price, in scaled objective per scaled row.
+const FIRST_PRICE: f64 = 100.0;
+/// The highest price, relative to the gradient.
+const HIGHEST_PRICE: f64 = 1e7;
+/// Factor between prices.
+const RISE: f64 = 10.0;
+/// The share of the violation that a step must remove for its price to be high enough.
+const FAIR: f64 = 0.5;
+/// A share of the violation so small that removing it is no progress.
+const NOTHING: f64 = 1e-6;
+
+/// The elastic subproblem and its price.
+pub(super) struct Elastic {
+    subproblem: Subproblem,
+    price: f64,
+    buffer: Vec<f64>,
+}
+
+/// What elastic mode found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Found {
+    /// A step.
+    Step {
+        /// Its price: the penalty by which it is judged.
+        price: f64,
+        /// Whether it satisfies the linearised rows, so that ordinary mode may be tried again.
+        feasible: bool,
+    },
+    /// The violation cannot be reduced from here.
+    Stationary,
+    /// The subproblem could not be solved.
+    Failed,
+}
+
+impl Elastic {
+    pub(super) fn new(model: &Model<'_>) -> Self {
+        let subproblem = Subproblem::new(model.limits, model.jacobian, model.hessian, true);
+        Self { subproblem, price: FIRST_PRICE, buffer: vec![0.0; model.rows.len()] }
+    }
+
+    /// Finds a step for a model with this `violation`; counts subproblems in `qps`.
+    pub(super) fn step(&mut self, model: &Model<'_>, violation: f64, step: &mut Step, qps: &mut usize) -> Found {
+        let slope = model.gradient.iter().fold(1.0_f64, |size, g| size.max(g.abs()));
+        let mut best = None;
+        loop {
+            *qps += 1;
+            let priced = Model { penalty: self.price, ..*model };
+            if self.subproblem.solve(&priced, step) != Verdict::Solved {
+                return best.unwrap_or(Found::Failed);
+            }
+            let linearised =
+                linearised_violation(model.limits, model.rows, model.jacobian, &step.d, &mut self.buffer);
+            let removed = violation - linearised;
+            let found = Found::Step { price: self.price, feasible: linearised <= NOTHING * violation };
+            if removed >= FAIR * violation {
+                return found;
+            }
+            if self.price >= HIGHEST_PRICE * slope {
+                return if removed > NOTHING * violation { found } else { Found::Stationary };
+            }
+            best = Some(found);
+            self.price *= RISE;
+        }
+    }
+
+    /// Solves again at the same price for other rows.
+    pub(super) fn correct(&mut self, model: &Model<'_>, step: &mut Step) -> bool {
+        self.subproblem.solve(&Model { penalty: self.price, ..*model }, step) == Verdict::Solved
+    }
+
+    /// Forgets the price, on leaving elastic mode.
+    pub(super) fn reset(&mut self) {
+        self.price = FIRST_PRICE;
+    }
+}

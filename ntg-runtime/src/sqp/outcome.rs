@@ -1,0 +1,56 @@
+//! What a solve gives back.
+
+use crate::status::{Residuals, Status};
+
+/// What happened in one iteration.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct IterationRecord {
+    /// The minimised objective before the step.
+    pub objective: f64,
+    /// The residuals before the step.
+    pub residuals: Residuals,
+    /// Length of the step as a fraction of the one proposed; 0 in the last record.
+    pub step: f64,
+    /// Whether the subproblem was solved in elastic mode.
+    pub elastic: bool,
+    /// Whether the subproblem held the exact Hessian.
+    pub exact: bool,
+    /// Whether the accepted step holds a second-order correction.
+    pub corrected: bool,
+}
+
+/// Multipliers from which a solve may start.
+#[derive(Clone, Copy, Debug)]
+pub struct Multipliers<'a> {
+    /// One a row, in the sign convention of [`Outcome::row_multipliers`].
+    pub rows: &'a [f64],
+    /// One a variable, in the sign convention of [`Outcome::bound_multipliers`].
+    pub bounds: &'a [f64],
+}
+
+/// How a solve ended.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Why it ended.
+    pub status: Status,
+    /// The last accepted point, within the bounds of the variables.
+    pub x: Vec<f64>,
+    /// One a row: `d(optimal minimised objective) / d(bound)` for the bound that is active. Positive
+    /// at a lower bound, negative at an upper bound (raising an upper bound cannot raise the
+    /// minimum), of either sign for an equality, 0 where no bound is active.
+    pub row_multipliers: Vec<f64>,
+    /// The same for the bounds of the variables.
+    pub bound_multipliers: Vec<f64>,
+    /// The minimised objective at `x`.
+    pub objective: f64,
+    /// How far `x` and the multipliers are from a solution.
+    pub residuals: Residuals,
+    /// Steps taken.
+    pub iterations: usize,
+    /// Quadratic programs solved.
+    pub qps: usize,
+    /// One record an iteration, and one for the last point.
+    pub history: Vec<IterationRecord>,
+    /// Wall-clock time.
+    pub seconds: f64,
+}

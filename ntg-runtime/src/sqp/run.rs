@@ -1,0 +1,360 @@
+//! The state of a solve, and the steps of the loop that make proposals and decide about the end.
+//! The search along a proposal is in `search.rs`.
+
+use super::clarabel::Verdict;
+use super::elastic::{Elastic, Found};
+use super::exact::ExactStep;
+use super::globalise::Merit;
+use super::outcome::{IterationRecord, Multipliers, Outcome};
+use super::scaled::Program;
+use super::search::Trial;
+use super::step::Step;
+use super::subproblem::{Model, Subproblem};
+use crate::nlp::{Csc, Limits, Nlp, NotFinite, kkt};
+use crate::settings::{Control, Progress, Settings};
+use crate::status::{Bounded, Status, Violation};
+use std::time::Instant;
+
+/// The smallest proximal term: it bounds the step where the clipped Hessian is singular.
+const LEAST_PROXIMAL: f64 = 1e-8;
+/// The proximal term after a first failure.
+const FIRST_PROXIMAL: f64 = 1e-3;
+/// The largest proximal term: steps are then shorter than the tolerances ask for.
+const LARGEST_PROXIMAL: f64 = 1e8;
+/// Factor by which the proximal term grows after a failure and shrinks after a success.
+const PROXIMAL_STEP: f64 = 10.0;
+/// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
+const UNBOUNDED: f64 = 1e10;
+/// A step cut to this fraction was a bad proposal.
+const SHORT: f64 = 1.0 / 64.0;
+/// A full step halved this often has no effect any more.
+const HALVINGS: usize = 40;
+/// Most history records for which room is made at once.
+const HISTORY: usize = 4096;
+
+/// Everything that lives from one iteration to the next. All vectors are scaled.
+pub(super) struct Run<'a, N: Nlp> {
+    pub(super) settings: &'a Settings,
+    pub(super) program: Program<'a, N>,
+    pub(super) x: Vec<f64>,
+    previous: Vec<f64>,
+    row_multipliers: Vec<f64>,
+    bound_multipliers: Vec<f64>,
+    /// The subproblem's proposal.
+    pub(super) convex: Step,
+    /// Newton's proposal.
+    pub(super) newton: Step,
+    /// Whether `newton` is the proposal that is searched.
+    pub(super) use_newton: bool,
+    /// A step corrected for curvature.
+    pub(super) corrected: Step,
+    /// The active bounds of the subproblem before this one.
+    settled: Step,
+    pub(super) subproblem: Subproblem,
+    pub(super) elastic: Option<Elastic>,
+    pub(super) exact: ExactStep,
+    pub(super) merit: Merit,
+    pub(super) trial: Trial,
+    /// The price of the present elastic step; none in ordinary mode.
+    pub(super) price: Option<f64>,
+    /// Whether the next iteration begins in elastic mode.
+    stretched: bool,
+    /// Whether the multipliers are still those of the start.
+    untouched: bool,
+    repeat_newton: bool,
+    pub(super) proximal: f64,
+    record: IterationRecord,
+    history: Vec<IterationRecord>,
+    iterations: usize,
+    pub(super) qps: usize,
+    begin: Instant,
+}
+
+impl<'a, N: Nlp> Run<'a, N> {
+    /// Evaluates the program at `start`, which lies within the bounds.
+    pub(super) fn new(
+        nlp: &'a N,
+        start: &[f64],
+        from: Option<Multipliers<'_>>,
+        settings: &'a Settings,
+        begin: Instant,
+    ) -> Result<Self, NotFinite> {
+        let mut program = Program::new(nlp, start, settings.scaling)?;
+        let (n, m) = (nlp.variables(), nlp.rows());
+        let x = program.scale(start);
+        let from = from.filter(|from| from.rows.len() == m && from.bounds.len() == n);
+        let (rows, bounds) = match &from {
+            Some(from) => program.scale_multipliers(from.rows, from.bounds),
+            None => (vec![0.0; m], vec![0.0; n]),
+        };
+        program.derivatives(&x, &rows)?;
+        Ok(Self {
+            settings,
+            previous: x.clone(),
+            x,
+            row_multipliers: rows,
+            bound_multipliers: bounds,
+            convex: Step::new(n, m),
+            newton: Step::new(n, m),
+            use_newton: false,
+            corrected: Step::new(n, m),
+            settled: Step::new(n, m),
+            subproblem: Subproblem::new(&program.limits, &program.jacobian, &program.convex, false),
+            elastic: None,
+            exact: ExactStep::new(&program.jacobian, &program.exact),
+            merit: Merit::new(),
+            trial: Trial::new(n, m),
+            price: None,
+            stretched: false,
+            untouched: from.is_none(),
+            repeat_newton: false,
+            proximal: LEAST_PROXIMAL,
+            record: IterationRecord::default(),
+            history: Vec::with_capacity(settings.max_iterations.min(HISTORY) + 1),
+            iterations: 0,
+            qps: 0,
+            begin,
+            program,
+        })
+    }
+
+    /// Computes the residuals of the present point, (6.2) to (6.5).
+    pub(super) fn measure(&mut self) {
+        self.record = IterationRecord {
+            objective: self.program.objective / self.program.scales.objective,
+            residuals: self.program.residuals(&self.row_multipliers, &self.bound_multipliers),
+            ..IterationRecord::default()
+        };
+    }
+
+    /// Whether the solve is over, and why.
+    pub(super) fn stops(&mut self) -> Option<Status> {
+        let found = self.record.residuals.scaled;
+        let tolerance = self.settings.tolerance;
+        let feasible = found.primal <= self.settings.constraint_tolerance;
+        if feasible && found.dual <= tolerance && found.complementarity <= tolerance {
+            return Some(Status::Solved);
+        }
+        let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        if self.program.objective < -UNBOUNDED || largest > UNBOUNDED {
+            return Some(Status::Unbounded);
+        }
+        if let Some(watch) = &self.settings.on_iteration {
+            let progress = Progress {
+                iteration: self.iterations,
+                objective: self.record.objective,
+                primal: found.primal,
+                dual: found.dual,
+                step: self.history.last().map_or(0.0, |last| last.step),
+                seconds: self.begin.elapsed().as_secs_f64(),
+            };
+            if watch(&progress) == Control::Cancel {
+                return Some(Status::Cancelled);
+            }
+        }
+        if self.settings.time_limit.is_some_and(|limit| self.begin.elapsed() >= limit) {
+            return Some(Status::TimeLimit);
+        }
+        (self.iterations >= self.settings.max_iterations).then_some(Status::IterationLimit)
+    }
+
+    /// Newton's step on the active bounds of the last one, if that was taken in full.
+    pub(super) fn newton_again(&mut self) -> bool {
+        self.use_newton = false;
+        std::mem::take(&mut self.repeat_newton) && self.solve_newton()
+    }
+
+    /// Newton's step on the active bounds of the subproblem, once these have settled.
+    pub(super) fn newton_from_subproblem(&mut self) -> bool {
+        let settled = self.convex.same_active(&self.settled);
+        self.settled.copy_from(&self.convex);
+        if !self.settings.exact_hessian || self.price.is_some() || !settled {
+            return false;
+        }
+        self.newton.copy_from(&self.convex);
+        self.solve_newton()
+    }
+
+    fn solve_newton(&mut self) -> bool {
+        let (model, exact) = (model(&self.program, &self.x, &self.program.exact, 0.0), &mut self.exact);
+        self.use_newton = exact.solve(&model, &mut self.newton);
+        self.use_newton
+    }
+
+    /// Solves the convex subproblem, in elastic form where the ordinary one has no solution; a
+    /// status if that is the end.
+    pub(super) fn subproblem(&mut self) -> Option<Status> {
+        self.use_newton = false;
+        while !self.stretched {
+            let model = model(&self.program, &self.x, &self.program.convex, self.proximal);
+            self.qps += 1;
+            match self.subproblem.solve(&model, &mut self.convex) {
+                Verdict::Solved => {
+                    self.price = None;
+                    return None;
+                }
+                Verdict::Unbounded if self.proximal < 1.0 => self.grow_proximal(),
+                _ => break,
+            }
+        }
+        self.elastic_subproblem()
+    }
+
+    fn elastic_subproblem(&mut self) -> Option<Status> {
+        let model = model(&self.program, &self.x, &self.program.convex, self.proximal);
+        let violation = super::globalise::violation(&self.program.limits, &self.program.rows);
+        let elastic = self.elastic.get_or_insert_with(|| Elastic::new(&model));
+        match elastic.step(&model, violation, &mut self.convex, &mut self.qps) {
+            Found::Step { price, feasible } => {
+                self.price = Some(price);
+                self.stretched = !feasible;
+                if feasible {
+                    elastic.reset();
+                }
+                None
+            }
+            Found::Stationary if self.record.residuals.scaled.primal > self.settings.constraint_tolerance => {
+                Some(Status::Infeasible { rows: self.violations() })
+            }
+            Found::Stationary | Found::Failed => {
+                self.stretched = false;
+                if self.proximal >= 1.0 {
+                    return Some(Status::SubproblemFailed);
+                }
+                self.grow_proximal();
+                self.subproblem()
+            }
+        }
+    }
+
+    /// After a search that found nothing: shorter steps, or the end.
+    pub(super) fn shorten(&mut self) -> Option<Status> {
+        self.grow_proximal();
+        self.stretch();
+        if self.proximal < LARGEST_PROXIMAL {
+            return None;
+        }
+        Some(match self.trial.failure.take() {
+            Some(what) => Status::NotFinite(what),
+            None => Status::StepTooSmall,
+        })
+    }
+
+    /// Begins the next iteration in elastic mode if rows are violated: linearised rows that can be
+    /// satisfied only by steps that lead nowhere are as bad as rows that cannot.
+    fn stretch(&mut self) {
+        self.stretched |= self.record.residuals.scaled.primal > self.settings.constraint_tolerance;
+    }
+
+    fn grow_proximal(&mut self) {
+        self.proximal = (PROXIMAL_STEP * PROXIMAL_STEP * self.proximal).max(FIRST_PROXIMAL);
+    }
+
+    /// Moves to the accepted trial point and blends the multipliers.
+    ///
+    /// # Errors
+    /// The derivatives are not finite on the whole way there.
+    pub(super) fn advance(&mut self) -> Result<(), NotFinite> {
+        let proposal = if self.use_newton { &self.newton } else { &self.convex };
+        let alpha = self.trial.alpha;
+        let blend = if self.untouched || self.price.is_some() { 1.0 } else { alpha };
+        for (lambda, new) in self.row_multipliers.iter_mut().zip(&proposal.row_multipliers) {
+            *lambda += blend * (new - *lambda);
+        }
+        for (mu, new) in self.bound_multipliers.iter_mut().zip(&proposal.bound_multipliers) {
+            *mu += blend * (new - *mu);
+        }
+        // Multipliers of the elastic subproblem count prices; the next step replaces them at once.
+        self.untouched = self.price.is_some();
+        self.repeat_newton = self.use_newton;
+        self.record.step = alpha;
+        self.record.elastic = self.price.is_some();
+        self.record.exact = self.use_newton;
+        self.record.corrected = self.trial.corrected;
+        self.history.push(self.record);
+        self.iterations += 1;
+        if alpha <= SHORT {
+            self.stretch();
+        }
+        if alpha >= 1.0 {
+            self.proximal = (self.proximal / PROXIMAL_STEP).max(LEAST_PROXIMAL);
+        }
+        self.previous.copy_from_slice(&self.x);
+        self.x.copy_from_slice(&self.trial.x);
+        self.differentiate()
+    }
+
+    /// Derivatives at the new point, or nearer to the last one where they are not finite.
+    fn differentiate(&mut self) -> Result<(), NotFinite> {
+        let mut result = self.program.derivatives(&self.x, &self.row_multipliers);
+        for _ in 0..HALVINGS {
+            if result.is_ok() {
+                break;
+            }
+            self.repeat_newton = false;
+            for (x, before) in self.x.iter_mut().zip(&self.previous) {
+                *x = 0.5 * (*x + before);
+            }
+            result = self.program.derivatives(&self.x, &self.row_multipliers);
+        }
+        result
+    }
+
+    /// What is violated at the present point, the worst first.
+    fn violations(&self) -> Vec<Violation> {
+        let nlp = self.program.nlp;
+        let tolerance = self.settings.constraint_tolerance;
+        let limits: &Limits = &self.program.limits;
+        let mut found: Vec<(f64, Violation)> = Vec::new();
+        for (i, &scaled) in self.program.rows.iter().enumerate() {
+            let size = kkt::violation(scaled, limits.row_lower[i], limits.row_upper[i]);
+            if size > tolerance {
+                let value = scaled / self.program.scales.rows[i];
+                let bounds = nlp.limits();
+                let bound = if scaled < limits.row_lower[i] { bounds.row_lower[i] } else { bounds.row_upper[i] };
+                let (of, name, violation) = (Bounded::Row(i), nlp.row_name(i), (value - bound).abs());
+                found.push((size, Violation { of, name, value, bound, violation }));
+            }
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().map(|(_, violation)| violation).collect()
+    }
+
+    /// Ends the solve.
+    pub(super) fn outcome(mut self, status: Status) -> Outcome {
+        self.history.push(self.record);
+        let (row_multipliers, bound_multipliers) =
+            self.program.multipliers(&self.row_multipliers, &self.bound_multipliers);
+        Outcome {
+            status,
+            x: self.program.unscale(&self.x),
+            row_multipliers,
+            bound_multipliers,
+            objective: self.record.objective,
+            residuals: self.record.residuals,
+            iterations: self.iterations,
+            qps: self.qps,
+            history: self.history,
+            seconds: self.begin.elapsed().as_secs_f64(),
+        }
+    }
+}
+
+/// The subproblem's data at the present point, with one of the Hessians.
+pub(super) fn model<'m, N: Nlp>(
+    program: &'m Program<'_, N>,
+    x: &'m [f64],
+    hessian: &'m Csc,
+    proximal: f64,
+) -> Model<'m> {
+    Model {
+        limits: &program.limits,
+        x,
+        rows: &program.rows,
+        gradient: &program.gradient,
+        jacobian: &program.jacobian,
+        hessian,
+        proximal,
+        penalty: 0.0,
+    }
+}
