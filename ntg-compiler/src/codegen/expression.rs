@@ -1,0 +1,167 @@
+//! One node as a Rust expression.
+//!
+//! Takes a node of a kernel's graph, gives tokens that compute it with exactly its operations in
+//! exactly its order: Rust neither reorders nor contracts floating-point arithmetic, so
+//! parentheses are all that is needed, and only those that are needed are written.
+//!
+//! Everything beyond `+ - * /` is a call of the runtime's `math`, which every back end shares.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::data::{ToRust, float};
+use crate::expr::{Binary, Dag, Node, NodeId, Unary};
+
+/// How tightly an expression holds together, the loosest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    /// `a + b`, `a - b`.
+    Sum,
+    /// `a * b`, `a / b`.
+    Product,
+    /// `-a`.
+    Negation,
+    /// A name, a literal, a call.
+    Atom,
+}
+
+/// An expression and how tightly it holds together.
+struct Expression {
+    tokens: TokenStream,
+    level: Level,
+}
+
+/// Says what nodes that are computed elsewhere are called.
+pub(super) trait Names {
+    /// The name of a node that is not to be written out in place.
+    fn name(&self, id: NodeId) -> Option<&Ident>;
+}
+
+/// The expression of a node; operands without a name are written out in place.
+pub(super) fn write(dag: &Dag, id: NodeId, names: &impl Names) -> TokenStream {
+    expression(dag, id, names).tokens
+}
+
+/// A node itself. Recursion ends at named operands, a few operations below.
+fn expression(dag: &Dag, id: NodeId, names: &impl Names) -> Expression {
+    match dag.node(id) {
+        Node::Const(number) => constant(number.value()),
+        Node::Unary(Unary::Neg, x) => {
+            let x = operand(dag, *x, names).at_least(Level::Negation, true);
+            Expression { tokens: quote! { -#x }, level: Level::Negation }
+        }
+        Node::Unary(op, x) => call(unary(*op), &[*x], dag, names),
+        Node::Binary(op, a, b) => match arithmetic(*op) {
+            Some((mark, level)) => {
+                let a = operand(dag, *a, names).at_least(level, false);
+                let b = operand(dag, *b, names).at_least(level, true);
+                Expression { tokens: quote! { #a #mark #b }, level }
+            }
+            None => call(binary(*op), &[*a, *b], dag, names),
+        },
+        Node::Powi(x, n) => {
+            let x = operand(dag, *x, names).tokens;
+            let n = i64::from(*n).to_rust();
+            atom(quote! { math::powi(#x, #n) })
+        }
+        Node::Select { condition, then, otherwise } => call("select", &[*condition, *then, *otherwise], dag, names),
+        Node::Table { table, derivative, args } => {
+            let table = Literal::u32_unsuffixed(*table);
+            let orders = derivative.iter().map(|order| Literal::u8_unsuffixed(*order));
+            let args = args.iter().map(|x| operand(dag, *x, names).tokens);
+            atom(quote! { tables[#table].eval(&[#(#args),*], &[#(#orders),*]) })
+        }
+        // Inputs have names, and no kernel holds a reduction: its result is an input.
+        Node::Input(_) | Node::Reduce { .. } => atom(quote! { f64::NAN }),
+    }
+}
+
+/// An operand: its name, or the expression in its place.
+fn operand(dag: &Dag, id: NodeId, names: &impl Names) -> Expression {
+    match names.name(id) {
+        Some(name) => atom(quote! { #name }),
+        None => expression(dag, id, names),
+    }
+}
+
+impl Expression {
+    /// The tokens as an operand of an operation of this level, in parentheses unless they hold
+    /// together more tightly; on the left, where Rust groups equals by itself, as tightly is
+    /// enough.
+    fn at_least(self, level: Level, right: bool) -> TokenStream {
+        // A negation on the right would be legal, but `a - -b` is misread.
+        let bare = if right { self.level > level.max(Level::Negation) } else { self.level >= level };
+        let tokens = self.tokens;
+        if bare {
+            tokens
+        } else {
+            quote! { (#tokens) }
+        }
+    }
+}
+
+/// A number; negative ones hold together as negations do.
+fn constant(value: f64) -> Expression {
+    let level = if value < 0.0 && value.is_finite() { Level::Negation } else { Level::Atom };
+    Expression { tokens: float(value), level }
+}
+
+fn atom(tokens: TokenStream) -> Expression {
+    Expression { tokens, level: Level::Atom }
+}
+
+fn call(function: &str, args: &[NodeId], dag: &Dag, names: &impl Names) -> Expression {
+    let function = format_ident!("{function}");
+    let args = args.iter().map(|x| operand(dag, *x, names).tokens);
+    atom(quote! { math::#function(#(#args),*) })
+}
+
+/// The four operations that Rust writes with a mark.
+fn arithmetic(op: Binary) -> Option<(TokenStream, Level)> {
+    match op {
+        Binary::Add => Some((quote! { + }, Level::Sum)),
+        Binary::Sub => Some((quote! { - }, Level::Sum)),
+        Binary::Mul => Some((quote! { * }, Level::Product)),
+        Binary::Div => Some((quote! { / }, Level::Product)),
+        _ => None,
+    }
+}
+
+/// The runtime's name of an operation on one number.
+fn unary(op: Unary) -> &'static str {
+    match op {
+        Unary::Neg => "neg",
+        Unary::Sqrt => "sqrt",
+        Unary::Exp => "exp",
+        Unary::Log => "log",
+        Unary::Sin => "sin",
+        Unary::Cos => "cos",
+        Unary::Tan => "tan",
+        Unary::Asin => "asin",
+        Unary::Acos => "acos",
+        Unary::Atan => "atan",
+        Unary::Sinh => "sinh",
+        Unary::Cosh => "cosh",
+        Unary::Tanh => "tanh",
+        Unary::Abs => "abs",
+        Unary::Sign => "sign",
+        Unary::Logistic => "logistic",
+        Unary::Softplus => "softplus",
+    }
+}
+
+/// The runtime's name of an operation on two numbers.
+fn binary(op: Binary) -> &'static str {
+    match op {
+        Binary::Add => "add",
+        Binary::Sub => "sub",
+        Binary::Mul => "mul",
+        Binary::Div => "div",
+        Binary::Pow => "pow",
+        Binary::Atan2 => "atan2",
+        Binary::Hypot => "hypot",
+        Binary::Min => "min",
+        Binary::Max => "max",
+        Binary::LessEq => "less_eq",
+    }
+}

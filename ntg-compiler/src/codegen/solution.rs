@@ -1,0 +1,262 @@
+//! The typed solution: outputs are fields, everything else that has a name is a method.
+//!
+//! Takes a `Structure`, gives `VanDerPolSolution` and one such struct for each named agent and
+//! phase, nested as in the spec: `solution.x`, `solution.covert.x`, `solution.uav(1).x`.
+//! A member of a family is reached by a call, anything single by a field. All of them share the
+//! runtime's untyped solution and ask it by path; the paths are the spec's own.
+//!
+//! Fields are the user's names and one of ours that begins with `_`, as no name of a spec does.
+//! Among methods ours come first: a `let report` is reached as `report_()`.
+
+use ntg_structure::{Domain, Named, Structure, Unit, Variable};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote};
+
+use super::members::{self, Question};
+use super::names::{self, camel, ident_at};
+use super::parameters::{doc_lines, unit_in_words};
+use super::tree::{Scope, scopes};
+
+/// Methods that are ours.
+const OURS: [&str; 9] = ["objective", "times", "report", "untyped", "start", "end", "duration", "new", "clone"];
+
+/// `VanDerPolSolution`.
+pub(super) fn type_name(problem: &str) -> Ident {
+    format_ident!("{}Solution", names::ident(problem).to_string().trim_start_matches("r#"))
+}
+
+/// The problem's methods that solve it.
+pub(super) fn solve(structure: &Structure, name: &Ident) -> TokenStream {
+    let solution = type_name(&structure.name);
+    quote! {
+        impl #name {
+            /// Solves the problem from the guess of the spec.
+            ///
+            /// # Errors
+            /// The problem cannot be stated with these parameters and settings, or the solver
+            /// stopped without a solution; the error says why, and holds where it stopped.
+            pub fn solve(
+                &self,
+                settings: &::ntg::runtime::Settings,
+            ) -> ::core::result::Result<#solution, ::ntg::runtime::Error> {
+                ::ntg::runtime::solve(self, settings).map(#solution::new)
+            }
+
+            /// Solves the problem from a guess of the program: a route, an earlier solution, or
+            /// coefficients.
+            ///
+            /// # Errors
+            /// As `solve`; and the guess does not fit the problem.
+            pub fn solve_from(
+                &self,
+                guess: &::ntg::runtime::Guess,
+                settings: &::ntg::runtime::Settings,
+            ) -> ::core::result::Result<#solution, ::ntg::runtime::Error> {
+                ::ntg::runtime::solve_from(self, guess, settings).map(#solution::new)
+            }
+        }
+    }
+}
+
+/// The solution's struct, and those of the agents and phases within.
+pub(super) fn solution(structure: &Structure, place_of: &dyn Fn(&str) -> Span) -> TokenStream {
+    let mut types = names::Scope::with(&[]);
+    types.take(&structure.name, |_| false);
+    let own = type_name(&structure.name);
+    types.take(&own.to_string(), |_| false);
+    let writer = Writer { structure, place_of };
+
+    let mut items = vec![];
+    // A list of scopes still to be written, instead of a recursion.
+    let mut open = vec![(scopes(structure), own)];
+    while let Some((scope, name)) = open.pop() {
+        let children: Vec<Ident> = scope.children.iter().map(|child| writer.child_type(child, &mut types)).collect();
+        items.push(writer.scope(&scope, &name, &children));
+        open.extend(scope.children.into_iter().zip(children).rev());
+    }
+    items.into_iter().collect()
+}
+
+/// What every part of the solution needs.
+struct Writer<'a> {
+    structure: &'a Structure,
+    place_of: &'a dyn Fn(&str) -> Span,
+}
+
+impl Writer<'_> {
+    /// `LowObservableCovert` for the phase `covert` of the problem `LowObservable`.
+    fn child_type(&self, scope: &Scope<'_>, types: &mut names::Scope) -> Ident {
+        let path: String = scope.path.iter().map(|(name, _)| camel(name)).collect();
+        names::ident(&types.take(&format!("{}{path}", self.structure.name), |_| false))
+    }
+
+    fn ident(&self, name: &str) -> Ident {
+        ident_at(name, (self.place_of)(name))
+    }
+
+    /// The struct of one scope, how it is made, and its methods.
+    fn scope(&self, scope: &Scope<'_>, name: &Ident, children: &[Ident]) -> TokenStream {
+        let in_root = scope.path.is_empty();
+        let mut parts = Parts { fields: vec![], values: vec![], methods: vec![], names: names::Scope::with(&OURS) };
+        for output in &scope.outputs {
+            let ident = self.ident(&output.name);
+            let doc = doc_lines(&output.doc, &in_unit(&output.unit));
+            let kind = members::kind(Question::Output, output.family);
+            let value = members::ask(Question::Output, &output.name, output.family, in_root);
+            parts.fields.push(quote! { #(#[doc = #doc])* pub #ident: #kind });
+            parts.values.push(quote! { #ident: #value });
+        }
+        for (child, kind) in scope.children.iter().zip(children) {
+            self.child(child, kind, &mut parts);
+        }
+        self.methods(scope, &mut parts);
+
+        let Parts { fields, values, methods, .. } = parts;
+        let make = if in_root { make_root(&values) } else { make_child(&values) };
+        let path = (!in_root).then(|| quote! { _path: ::std::string::String, });
+        let doc = self.title(scope);
+        quote! {
+            #[doc = #doc]
+            #[derive(Clone, Debug)]
+            pub struct #name {
+                #(#fields,)*
+                #path
+                _solution: ::std::sync::Arc<::ntg::runtime::Solution>,
+            }
+
+            impl #name {
+                #make
+                #(#methods)*
+            }
+        }
+    }
+
+    /// An agent or phase within: a field, or for a family a field of ours and a method that takes
+    /// the index.
+    fn child(&self, child: &Scope<'_>, kind: &Ident, parts: &mut Parts) {
+        let Some((name, family)) = child.path.last() else { return };
+        let ident = self.ident(name);
+        let path = members::path(name, family.is_some(), child.path.len() == 1);
+        let one = quote! { #kind::new(&solution, #path) };
+        let Some(family) = family else {
+            let doc = format!(" What happens in `{name}`.");
+            parts.fields.push(quote! { #[doc = #doc] pub #ident: #kind });
+            parts.values.push(quote! { #ident: #one });
+            return;
+        };
+        let (field, value) = (format_ident!("_{}", name), members::members(*family, &one));
+        parts.fields.push(quote! { #field: ::ntg::runtime::Family<#kind> });
+        parts.values.push(quote! { #field: #value });
+        let ident = parts.method(self, name);
+        let doc = format!(" What `{name}[index]` does; {} to {}, none outside.", family.first, family.last);
+        parts.methods.push(quote! {
+            #[doc = #doc]
+            pub fn #ident(&self, index: i64) -> ::core::option::Option<&#kind> {
+                self.#field.get(index)
+            }
+        });
+    }
+
+    /// Everything in a scope that is no field.
+    fn methods(&self, scope: &Scope<'_>, parts: &mut Parts) {
+        let in_root = scope.path.is_empty();
+        if in_root {
+            parts.methods.push(members::of_problem(&self.structure.objective_unit));
+            for variable in &self.structure.variables {
+                self.variable(variable, parts);
+            }
+        } else {
+            parts.methods.push(members::of_stretch());
+        }
+        for named in &scope.named {
+            self.named(named, in_root, parts);
+        }
+        for duration in &scope.durations {
+            let ident = parts.method(self, &format!("duration_{duration}"));
+            let doc = [format!(" The duration `{duration}`, in seconds.")];
+            parts.methods.push(members::method(&ident, &doc, Question::Duration, duration, None, in_root));
+        }
+        self.multipliers(scope, parts);
+    }
+
+    fn variable(&self, variable: &Variable, parts: &mut Parts) {
+        let ident = parts.method(self, &variable.name);
+        let doc = doc_lines(&variable.doc, &in_unit(&variable.unit));
+        parts.methods.push(members::method(&ident, &doc, Question::Variable, &variable.name, variable.family, true));
+    }
+
+    fn named(&self, named: &Named, in_root: bool, parts: &mut Parts) {
+        let ident = parts.method(self, &named.name);
+        let doc = doc_lines(&named.doc, &in_unit(&named.unit));
+        let question = if named.domain == Domain::Mission { Question::Number } else { Question::Named };
+        parts.methods.push(members::method(&ident, &doc, question, &named.name, named.family, in_root));
+    }
+
+    /// A method for each constraint of this scope that has a name.
+    fn multipliers(&self, scope: &Scope<'_>, parts: &mut Parts) {
+        let path: Vec<&str> = scope.path.iter().map(|(name, _)| *name).collect();
+        let in_root = path.is_empty();
+        let mut written = vec![];
+        for constraint in &self.structure.constraints {
+            let Some(full) = &constraint.name else { continue };
+            let (before, name) = full.rsplit_once('.').unwrap_or(("", full));
+            if before != path.join(".") || written.contains(&name) {
+                continue;
+            }
+            written.push(name);
+            let ident = parts.method(self, &format!("multiplier_{name}"));
+            let doc = [format!(" How much the optimum changes with the bound of `{name}`.")];
+            parts.methods.push(members::method(&ident, &doc, Question::Multiplier, name, None, in_root));
+        }
+    }
+
+    fn title(&self, scope: &Scope<'_>) -> String {
+        let path: Vec<&str> = scope.path.iter().map(|(name, _)| *name).collect();
+        match path.is_empty() {
+            true => format!(" A solution of [`{}`].", names::ident(&self.structure.name)),
+            false => format!(" What `{}` does in a solution of [`{}`].", path.join("."), self.structure.name),
+        }
+    }
+}
+
+/// A scope's struct being written.
+struct Parts {
+    fields: Vec<TokenStream>,
+    values: Vec<TokenStream>,
+    methods: Vec<TokenStream>,
+    names: names::Scope,
+}
+
+impl Parts {
+    /// The name of a method for a name of the spec.
+    fn method(&mut self, writer: &Writer<'_>, name: &str) -> Ident {
+        ident_at(&self.names.take(name, |_| false), (writer.place_of)(name))
+    }
+}
+
+/// How the problem's solution is made.
+fn make_root(values: &[TokenStream]) -> TokenStream {
+    quote! {
+        fn new(solution: ::ntg::runtime::Solution) -> Self {
+            let solution = ::std::sync::Arc::new(solution);
+            Self { #(#values,)* _solution: solution }
+        }
+    }
+}
+
+/// How an agent or phase of it is made.
+fn make_child(values: &[TokenStream]) -> TokenStream {
+    quote! {
+        fn new(solution: &::std::sync::Arc<::ntg::runtime::Solution>, path: &str) -> Self {
+            Self {
+                #(#values,)*
+                _path: ::std::convert::From::from(path),
+                _solution: ::std::sync::Arc::clone(solution),
+            }
+        }
+    }
+}
+
+fn in_unit(unit: &Unit) -> String {
+    format!("{}.", unit_in_words(unit))
+}

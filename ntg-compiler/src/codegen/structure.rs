@@ -1,0 +1,73 @@
+//! `mod structure`: the problem without its formulas, as the spec states it.
+//!
+//! One function for each list of the `Structure`, so that a reader finds a phase or a group by
+//! name, and no expression is deeper than one of its entries.
+
+use ntg_structure::Structure;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+use super::data::ToRust;
+
+/// The module with its `structure()`.
+pub(super) fn structure(structure: &Structure) -> TokenStream {
+    let mut functions = vec![];
+    let mut fields = vec![];
+    let mut left_out = false;
+    let lists = [
+        ("parameters", quote! { Parameter }, entries(&structure.parameters)),
+        ("tables", quote! { Table }, entries(&structure.tables)),
+        ("variables", quote! { Variable }, entries(&structure.variables)),
+        ("agents", quote! { Agent }, entries(&structure.agents)),
+        ("phases", quote! { Phase }, entries(&structure.phases)),
+        ("kernels", quote! { Kernel }, entries(&structure.kernels)),
+        ("groups", quote! { Group }, entries(&structure.groups)),
+        ("terms", quote! { Term }, entries(&structure.terms)),
+        ("constraints", quote! { Constraint }, entries(&structure.constraints)),
+        ("integrals", quote! { Integral }, entries(&structure.integrals)),
+        ("named", quote! { Named }, entries(&structure.named)),
+        ("guesses", quote! { Guess }, entries(&structure.guesses)),
+        ("continuations", quote! { Continuation }, entries(&structure.continuations)),
+    ];
+    for (name, kind, entries) in lists {
+        if entries.is_empty() {
+            left_out = true;
+            continue;
+        }
+        let name = format_ident!("{name}");
+        fields.push(quote! { #name: #name() });
+        functions.push(quote! {
+            fn #name() -> Vec<#kind> {
+                Vec::from([#(#entries),*])
+            }
+        });
+    }
+
+    let Structure { name, doc, source, maximize, objective_unit, .. } = structure;
+    let [name, doc, source] = [name, doc, source].map(ToRust::to_rust);
+    let (maximize, objective_unit) = (maximize.to_rust(), objective_unit.to_rust());
+    let rest = left_out.then(|| quote! { ..Structure::default() });
+    quote! {
+        mod structure {
+            use ::ntg::runtime::structure::*;
+
+            pub(super) fn structure() -> Structure {
+                Structure {
+                    name: #name,
+                    doc: #doc,
+                    source: #source,
+                    maximize: #maximize,
+                    objective_unit: #objective_unit,
+                    #(#fields,)*
+                    #rest
+                }
+            }
+
+            #(#functions)*
+        }
+    }
+}
+
+fn entries<T: ToRust>(list: &[T]) -> Vec<TokenStream> {
+    list.iter().map(ToRust::to_rust).collect()
+}

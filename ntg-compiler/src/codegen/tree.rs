@@ -1,0 +1,92 @@
+//! Who owns what in a solution: the problem, its agents, their phases.
+//!
+//! Takes a `Structure`, gives a tree of scopes, each with the outputs, named expressions and
+//! durations that are reached through it: `solution.x`, `solution.covert.x`, `solution.uav(1).x`.
+//! The one unnamed agent is the problem itself, and the one unnamed phase is its agent.
+//!
+//! A thing is listed in a phase when it is defined there, and in an agent when it is defined in
+//! each of its phases, where it runs through all of them.
+
+use ntg_structure::{Domain, Family, Named, Output, Structure};
+
+/// A scope with its own type in the generated code.
+pub(super) struct Scope<'a> {
+    /// The names from the problem down to here, each with its family.
+    pub(super) path: Vec<(&'a str, Option<Family>)>,
+    /// Outputs, which become fields.
+    pub(super) outputs: Vec<&'a Output>,
+    /// Named expressions, which become methods.
+    pub(super) named: Vec<&'a Named>,
+    /// Names of the durations that belong here.
+    pub(super) durations: Vec<&'a str>,
+    /// The scopes within.
+    pub(super) children: Vec<Scope<'a>>,
+}
+
+/// The scope of the whole problem.
+pub(super) fn scopes(structure: &Structure) -> Scope<'_> {
+    let mut root =
+        Scope { path: vec![], outputs: vec![], named: numbers(structure), durations: vec![], children: vec![] };
+    for (agent, declared) in structure.agents.iter().enumerate() {
+        match &declared.name {
+            None => fill(&mut root, structure, agent),
+            Some(name) => {
+                let path = vec![(name.as_str(), declared.family)];
+                let mut scope = Scope { path, outputs: vec![], named: vec![], durations: vec![], children: vec![] };
+                fill(&mut scope, structure, agent);
+                root.children.push(scope);
+            }
+        }
+    }
+    root
+}
+
+/// Named expressions that are numbers; they belong to the problem.
+fn numbers(structure: &Structure) -> Vec<&Named> {
+    let mission =
+        structure.named.iter().filter(|named| named.domain == Domain::Mission && named.loops.len() == own_loops(named));
+    mission.collect()
+}
+
+/// How many of an expression's loops are its own.
+fn own_loops(named: &Named) -> usize {
+    usize::from(named.family.is_some())
+}
+
+/// Puts an agent's things into its scope, and its named phases below.
+fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
+    scope.durations.extend(structure.agents[agent].duration_name.as_deref());
+    let phases: Vec<usize> = (0..structure.phases.len()).filter(|p| structure.phases[*p].agent == agent).collect();
+    let along = |phase: usize| structure.named.iter().filter(move |named| phase_of(named) == Some(phase));
+
+    // What the first phase has belongs to the agent if all the others have it too.
+    if let Some((first, others)) = phases.split_first() {
+        let has_output = |phase: usize, name: &str| structure.phases[phase].outputs.iter().any(|o| o.name == name);
+        let outputs = structure.phases[*first].outputs.iter();
+        scope.outputs.extend(outputs.filter(|output| others.iter().all(|p| has_output(*p, &output.name))));
+        let named =
+            along(*first).filter(|named| others.iter().all(|p| along(*p).any(|other| other.name == named.name)));
+        scope.named.extend(named);
+    }
+
+    for phase in phases {
+        let declared = &structure.phases[phase];
+        let Some(name) = &declared.name else {
+            scope.durations.extend(declared.duration_name.as_deref());
+            continue;
+        };
+        let mut path = scope.path.clone();
+        path.push((name, declared.family));
+        let durations = declared.duration_name.as_deref().into_iter().collect();
+        let outputs = declared.outputs.iter().collect();
+        scope.children.push(Scope { path, outputs, named: along(phase).collect(), durations, children: vec![] });
+    }
+}
+
+/// The phase along which an expression is defined.
+fn phase_of(named: &Named) -> Option<usize> {
+    match &named.domain {
+        Domain::Path { phase, .. } | Domain::Start(phase) | Domain::End(phase) => Some(phase.phase),
+        Domain::Mission => None,
+    }
+}
