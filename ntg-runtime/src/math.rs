@@ -48,7 +48,9 @@ pub fn pow(a: f64, b: f64) -> f64 {
 /// The angle of the point with ordinate `a` and abscissa `b`.
 #[inline]
 pub fn atan2(a: f64, b: f64) -> f64 {
-    a.atan2(b)
+    // Adding zero gives every zero the sign `+`: simplification may change the sign of a zero, which would
+    // turn the angle by pi.
+    (a + 0.0).atan2(b + 0.0)
 }
 
 /// `sqrt(a^2 + b^2)` without overflow.

@@ -92,7 +92,7 @@ fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (
     let schedule = dag.schedule(values);
     let (mut nodes, mut spans) = (Vec::new(), Vec::new());
     for id in &schedule {
-        if may_fail(dag.node(*id)) {
+        if may_fail(dag, dag.node(*id)) {
             nodes.push(*id);
             spans.push(origin.get(id).copied());
         }
@@ -114,14 +114,16 @@ fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (
     (nodes, spans)
 }
 
-fn may_fail(node: &Node) -> bool {
+/// Overflow of sums and products is left out: the row itself tells of it.
+fn may_fail(dag: &Dag, node: &Node) -> bool {
     match node {
         Node::Unary(op, _) => matches!(
             op,
             Unary::Sqrt | Unary::Log | Unary::Exp | Unary::Tan | Unary::Asin | Unary::Acos | Unary::Sinh | Unary::Cosh
         ),
-        Node::Binary(op, _, _) => matches!(op, Binary::Div | Binary::Pow | Binary::Mul),
-        Node::Powi(_, _) | Node::Table { .. } => true,
+        Node::Binary(Binary::Div, _, divisor) => dag.is_constant(*divisor).is_none(),
+        Node::Binary(Binary::Pow, _, _) | Node::Table { .. } => true,
+        Node::Powi(_, exponent) => *exponent < 0,
         _ => false,
     }
 }

@@ -15,12 +15,6 @@ impl Environment {
         Self { indices: loops.iter().map(|l| l.index).collect() }
     }
 
-    pub(super) fn with(&self, index: IndexId) -> Self {
-        let mut inner = self.clone();
-        inner.indices.push(index);
-        inner
-    }
-
     pub(super) fn affine(&self, form: &Form) -> Affine {
         let mut terms: Vec<(usize, i64)> = form
             .terms

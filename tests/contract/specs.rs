@@ -1,0 +1,80 @@
+//! The shipped specs: as generated code, and through the interpreter.
+
+use std::path::Path;
+
+use ntg::runtime::problem::Problem;
+use ntg::runtime::splines::Table;
+use ntg_compiler::program::Program;
+use ntg_compiler::source::Source;
+use ntg_interp::Interpreted;
+
+/// One spec, compiled both ways.
+pub struct Spec {
+    pub name: &'static str,
+    pub generated: Box<dyn Problem>,
+    pub program: Program,
+    pub interpreted: Interpreted,
+    pub tables: Vec<Table>,
+}
+
+/// Declares a module of generated code for each spec, and the list of them all.
+macro_rules! specs {
+    ($($module:ident: $path:tt => $problem:ident),+ $(,)?) => {
+        $(
+            #[allow(missing_docs, reason = "the specs of other people need no documentation here")]
+            mod $module { ntg::ntg_file!($path); }
+        )+
+        const NAMES: &[&str] = &[$(stringify!($module)),+];
+        /// All specs of the folder `specs/`.
+        pub fn all() -> Vec<Spec> {
+            vec![$(spec(stringify!($module), Box::new($module::$problem::default()))),+]
+        }
+    };
+}
+
+specs! {
+    kinematic_car: "specs/kinematic_car.ntg" => KinematicCar,
+    kinematic_car_gauss: "specs/kinematic_car_gauss.ntg" => KinematicCarGauss,
+    low_observable: "specs/low_observable.ntg" => LowObservable,
+    low_observable_gauss: "specs/low_observable_gauss.ntg" => LowObservableGauss,
+    van_der_pol: "specs/van_der_pol.ntg" => VanDerPol,
+    van_der_pol_gauss: "specs/van_der_pol_gauss.ntg" => VanDerPolGauss,
+}
+
+/// The text of a shipped spec.
+pub fn source(name: &str) -> Source {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs").join(name).with_extension("ntg");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    Source::new(format!("specs/{name}.ntg"), text)
+}
+
+struct BesideSpecs;
+
+impl ntg_compiler::model::Loader for BesideSpecs {
+    fn load(&self, path: &str) -> Result<String, String> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs").join(path);
+        std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
+    }
+}
+
+fn spec(name: &'static str, generated: Box<dyn Problem>) -> Spec {
+    let source = source(name);
+    let compiled = ntg_compiler::compile(&source, &BesideSpecs).unwrap_or_else(|found| {
+        panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n"))
+    });
+    let interpreted = Interpreted::new(&compiled.program);
+    let tables = ntg::runtime::transcribe::tables(&interpreted.structure()).expect("the tables of shipped specs");
+    Spec { name, generated, program: compiled.program, interpreted, tables }
+}
+
+#[test]
+fn every_file_of_the_folder_is_listed() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
+    for entry in std::fs::read_dir(folder).expect("the folder of specs") {
+        let path = entry.expect("a readable entry").path();
+        if path.extension().is_some_and(|e| e == "ntg") {
+            let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+            assert!(NAMES.contains(&name.as_str()), "`{name}` is missing from tests/contract/specs.rs");
+        }
+    }
+}
