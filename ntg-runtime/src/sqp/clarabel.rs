@@ -11,7 +11,7 @@ use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettingsBuilder};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
 /// Relative size of residuals up to which an answer is believed.
-const BELIEVED: f64 = 1e-6;
+const BELIEVED: f64 = 1e-5;
 /// Interior-point tolerance: a hundredth of the accuracy at which steps are useful.
 const TOLERANCE: f64 = 1e-9;
 /// Interior-point iterations; convex programs of this kind need 10 to 40.
@@ -130,12 +130,12 @@ impl QuadraticSolver {
         copy(problem.b, &mut self.feasibility);
         problem.a.add_product(-1.0, &self.x, &mut self.feasibility);
         let mut worst = size(&self.stationarity) / (1.0 + size(problem.q) + size(&self.z));
-        let unit = 1.0 + size(&self.x);
+        let (unit, price) = (1.0 + size(&self.x), 1.0 + size(&self.z));
         for (i, slack) in self.feasibility.iter().enumerate() {
             let miss = if i < problem.equalities { slack.abs() } else { -slack };
             worst = worst.max(miss / unit);
             if i >= problem.equalities {
-                worst = worst.max((self.z[i].min(slack.max(0.0)).abs()) / unit).max(-self.z[i] / unit);
+                worst = worst.max((self.z[i] * slack).abs() / (unit * price)).max(-self.z[i] / price);
             }
         }
         let sum: f64 = self.stationarity.iter().chain(&self.feasibility).sum();
