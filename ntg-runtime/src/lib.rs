@@ -1,13 +1,36 @@
 //! The runtime of ntg: what a compiled problem needs in order to be solved.
+//!
+//! ```text
+//! Problem -> transcribe -> Nlp -> sqp -> Solution, Report
+//! ```
+//!
+//! [`problem::Problem`] is the contract with every back end, [`nlp::Nlp`] the one with every
+//! method. [`solve()`] goes the whole way. The mathematics is in docs/maths.md, sections 3 to 9.
 
+pub mod guess;
 pub mod lanes;
 pub mod math;
 pub mod nlp;
 pub mod problem;
+pub mod report;
 pub mod settings;
+pub mod solution;
+mod solve;
 pub mod sqp;
 pub mod status;
 pub mod transcribe;
 
 pub use ntg_splines as splines;
 pub use ntg_structure as structure;
+pub use solve::{Error, solve, solve_from};
+
+/// What a program that solves problems names.
+pub mod prelude {
+    pub use crate::guess::Guess;
+    pub use crate::problem::Problem;
+    pub use crate::report::Report;
+    pub use crate::settings::{Control, Progress, Settings};
+    pub use crate::solution::{Family, Signal, Solution, Trajectory};
+    pub use crate::status::Status;
+    pub use crate::{Error, solve, solve_from};
+}

@@ -1,0 +1,138 @@
+//! What nobody guesses (docs/maths.md, section 8.1).
+
+use crate::transcribe::Transcription;
+use crate::transcribe::slots::AffineMap;
+use ntg_splines::Side;
+use ntg_structure::{Degree, Domain};
+
+/// Bounds a decade or more apart have their geometric mean as middle.
+const DECADE: f64 = 10.0;
+
+/// Durations, starts and variables in the middle of their bounds.
+pub(super) fn times(nlp: &Transcription, x: &mut [f64]) {
+    let layout = &nlp.model.layout;
+    for phase in &layout.phases {
+        let bounds = |v: usize| (nlp.limits.lower[v], nlp.limits.upper[v]);
+        if let crate::transcribe::layout::Time::Free(v) = phase.duration {
+            let (lower, upper) = bounds(v as usize);
+            // The smallest duration of all is a guard, not a bound that anyone wrote.
+            x[v as usize] = duration(lower, upper);
+        }
+    }
+    let firsts = layout.phases.iter().filter(|p| p.duration.fixed().is_none()).count();
+    for variable in layout.coefficients + firsts..layout.variables {
+        x[variable] = middle(nlp.limits.lower[variable], nlp.limits.upper[variable]);
+    }
+}
+
+fn duration(lower: f64, upper: f64) -> f64 {
+    /// A bound this much below the other, or below a second, says nothing.
+    const NOTHING: f64 = 1e-5;
+    match (lower > NOTHING * if upper.is_finite() { upper } else { 1.0 }, upper.is_finite()) {
+        (true, true) => middle(lower, upper),
+        (true, false) => 2.0 * lower,
+        (false, true) => 0.5 * upper,
+        (false, false) => 1.0,
+    }
+}
+
+/// The middle of two bounds, or a point near the one that is finite.
+pub(super) fn middle(lower: f64, upper: f64) -> f64 {
+    match (lower.is_finite(), upper.is_finite()) {
+        (true, true) if lower > 0.0 && upper >= DECADE * lower => (lower * upper).sqrt(),
+        (true, true) => 0.5 * (lower + upper),
+        (true, false) => if lower > 0.0 { 2.0 * lower } else { lower + 1.0 },
+        (false, true) => if upper < 0.0 { 2.0 * upper } else { upper - 1.0 },
+        (false, false) => 0.0,
+    }
+}
+
+/// Outputs: straight lines over time between the values that boundary conditions fix; else the
+/// middle of constant bounds; else 0.
+pub(super) fn outputs(nlp: &Transcription, x: &mut [f64]) {
+    let layout = &nlp.model.layout;
+    for agent in 0..layout.agents.len() {
+        for phase in layout.agents[agent].phases.clone() {
+            for output in 0..layout.phases[phase].outputs.len() {
+                let known = known_values(nlp, phase, output, x);
+                let bounds = if known.is_empty() { bounds(nlp, phase, output) } else { None };
+                let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
+                let member = &layout.phases[phase].outputs[output];
+                for (variable, tau) in member.coefficients.iter().zip(member.knots.greville()) {
+                    let constant = bounds.map_or(0.0, |(lower, upper)| middle(lower, upper));
+                    x[*variable as usize] = line(&known, start + tau * duration).unwrap_or(constant);
+                }
+            }
+        }
+    }
+}
+
+/// `(t, value)` wherever a boundary condition fixes this output in its agent.
+fn known_values(nlp: &Transcription, phase: usize, output: usize, x: &[f64]) -> Vec<(f64, f64)> {
+    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+    let name = |phase: usize, output: usize| {
+        let member = &layout.phases[phase];
+        let found = &member.outputs[output];
+        (&structure.phases[member.phase].outputs[found.output].name, found.index)
+    };
+    let mut known = vec![];
+    for other in layout.agents[layout.phases[phase].agent].phases.clone() {
+        let same = (0..layout.phases[other].outputs.len()).find(|o| name(other, *o) == name(phase, output));
+        let Some(same) = same else { continue };
+        for (tau, side) in [(0.0, Side::Right), (1.0, Side::Left)] {
+            let map = AffineMap { terms: layout.basis(other, same, 0, tau, side), offset: 0.0 };
+            if let Some(value) = nlp.linear.value(&map) {
+                known.push((layout.start(other, x) + tau * layout.duration(other, x), value));
+            }
+        }
+    }
+    known
+}
+
+/// The polygon through known values, constant beyond them.
+fn line(known: &[(f64, f64)], t: f64) -> Option<f64> {
+    let next = known.partition_point(|k| k.0 <= t);
+    match (next.checked_sub(1).map(|i| known[i]), known.get(next)) {
+        (None, None) => None,
+        (Some((_, value)), None) | (None, Some(&(_, value))) => Some(value),
+        (Some((t0, a)), Some(&(t1, b))) => Some(a + (b - a) * (t - t0) / (t1 - t0)),
+    }
+}
+
+/// Bounds along the phase on the output itself: rows of one slot whose coefficients are one
+/// multiple of the B-splines' values, which add up to 1.
+fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)> {
+    let layout = &nlp.model.layout;
+    let coefficients = &layout.phases[phase].outputs[output].coefficients;
+    let mut found: Option<(f64, f64)> = None;
+    for (group, block) in nlp.elements.batches.iter().zip(&nlp.elements.blocks) {
+        let declared = &nlp.model.structure.groups[group.group];
+        let here = |e: usize| group.batch.sites[e].point.phase == Some(phase);
+        let Some(element) = (0..block.elements).find(|e| here(*e)) else { continue };
+        if !matches!(declared.domain, Domain::Path { .. }) {
+            continue;
+        }
+        for row in (0..block.rows).filter(|row| block.degree[*row] == Degree::Linear) {
+            let crate::nlp::Target::Row(target) = block.target[row * block.elements + element] else { continue };
+            let slots: Vec<usize> = block.jacobian.iter().filter(|e| e.0 == row).map(|e| e.1).collect();
+            let &[slot] = &slots[..] else { continue };
+            let variables = block.variables(element);
+            let map = &block.map(element)[slot * variables.len()..][..variables.len()];
+            let active = || variables.iter().zip(map).filter(|(_, c)| **c != 0.0);
+            let total: f64 = active().map(|(_, c)| c).sum();
+            let own = active().all(|(v, c)| coefficients.contains(v) && *c > 0.0);
+            let Some((slope, offset)) = (own && (total - 1.0).abs() < 1e-9)
+                .then(|| nlp.frame().line(group, element, row, slot))
+                .flatten()
+            else {
+                continue;
+            };
+            let rows = &nlp.limits;
+            let ends = [rows.row_lower[target as usize], rows.row_upper[target as usize]].map(|b| (b - offset) / slope);
+            let (lower, upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+            let held = found.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            found = Some((held.0.max(lower), held.1.min(upper)));
+        }
+    }
+    found
+}

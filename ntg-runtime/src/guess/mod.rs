@@ -1,0 +1,18 @@
+//! Where a solve starts (docs/maths.md, section 8).
+//!
+//! Takes the `guess` statements of the spec and what a program says beside them; gives the first
+//! point. Statements of a program come after those of the spec, and the last one about a thing
+//! holds. What nobody guesses is guessed from bounds and boundary conditions.
+//!
+//! Finds: names that nothing bears, values that are not finite, wrong numbers of coefficients.
+
+pub(crate) mod continuation;
+mod defaults;
+mod earlier;
+mod program;
+mod route;
+mod start;
+mod statements;
+
+pub use program::Guess;
+pub(crate) use start::start;

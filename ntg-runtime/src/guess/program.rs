@@ -1,0 +1,114 @@
+//! What a program says about the start, in declared units.
+
+use crate::solution::Solution;
+use std::fmt;
+use std::sync::Arc;
+
+/// A guess that a program makes. Values are in declared units, durations in seconds; names are
+/// those of the spec, with a path where there are several agents or phases (`uav[2].x`).
+///
+/// ```
+/// use ntg_runtime::guess::Guess;
+///
+/// let guess = Guess::new()
+///     .route(&["x", "y"], &[[-100.0, -100.0], [-100.0, -15.0], [5.0, -15.0]])
+///     .output("z", |tau| 12.0 * (1.0 - tau))
+///     .duration("T", 900.0);
+/// # let _ = guess;
+/// ```
+#[derive(Clone, Default)]
+pub struct Guess {
+    pub(super) base: Base,
+    pub(super) statements: Vec<Statement>,
+}
+
+/// What the statements refine.
+#[derive(Clone, Default)]
+pub(super) enum Base {
+    /// The spec's own guess and the defaults.
+    #[default]
+    Spec,
+    /// An earlier solution, on the same knots or on others.
+    Solution(Solution),
+    /// All variables of the nonlinear program, SI.
+    Variables(Vec<f64>),
+}
+
+/// One statement.
+#[derive(Clone)]
+pub(super) enum Statement {
+    Route { outputs: Vec<String>, points: Vec<Vec<f64>> },
+    Output { output: String, value: Arc<dyn Fn(f64) -> f64 + Send + Sync> },
+    Coefficients { output: String, values: Vec<f64> },
+    Duration { of: String, seconds: f64 },
+    Start { agent: String, seconds: f64 },
+    Variable { name: String, value: f64 },
+}
+
+impl Guess {
+    /// Nothing beyond the spec's own guess.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// All variables of the nonlinear program as [`Solution::coefficients`] gives them, SI.
+    pub fn raw(variables: Vec<f64>) -> Self {
+        Self { base: Base::Variables(variables), statements: vec![] }
+    }
+
+    /// Outputs along a polygon, at constant speed over the agent's whole time, ends exact.
+    pub fn route<const N: usize>(self, outputs: &[&str; N], points: &[[f64; N]]) -> Self {
+        let outputs = outputs.iter().map(|name| (*name).to_owned()).collect();
+        self.and(Statement::Route { outputs, points: points.iter().map(|p| p.to_vec()).collect() })
+    }
+
+    /// An output as a function of scaled time: of the agent's whole time, or of one phase where
+    /// the name has the phase's path (`covert.x`).
+    pub fn output(self, name: &str, value: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        self.and(Statement::Output { output: name.to_owned(), value: Arc::new(value) })
+    }
+
+    /// The spline coefficients of an output; the name needs the phase's path where there are
+    /// several phases.
+    pub fn coefficients(self, output: &str, values: &[f64]) -> Self {
+        self.and(Statement::Coefficients { output: output.to_owned(), values: values.to_vec() })
+    }
+
+    /// A duration in seconds: of a phase by its name or path, or by the name of the duration.
+    pub fn duration(self, name: &str, seconds: f64) -> Self {
+        self.and(Statement::Duration { of: name.to_owned(), seconds })
+    }
+
+    /// When an agent starts, in seconds.
+    pub fn start(self, agent: &str, seconds: f64) -> Self {
+        self.and(Statement::Start { agent: agent.to_owned(), seconds })
+    }
+
+    /// A declared variable.
+    pub fn variable(self, name: &str, value: f64) -> Self {
+        self.and(Statement::Variable { name: name.to_owned(), value })
+    }
+
+    fn and(mut self, statement: Statement) -> Self {
+        self.statements.push(statement);
+        self
+    }
+}
+
+impl From<&Solution> for Guess {
+    /// Starts from an earlier solution, of this problem or of one that shares names with it.
+    fn from(solution: &Solution) -> Self {
+        Self { base: Base::Solution(solution.clone()), statements: vec![] }
+    }
+}
+
+impl fmt::Debug for Guess {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let base = match &self.base {
+            Base::Spec => "the spec's guess",
+            Base::Solution(_) => "a solution",
+            Base::Variables(_) => "raw variables",
+        };
+        f.debug_struct("Guess").field("base", &base).field("statements", &self.statements.len()).finish()
+    }
+}

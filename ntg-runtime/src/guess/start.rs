@@ -1,0 +1,166 @@
+//! The first point, put together: times and variables, then outputs, then integrals.
+//!
+//! Takes a transcription and what a program says; gives a vector of variables within their bounds.
+
+use super::program::{Base, Guess};
+use super::statements::Statements;
+use super::{defaults, earlier};
+use crate::nlp::Nlp;
+use crate::transcribe::layout::{Layout, Time};
+use crate::transcribe::rows::RowKind;
+use crate::transcribe::{SetupError, Transcription};
+use ntg_splines::{Ends, Knots, Sample, fit};
+use std::rc::Rc;
+
+/// A guessed function of scaled time, SI.
+pub(super) type Function<'a> = Rc<dyn Fn(f64) -> Result<f64, SetupError> + 'a>;
+
+/// A function that is guessed for one output of one phase.
+#[derive(Clone)]
+pub(super) struct Curve<'a> {
+    pub(super) phase: usize,
+    pub(super) output: usize,
+    /// Whether its argument is the agent's whole time instead of the phase's.
+    pub(super) whole: bool,
+    pub(super) function: Function<'a>,
+}
+
+/// The first point of a solve.
+///
+/// # Errors
+/// What the spec or the program guesses and cannot be used.
+pub(crate) fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, SetupError> {
+    let nothing = Guess::default();
+    let guess = guess.unwrap_or(&nothing);
+    let layout = &nlp.model.layout;
+    if let Base::Variables(raw) = &guess.base {
+        return raw_start(nlp, guess, raw);
+    }
+    let mut x = vec![0.0; layout.variables];
+    defaults::times(nlp, &mut x);
+    let statements = Statements { nlp, guess };
+    statements.spec_times(&mut x)?;
+    if let Base::Solution(solution) = &guess.base {
+        if let Some(same) = earlier::same(nlp, solution) {
+            x = same;
+            statements.program_times(&mut x)?;
+            let curves = statements.program_curves(&x)?;
+            apply(layout, &curves, &mut x)?;
+            return finish(nlp, x);
+        }
+        earlier::times(nlp, solution, &mut x);
+    }
+    statements.program_times(&mut x)?;
+    clamp(nlp, &mut x);
+
+    defaults::outputs(nlp, &mut x);
+    apply(layout, &statements.spec_curves(&x)?, &mut x)?;
+    if let Base::Solution(solution) = &guess.base {
+        apply(layout, &earlier::curves(nlp, solution), &mut x)?;
+    }
+    apply(layout, &statements.program_curves(&x)?, &mut x)?;
+    finish(nlp, x)
+}
+
+fn raw_start(nlp: &Transcription, guess: &Guess, raw: &[f64]) -> Result<Vec<f64>, SetupError> {
+    let layout = &nlp.model.layout;
+    if raw.len() != layout.variables {
+        let (found, wanted) = (raw.len(), layout.variables);
+        let message = format!("the raw guess has {found} numbers, but the problem has {wanted} variables");
+        return Err(SetupError::Guess { message });
+    }
+    if let Some(i) = raw.iter().position(|value| !value.is_finite()) {
+        return Err(SetupError::Guess { message: format!("number {} of the raw guess is {}", i + 1, raw[i]) });
+    }
+    let mut x = raw.to_vec();
+    let statements = Statements { nlp, guess };
+    statements.program_times(&mut x)?;
+    apply(layout, &statements.program_curves(&x)?, &mut x)?;
+    clamp(nlp, &mut x);
+    Ok(x)
+}
+
+/// Fits every curve, later ones replacing earlier ones.
+fn apply(layout: &Layout, curves: &[Curve], x: &mut [f64]) -> Result<(), SetupError> {
+    for curve in curves {
+        let member = &layout.phases[curve.phase].outputs[curve.output];
+        let time = if curve.whole { Whole::new(layout, curve.phase, x) } else { Whole::PHASE };
+        let fitted = fitted(&member.knots, |tau| (curve.function)(time.at(tau)))?;
+        for (variable, value) in member.coefficients.iter().zip(fitted) {
+            x[*variable as usize] = value;
+        }
+    }
+    Ok(())
+}
+
+/// Least squares through samples in every interval, with exact ends (equation 8.3).
+fn fitted(knots: &Knots, value: impl Fn(f64) -> Result<f64, SetupError>) -> Result<Vec<f64>, SetupError> {
+    /// Samples in an interval for each coefficient that acts there.
+    const SAMPLES: usize = 4;
+    let count = SAMPLES * knots.order();
+    let mut samples = vec![];
+    for pair in knots.breakpoints().windows(2) {
+        let width = pair[1] - pair[0];
+        for i in 0..count {
+            let tau = pair[0] + width * (i as f64 + 0.5) / count as f64;
+            samples.push(Sample { tau, value: value(tau)?, weight: width });
+        }
+    }
+    Ok(fit(knots, &samples, Ends::Exact { start: value(0.0)?, end: value(1.0)? }))
+}
+
+/// A phase's scaled time as a part of its agent's whole time (equation 8.1).
+struct Whole {
+    first: f64,
+    width: f64,
+}
+
+impl Whole {
+    const PHASE: Self = Self { first: 0.0, width: 1.0 };
+
+    fn new(layout: &Layout, phase: usize, x: &[f64]) -> Self {
+        let agent = &layout.agents[layout.phases[phase].agent];
+        let total: f64 = agent.phases.clone().map(|p| layout.duration(p, x)).sum();
+        let before: f64 = layout.before(phase).map(|p| layout.duration(p, x)).sum();
+        Self { first: before / total, width: layout.duration(phase, x) / total }
+    }
+
+    fn at(&self, tau: f64) -> f64 {
+        (self.first + tau * self.width).clamp(0.0, 1.0)
+    }
+}
+
+/// Brings variables within their bounds and gives integrals the values of their sums.
+fn finish(nlp: &Transcription, mut x: Vec<f64>) -> Result<Vec<f64>, SetupError> {
+    /// Integrals may depend on integrals; deeper nesting is left to the solver.
+    const NESTING: usize = 3;
+    clamp(nlp, &mut x);
+    let layout = &nlp.model.layout;
+    let has_integrals = layout.integral_members.iter().any(|members| !members.is_empty());
+    for _ in 0..if has_integrals { NESTING } else { 0 } {
+        let (mut work, mut out) = nlp.workspace();
+        if nlp.values(&x, &mut work, &mut out).is_err() {
+            break; // The solve itself will say what is not finite.
+        }
+        for (row, info) in nlp.elements.rows.iter().enumerate() {
+            if matches!(info.kind, RowKind::Integral(_)) {
+                let variable = nlp.blocks()[info.maker.0].variables(info.maker.1)[0] as usize;
+                x[variable] -= out.rows[row];
+            }
+        }
+    }
+    Ok(x)
+}
+
+fn clamp(nlp: &Transcription, x: &mut [f64]) {
+    for (value, (lower, upper)) in x.iter_mut().zip(nlp.limits.lower.iter().zip(&nlp.limits.upper)) {
+        *value = value.max(*lower).min(*upper);
+    }
+}
+
+/// Sets a duration or start if it is free.
+pub(super) fn set(time: Time, value: f64, x: &mut [f64]) {
+    if let Time::Free(variable) = time {
+        x[variable as usize] = value;
+    }
+}

@@ -1,0 +1,69 @@
+//! Every constraint's largest violation, at the points and between them, and its multipliers.
+
+use super::fine::Fine;
+use super::{ConstraintReport, Worst, multipliers};
+use crate::nlp::Nlp;
+use crate::sqp::Outcome;
+use crate::transcribe::points::Point;
+use crate::transcribe::rows::{RowKind, constraint_name};
+use crate::transcribe::{Transcription, names};
+
+/// One entry for each constraint of the spec.
+pub(super) fn constraints(nlp: &Transcription, outcome: &Outcome, fine: &Fine) -> Vec<ConstraintReport> {
+    let structure = &nlp.model.structure;
+    let (mut work, mut out) = nlp.workspace();
+    // Where a value is not finite, the status says so.
+    let _ = nlp.values(&outcome.x, &mut work, &mut out);
+    let declared = structure.constraints.iter();
+    let mut reports: Vec<ConstraintReport> = declared
+        .map(|constraint| ConstraintReport {
+            name: constraint_name(constraint).to_owned(),
+            place: constraint.place.clone(),
+            block: constraint.block,
+            unit: constraint.unit.clone(),
+            points: None,
+            between: None,
+            multiplier: None,
+            sensitivity: 0.0,
+        })
+        .collect();
+    for (row, info) in nlp.elements.rows.iter().enumerate() {
+        let RowKind::Constraint(constraint) = info.kind else { continue };
+        let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
+        let report = &mut reports[constraint];
+        let unit = report.unit.factor;
+        keep(nlp, &outcome.x, &mut report.points, (out.rows[row], bounds, unit), &info.point);
+        multipliers::add(nlp, outcome, row, report);
+    }
+    for checked in &fine.checked {
+        let report = &mut reports[checked.constraint];
+        let unit = report.unit.factor;
+        keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, unit), &checked.point);
+    }
+    reports
+}
+
+/// Replaces the worst place so far by this one, if this one is worse.
+fn keep(
+    nlp: &Transcription,
+    x: &[f64],
+    worst: &mut Option<Worst>,
+    (value, (lower, upper), unit): (f64, (f64, f64), f64),
+    point: &Point,
+) {
+    let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
+    let relative = missed / scale(lower, upper, unit);
+    let worse = |held: &Worst| relative > held.relative || (relative.is_nan() && !held.relative.is_nan());
+    if worst.as_ref().is_none_or(worse) {
+        let layout = &nlp.model.layout;
+        let time = point.phase.map(|phase| layout.start(phase, x) + point.tau * layout.duration(phase, x));
+        let phase = point.phase.map(|phase| names::phase(&nlp.model.structure, layout, phase)).unwrap_or_default();
+        *worst = Some(Worst { violation: missed / unit, relative, value: value / unit, time, phase });
+    }
+}
+
+/// The larger finite bound, or the unit where both are zero or missing (equation 9.3).
+fn scale(lower: f64, upper: f64, unit: f64) -> f64 {
+    let largest = [lower, upper].iter().filter(|b| b.is_finite()).fold(0.0, |most: f64, b| most.max(b.abs()));
+    if largest > 0.0 { largest } else { unit }
+}

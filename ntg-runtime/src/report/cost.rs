@@ -1,0 +1,35 @@
+//! The objective by terms, as discretised and on the finer grid.
+
+use super::{TermReport, fine::Fine};
+use crate::nlp::Nlp;
+use crate::transcribe::Transcription;
+use ntg_structure::Row;
+
+/// One entry for each term, in the user's sense and the term's unit.
+pub(super) fn terms(nlp: &Transcription, x: &[f64], fine: &Fine) -> Vec<TermReport> {
+    let structure = &nlp.model.structure;
+    let mut sums = vec![0.0; structure.terms.len()];
+    let (mut work, mut out) = nlp.workspace();
+    // Where a value is not finite, the status says so; the sums then show what there is.
+    let _ = nlp.values(x, &mut work, &mut out);
+    for (index, group) in nlp.elements.batches.iter().enumerate() {
+        let (block, values) = (&nlp.elements.blocks[index], &out.blocks[index].values);
+        for (row, meaning) in structure.groups[group.group].rows.iter().enumerate() {
+            let Row::Cost { term } = meaning else { continue };
+            let range = row * block.elements..(row + 1) * block.elements;
+            let sum: f64 = block.weight[range.clone()].iter().zip(&values[range]).map(|(w, v)| w * v).sum();
+            if let Some(total) = sums.get_mut(*term) {
+                *total += sum;
+            }
+        }
+    }
+    let sign = if structure.maximize { -1.0 } else { 1.0 };
+    let terms = structure.terms.iter().zip(sums).zip(&fine.terms);
+    let report = terms.map(|((term, value), fine)| TermReport {
+        name: term.name.clone().unwrap_or_else(|| term.place.text.clone()),
+        value: sign * value / term.unit.factor,
+        fine: sign * fine / term.unit.factor,
+        unit: term.unit.clone(),
+    });
+    report.collect()
+}

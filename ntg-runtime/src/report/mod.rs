@@ -1,0 +1,206 @@
+//! What a solve has to say: plain data, and words for a person.
+//!
+//! Takes a transcription and the outcome of a method; gives a [`Report`]. Constraints and cost
+//! are checked again between the points (docs/maths.md, section 9).
+
+mod constraints;
+mod cost;
+mod display;
+mod fine;
+mod multipliers;
+
+use crate::settings::Settings;
+use crate::solution::{Inner, PhaseTimes, Solution, Value};
+use crate::sqp::Outcome;
+use crate::status::{Residuals, Status};
+use crate::transcribe::{SetupError, Transcription};
+use ntg_structure::{Block, Place, Unit};
+use std::sync::Arc;
+
+/// Everything about one solve. All fields are plain data.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Report {
+    /// The problem's name.
+    pub problem: String,
+    /// Why the solve ended; its `Display` says it in words.
+    pub status: Status,
+    /// What to try next; empty when solved.
+    pub advice: &'static str,
+    /// The objective in the user's sense (`maximize` gives the maximum), in `objective_unit`.
+    pub objective: f64,
+    /// The objective integrated on the finer grid: closer to what flying would cost.
+    pub objective_fine: f64,
+    /// The unit of both.
+    pub objective_unit: Unit,
+    /// The objective's terms; they add up to it.
+    pub terms: Vec<TermReport>,
+    /// The constraints, in the order of the spec.
+    pub constraints: Vec<ConstraintReport>,
+    /// Largest relative violation at the points of the transcription and on the finer grid.
+    pub violation: Violations,
+    /// The residuals of the optimality conditions.
+    pub residuals: Residuals,
+    /// Iterations of all steps of a continuation.
+    pub iterations: usize,
+    /// Wall-clock seconds of the solve, transcription and checks included.
+    pub seconds: f64,
+    /// The steps of a continuation in order; one without continuation.
+    pub history: Vec<StepReport>,
+    /// What was found; where the status is not solved, the last point.
+    pub solution: Solution,
+}
+
+/// Two numbers for all constraints, each relative to the scale of its bounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Violations {
+    /// At the points of the transcription.
+    pub points: f64,
+    /// On the finer grid, between the points.
+    pub between: f64,
+}
+
+/// One term of the objective.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TermReport {
+    /// Its name, or its text in the spec.
+    pub name: String,
+    /// Its value as discretised, in `unit`, in the user's sense.
+    pub value: f64,
+    /// Its value on the finer grid.
+    pub fine: f64,
+    /// The unit of both.
+    pub unit: Unit,
+}
+
+/// One constraint of the spec, over all of its members and points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstraintReport {
+    /// Its name, or its text in the spec.
+    pub name: String,
+    /// Where it stands.
+    pub place: Place,
+    /// The block it stands in.
+    pub block: Block,
+    /// The unit of values, bounds and violations.
+    pub unit: Unit,
+    /// Where it is violated most at the points; none where it has no row.
+    pub points: Option<Worst>,
+    /// Where it is violated most on the finer grid; none where it is not checked there.
+    pub between: Option<Worst>,
+    /// The largest multiplier by size; none where it has no row.
+    pub multiplier: Option<Multiplier>,
+    /// `dJ*/d(bound)` when the bound is moved everywhere at once, in units of the objective per
+    /// unit of the constraint, in the user's sense.
+    pub sensitivity: f64,
+}
+
+/// The largest violation of a constraint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worst {
+    /// By how much the nearer bound is missed, in the constraint's unit; 0 where all is met.
+    pub violation: f64,
+    /// The same, relative to the scale of the bounds.
+    pub relative: f64,
+    /// The constraint's value there.
+    pub value: f64,
+    /// The mission time, in seconds; none for a constraint at no point.
+    pub time: Option<f64>,
+    /// The phase's path; empty without one.
+    pub phase: String,
+}
+
+/// A multiplier in the user's sense: `dJ*/d(bound)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Multiplier {
+    /// In units of the objective per unit of the constraint; per second where it is a density.
+    pub value: f64,
+    /// Whether it is a density over time: a trajectory constraint at points with weights
+    /// (docs/maths.md, equation 9.4).
+    pub density: bool,
+    /// The mission time, in seconds; none for a constraint at no point.
+    pub time: Option<f64>,
+}
+
+/// One step of a continuation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepReport {
+    /// The parameters of the step, in declared units.
+    pub parameters: Vec<Value>,
+    /// Why it ended.
+    pub status: Status,
+    /// The objective in the user's sense, in the objective's unit.
+    pub objective: f64,
+    /// Its iterations.
+    pub iterations: usize,
+    /// Its seconds.
+    pub seconds: f64,
+}
+
+impl Report {
+    /// Whether a solution was found.
+    pub fn is_solved(&self) -> bool {
+        self.status.is_solved()
+    }
+
+    /// Phases and their times.
+    pub fn phases(&self) -> Vec<PhaseTimes> {
+        self.solution.phases()
+    }
+
+    /// A constraint by its name or its text in the spec.
+    pub fn constraint(&self, name: &str) -> Option<&ConstraintReport> {
+        self.constraints.iter().find(|c| c.name == name)
+    }
+
+    /// Checks an outcome on the finer grid and puts everything together.
+    pub(crate) fn new(
+        nlp: &Transcription,
+        outcome: Outcome,
+        settings: &Settings,
+        history: Vec<StepReport>,
+    ) -> Result<Self, SetupError> {
+        let structure = &nlp.model.structure;
+        let fine = fine::Fine::new(nlp, &outcome.x, settings.samples)?;
+        let terms = cost::terms(nlp, &outcome.x, &fine);
+        let constraints = constraints::constraints(nlp, &outcome, &fine);
+        let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
+            constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
+        };
+        let violation =
+            Violations { points: largest(|c| c.points.as_ref()), between: largest(|c| c.between.as_ref()) };
+        let solution = Solution {
+            inner: Arc::new(Inner {
+                model: nlp.model.clone(),
+                x: outcome.x,
+                rows: nlp.elements.rows.clone(),
+                row_multipliers: outcome.row_multipliers,
+                bound_multipliers: outcome.bound_multipliers,
+            }),
+        };
+        Ok(Self {
+            problem: structure.name.clone(),
+            advice: outcome.status.advice(),
+            status: outcome.status,
+            objective: user(nlp, outcome.objective),
+            objective_fine: user(nlp, fine.terms.iter().sum()),
+            objective_unit: structure.objective_unit.clone(),
+            terms,
+            constraints,
+            violation,
+            residuals: outcome.residuals,
+            iterations: history.iter().map(|step| step.iterations).sum(),
+            seconds: history.iter().map(|step| step.seconds).sum(),
+            history,
+            solution,
+        })
+    }
+}
+
+/// The minimised objective (SI) in the user's sense and unit.
+pub(crate) fn user(nlp: &Transcription, minimised: f64) -> f64 {
+    let structure = &nlp.model.structure;
+    let value = minimised / structure.objective_unit.factor;
+    // No negative zero: a person would wonder.
+    if structure.maximize { 0.0 - value } else { value }
+}

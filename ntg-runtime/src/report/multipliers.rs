@@ -1,0 +1,65 @@
+//! Multipliers in the user's sense: `dJ*/d(bound)`, as densities over time where a constraint
+//! stands along a trajectory (docs/maths.md, equation 9.4).
+
+use super::{ConstraintReport, Multiplier};
+use crate::solution::Solution;
+use crate::sqp::Outcome;
+use crate::transcribe::Transcription;
+use crate::transcribe::layout::Layout;
+use crate::transcribe::rows::{RowInfo, RowKind, constraint_name};
+use ntg_structure::Structure;
+
+/// Adds one row's multiplier to its constraint's report.
+pub(super) fn add(nlp: &Transcription, outcome: &Outcome, row: usize, report: &mut ConstraintReport) {
+    let Some(raw) = outcome.row_multipliers.get(row) else { return };
+    let model = &nlp.model;
+    let sense = sense(&model.structure, report.unit.factor);
+    report.sensitivity += sense * raw;
+    let found = multiplier(&model.layout, &outcome.x, &nlp.elements.rows[row], sense * raw);
+    if report.multiplier.as_ref().is_none_or(|held| found.value.abs() > held.value.abs()) {
+        report.multiplier = Some(found);
+    }
+}
+
+impl Solution {
+    /// All multipliers of a constraint, named by its name or its text, in the order of its
+    /// members and points. Empty for an unknown name.
+    pub fn multipliers(&self, constraint: &str) -> Vec<Multiplier> {
+        let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
+        let rows = self.inner.rows.iter().zip(&self.inner.row_multipliers);
+        let own = rows.filter_map(|(info, raw)| {
+            let RowKind::Constraint(index) = info.kind else { return None };
+            let declared = &structure.constraints[index];
+            let sense = sense(structure, declared.unit.factor);
+            (constraint_name(declared) == constraint).then(|| multiplier(layout, &self.inner.x, info, sense * raw))
+        });
+        own.collect()
+    }
+
+    /// Derivative of the objective by the active bound of a declared variable, in units of the
+    /// objective per unit of the variable, in the user's sense; 0 inside the bounds.
+    pub fn bound_multiplier(&self, variable: &str) -> Option<f64> {
+        let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
+        let position = self.variables().iter().position(|v| v.name == variable)?;
+        let first = *layout.variable_first.first()? as usize;
+        let unit = &self.variables()[position].unit;
+        Some(sense(structure, unit.factor) * self.inner.bound_multipliers.get(first + position)?)
+    }
+}
+
+/// From SI and minimisation to the user's units and sense.
+fn sense(structure: &Structure, unit: f64) -> f64 {
+    let sign = if structure.maximize { -1.0 } else { 1.0 };
+    sign * unit / structure.objective_unit.factor
+}
+
+fn multiplier(layout: &Layout, x: &[f64], info: &RowInfo, value: f64) -> Multiplier {
+    let Some(phase) = info.point.phase else { return Multiplier { value, density: false, time: None } };
+    let duration = layout.duration(phase, x);
+    let time = Some(layout.start(phase, x) + info.point.tau * duration);
+    let weight = info.point.weight * duration;
+    if weight.is_nan() {
+        return Multiplier { value, density: false, time };
+    }
+    Multiplier { value: value / weight, density: true, time }
+}

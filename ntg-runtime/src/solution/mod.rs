@@ -1,0 +1,198 @@
+//! What a solve found, as functions of time.
+//!
+//! A [`Solution`] owns everything it needs and is cheap to clone. Times are mission time in
+//! seconds and are clamped to the ends of the trajectory. Where a derivative jumps, its value is
+//! the one from the right, at the very end the one from the left.
+
+mod family;
+mod signal;
+mod trajectory;
+
+pub use family::Family;
+pub use signal::Signal;
+pub use trajectory::Trajectory;
+
+use crate::transcribe::instances::family_members;
+use crate::transcribe::rows::RowInfo;
+use crate::transcribe::{Model, names};
+use ntg_structure::{Structure, Unit};
+use std::fmt;
+use std::sync::Arc;
+
+/// Spline coefficients, times, variables and multipliers of a solved problem.
+#[derive(Clone)]
+pub struct Solution {
+    pub(crate) inner: Arc<Inner>,
+}
+
+/// What all clones share.
+pub(crate) struct Inner {
+    pub(crate) model: Arc<Model>,
+    pub(crate) x: Vec<f64>,
+    pub(crate) rows: Vec<RowInfo>,
+    /// Derivative of the minimised objective by each row's active bound, SI.
+    pub(crate) row_multipliers: Vec<f64>,
+    /// The same for the bounds of the variables.
+    pub(crate) bound_multipliers: Vec<f64>,
+}
+
+/// A phase and its times, in seconds of mission time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhaseTimes {
+    /// Its path, `uav[2].covert`; empty where neither agent nor phase has a name.
+    pub name: String,
+    /// When it starts.
+    pub start: f64,
+    /// When it ends.
+    pub end: f64,
+}
+
+/// A number with its name and the unit in which it is given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Value {
+    /// Its name.
+    pub name: String,
+    /// In declared units.
+    pub value: f64,
+    /// The declared unit.
+    pub unit: Unit,
+}
+
+impl fmt::Debug for Solution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = &self.structure().name;
+        f.debug_struct("Solution").field("problem", name).field("variables", &self.inner.x.len()).finish()
+    }
+}
+
+impl Solution {
+    /// What the problem is.
+    pub fn structure(&self) -> &Structure {
+        &self.inner.model.structure
+    }
+
+    /// The variables of the nonlinear program in SI units: spline coefficients first.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.inner.x
+    }
+
+    /// The start of the first agent to start, in seconds of mission time.
+    pub fn start(&self) -> f64 {
+        self.agent_times().fold(f64::INFINITY, |least, (start, _)| least.min(start))
+    }
+
+    /// The end of the last agent to end, in seconds of mission time.
+    pub fn end(&self) -> f64 {
+        self.agent_times().fold(f64::NEG_INFINITY, |most, (_, end)| most.max(end))
+    }
+
+    /// `count` equally spaced times from start to end, both included; one time is the start.
+    pub fn times(&self, count: usize) -> Vec<f64> {
+        spaced(self.start(), self.end(), count)
+    }
+
+    /// All phases of all agents, each agent's in order of time.
+    pub fn phases(&self) -> Vec<PhaseTimes> {
+        let (model, x) = (&self.inner.model, &self.inner.x);
+        let layout = &model.layout;
+        let phase = |p: usize| {
+            let start = layout.start(p, x);
+            let name = names::phase(&model.structure, layout, p);
+            PhaseTimes { name, start, end: start + layout.duration(p, x) }
+        };
+        (0..layout.phases.len()).map(phase).collect()
+    }
+
+    /// Durations and event times in seconds, by name: the names of durations as declared, and
+    /// `start(path)`, `end(path)`, `duration(path)` of every named phase and agent.
+    pub fn event_times(&self) -> Vec<(String, f64)> {
+        let (model, x) = (&self.inner.model, &self.inner.x);
+        let (structure, layout) = (&model.structure, &model.layout);
+        let mut found = vec![];
+        let mut events = |name: &str, start: f64, duration: f64| {
+            if !name.is_empty() {
+                found.push((format!("start({name})"), start));
+                found.push((format!("end({name})"), start + duration));
+                found.push((format!("duration({name})"), duration));
+            }
+        };
+        let mut durations = vec![];
+        for (agent, member) in layout.agents.iter().enumerate() {
+            let path = names::agent(structure, layout, agent);
+            let whole: f64 = member.phases.clone().map(|p| layout.duration(p, x)).sum();
+            events(&path, member.start.at(x), whole);
+            if let Some(name) = &structure.agents[member.agent].duration_name {
+                durations.push((names::join(&path, name), whole));
+            }
+            for phase in member.phases.clone() {
+                let (own, duration) = (&layout.phases[phase], layout.duration(phase, x));
+                events(&names::phase(structure, layout, phase), layout.start(phase, x), duration);
+                if let Some(name) = &structure.phases[own.phase].duration_name {
+                    durations.push((names::join(&path, &names::indexed(name, own.index)), duration));
+                }
+            }
+        }
+        durations.extend(found);
+        durations
+    }
+
+    /// All declared variables, members of arrays one by one.
+    pub fn variables(&self) -> Vec<Value> {
+        let model = &self.inner.model;
+        let declared = model.structure.variables.iter().zip(&model.layout.variable_first);
+        let members = declared.flat_map(|(declared, first)| {
+            family_members(declared.family).into_iter().enumerate().map(move |(i, index)| Value {
+                name: names::indexed(&declared.name, index),
+                value: self.inner.x[*first as usize + i] / declared.unit.factor,
+                unit: declared.unit.clone(),
+            })
+        });
+        members.collect()
+    }
+
+    /// A declared variable by name (`m0`, `m[2]`), in its declared unit.
+    pub fn variable(&self, name: &str) -> Option<f64> {
+        self.variables().into_iter().find(|v| v.name == name).map(|v| v.value)
+    }
+
+    /// A time by name as in [`Solution::event_times`], in seconds.
+    pub fn time(&self, name: &str) -> Option<f64> {
+        self.event_times().into_iter().find(|(n, _)| n == name).map(|(_, t)| t)
+    }
+
+    /// Start and end of every agent.
+    fn agent_times(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let (layout, x) = (&self.inner.model.layout, &self.inner.x);
+        layout.agents.iter().map(move |agent| {
+            let start = agent.start.at(x);
+            (start, agent.phases.clone().fold(start, |t, phase| t + layout.duration(phase, x)))
+        })
+    }
+}
+
+/// `count` equally spaced numbers with both ends.
+pub(crate) fn spaced(start: f64, end: f64, count: usize) -> Vec<f64> {
+    let last = count.saturating_sub(1);
+    let at = |i: usize| if i == last && i > 0 { end } else { start + (end - start) * i as f64 / last.max(1) as f64 };
+    (0..count).map(at).collect()
+}
+
+impl Inner {
+    /// The phase of an agent that holds time `t` (clamped), and the scaled time in it.
+    pub(crate) fn locate(&self, agent: usize, t: f64) -> Option<(usize, f64)> {
+        let layout = &self.model.layout;
+        let phases = layout.agents[agent].phases.clone();
+        let last = phases.clone().last()?;
+        let mut start = layout.agents[agent].start.at(&self.x);
+        for phase in phases {
+            let duration = layout.duration(phase, &self.x);
+            if t < start + duration || phase == last {
+                let tau = (t - start) / duration;
+                // A time that is not a number stays one.
+                return Some((phase, if tau.is_nan() { tau } else { tau.clamp(0.0, 1.0) }));
+            }
+            start += duration;
+        }
+        None
+    }
+}

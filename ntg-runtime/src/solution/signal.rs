@@ -1,0 +1,138 @@
+//! Named expressions of a spec as functions of mission time.
+
+use super::{Inner, Solution};
+use crate::problem::Problem;
+use crate::transcribe::SetupError;
+use crate::transcribe::instances::members;
+use crate::transcribe::names;
+use crate::transcribe::points::Point;
+use ntg_splines::Side;
+use ntg_structure::{Domain, Unit};
+use std::fmt;
+use std::sync::Arc;
+
+/// A named expression (`let`) of one agent, over all of its phases that define it.
+///
+/// It borrows the problem, whose kernels compute it.
+#[derive(Clone)]
+pub struct Signal<'p> {
+    problem: &'p dyn Problem,
+    inner: Arc<Inner>,
+    name: String,
+    doc: String,
+    unit: Unit,
+    agent: Option<usize>,
+    pieces: Vec<Piece>,
+}
+
+/// The expression in one phase, or at no point.
+#[derive(Clone, Debug)]
+struct Piece {
+    phase: Option<usize>,
+    named: usize,
+    indices: Vec<i64>,
+}
+
+impl fmt::Debug for Signal<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Signal").field("name", &self.name).field("unit", &self.unit).finish()
+    }
+}
+
+impl Signal<'_> {
+    /// Its path: `speed`, `uav[2].pd[1]`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its documentation in the spec.
+    pub fn doc(&self) -> &str {
+        &self.doc
+    }
+
+    /// The declared unit, in which values are given.
+    pub fn unit(&self) -> &Unit {
+        &self.unit
+    }
+
+    /// Whether it is a single number rather than a function of time.
+    pub fn is_constant(&self) -> bool {
+        self.agent.is_none()
+    }
+
+    /// The value at mission time `t` (seconds, clamped to the agent's time), in the declared unit.
+    /// NaN in a phase that does not define it.
+    pub fn at(&self, t: f64) -> f64 {
+        let (phase, point) = match self.agent {
+            None => (None, Point::NONE),
+            Some(agent) => {
+                let Some((phase, tau)) = self.inner.locate(agent, t) else { return f64::NAN };
+                let side = if tau == 1.0 { Side::Left } else { Side::Right };
+                (Some(phase), Point { phase: Some(phase), tau, side, weight: f64::NAN })
+            }
+        };
+        let Some(piece) = self.pieces.iter().find(|piece| piece.phase == phase) else { return f64::NAN };
+        let model = &self.inner.model;
+        let call = &model.structure.named[piece.named].call;
+        let values = model.frame(self.problem).evaluate(call, &piece.indices, point, &self.inner.x);
+        values.ok().and_then(|values| values.first().copied()).map_or(f64::NAN, |value| value / self.unit.factor)
+    }
+}
+
+impl Solution {
+    /// Every named expression; `problem` must be the one that was solved.
+    pub fn signals<'p>(&self, problem: &'p dyn Problem) -> Vec<Signal<'p>> {
+        let mut found: Vec<Signal<'p>> = vec![];
+        for named in 0..self.structure().named.len() {
+            // A structure that could be transcribed has no index outside a family here.
+            let _ = self.add_signals(problem, named, &mut found);
+        }
+        found
+    }
+
+    /// A named expression by its path: `speed`, `uav[2].speed`, `pd[1]`.
+    pub fn signal<'p>(&self, problem: &'p dyn Problem, path: &str) -> Option<Signal<'p>> {
+        self.signals(problem).into_iter().find(|signal| signal.name == path)
+    }
+
+    fn add_signals<'p>(
+        &self,
+        problem: &'p dyn Problem,
+        named: usize,
+        found: &mut Vec<Signal<'p>>,
+    ) -> Result<(), SetupError> {
+        let model = &self.inner.model;
+        let (structure, layout) = (&model.structure, &model.layout);
+        let declared = &structure.named[named];
+        for indices in members(&declared.loops) {
+            let phase = match &declared.domain {
+                Domain::Mission => None,
+                Domain::Start(reference) | Domain::End(reference) | Domain::Path { phase: reference, .. } => {
+                    Some(layout.phase(structure, reference, &indices)?)
+                }
+            };
+            let agent = phase.map(|phase| layout.phases[phase].agent);
+            let path = agent.map_or_else(String::new, |agent| names::agent(structure, layout, agent));
+            let index = declared.family.and_then(|_| indices.last().copied());
+            // A number of an agent family is told apart by the loops around it.
+            let name = match (phase, declared.family, declared.loops.len()) {
+                (None, None, 1..) => names::indexed(&declared.name, indices.last().copied()),
+                _ => names::join(&path, &names::indexed(&declared.name, index)),
+            };
+            let piece = Piece { phase, named, indices };
+            match found.iter_mut().find(|signal| signal.name == name && signal.agent == agent) {
+                Some(signal) => signal.pieces.push(piece),
+                None => found.push(Signal {
+                    problem,
+                    inner: self.inner.clone(),
+                    name,
+                    doc: declared.doc.clone(),
+                    unit: declared.unit.clone(),
+                    agent,
+                    pieces: vec![piece],
+                }),
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,143 @@
+//! One output of one agent over all of its phases.
+
+use super::{Inner, Solution, spaced};
+use crate::transcribe::names;
+use ntg_splines::Side;
+use ntg_structure::Unit;
+use std::fmt;
+use std::sync::Arc;
+
+/// A flat output as a function of mission time, in its declared unit.
+#[derive(Clone)]
+pub struct Trajectory {
+    inner: Arc<Inner>,
+    agent: usize,
+    name: String,
+    unit: Unit,
+    /// For every phase of the agent the member of its outputs.
+    outputs: Vec<Option<usize>>,
+}
+
+impl fmt::Debug for Trajectory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Trajectory").field("name", &self.name).field("unit", &self.unit).finish()
+    }
+}
+
+impl Trajectory {
+    /// Its path: `x`, `uav[2].x[1]`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The declared unit, in which values are given.
+    pub fn unit(&self) -> &Unit {
+        &self.unit
+    }
+
+    /// The value at mission time `t` (seconds, clamped to the agent's time), in the declared unit.
+    pub fn at(&self, t: f64) -> f64 {
+        self.derivative(t, 0)
+    }
+
+    /// A derivative with respect to time at mission time `t`, in declared units per second to the
+    /// power of `order`.
+    pub fn derivative(&self, t: f64, order: usize) -> f64 {
+        self.si(t, order) / self.unit.factor
+    }
+
+    /// A derivative with respect to time in SI units (docs/maths.md, equation 3.2).
+    /// NaN in a phase that does not have the output.
+    pub fn si(&self, t: f64, order: usize) -> f64 {
+        let (layout, x) = (&self.inner.model.layout, &self.inner.x);
+        let Some((phase, tau)) = self.inner.locate(self.agent, t) else { return f64::NAN };
+        let Some(output) = self.outputs[phase - layout.agents[self.agent].phases.start] else { return f64::NAN };
+        if tau.is_nan() {
+            return f64::NAN;
+        }
+        let side = if tau == 1.0 { Side::Left } else { Side::Right };
+        let scaled = layout.flat(phase, output, order, (tau, side), x);
+        scaled / crate::math::powi(layout.duration(phase, x), i32::try_from(order).unwrap_or(i32::MAX))
+    }
+
+    /// When the agent starts, in seconds of mission time.
+    pub fn start(&self) -> f64 {
+        self.inner.model.layout.agents[self.agent].start.at(&self.inner.x)
+    }
+
+    /// When the agent ends, in seconds of mission time.
+    pub fn end(&self) -> f64 {
+        let (layout, x) = (&self.inner.model.layout, &self.inner.x);
+        layout.agents[self.agent].phases.clone().fold(self.start(), |t, phase| t + layout.duration(phase, x))
+    }
+
+    /// `count` values at equally spaced times over the agent's time, as `(t, value)`.
+    pub fn sample(&self, count: usize) -> Vec<(f64, f64)> {
+        spaced(self.start(), self.end(), count).into_iter().map(|t| (t, self.at(t))).collect()
+    }
+}
+
+impl Solution {
+    /// Every output of every agent.
+    pub fn trajectories(&self) -> Vec<Trajectory> {
+        let layout = &self.inner.model.layout;
+        (0..layout.agents.len()).flat_map(|agent| self.agent_trajectories(agent)).collect()
+    }
+
+    /// An output by its path: `x`, `x[1]`, `uav[2].x`.
+    pub fn output(&self, path: &str) -> Option<Trajectory> {
+        self.trajectories().into_iter().find(|t| t.name == path)
+    }
+
+    /// An output of one member of an agent.
+    ///
+    /// | argument | meaning                                                |
+    /// |----------|--------------------------------------------------------|
+    /// | `agent`  | index into `Structure::agents`                         |
+    /// | `member` | its index in the spec, when the agent is a family      |
+    /// | `output` | the output's name                                      |
+    /// | `index`  | its index in the spec, when the output is an array     |
+    pub fn trajectory(
+        &self,
+        agent: usize,
+        member: Option<i64>,
+        output: &str,
+        index: Option<i64>,
+    ) -> Option<Trajectory> {
+        let layout = &self.inner.model.layout;
+        let agent = layout.agents.iter().position(|a| a.agent == agent && a.index == member)?;
+        self.one(agent, output, index)
+    }
+
+    /// An output of one agent member, by position in the layout.
+    pub(crate) fn one(&self, agent: usize, output: &str, index: Option<i64>) -> Option<Trajectory> {
+        let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
+        let mut unit = None;
+        let outputs = layout.agents[agent].phases.clone().map(|phase| {
+            let member = &layout.phases[phase];
+            let declared = &structure.phases[member.phase].outputs;
+            let found = member.outputs.iter().position(|o| o.index == index && declared[o.output].name == output)?;
+            unit.get_or_insert_with(|| declared[member.outputs[found].output].unit.clone());
+            Some(found)
+        });
+        let outputs: Vec<Option<usize>> = outputs.collect();
+        let name = names::join(&names::agent(structure, layout, agent), &names::indexed(output, index));
+        Some(Trajectory { inner: self.inner.clone(), agent, name, unit: unit?, outputs })
+    }
+
+    fn agent_trajectories(&self, agent: usize) -> Vec<Trajectory> {
+        let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
+        let mut found: Vec<Trajectory> = vec![];
+        for phase in layout.agents[agent].phases.clone() {
+            let member = &layout.phases[phase];
+            for output in &member.outputs {
+                let name = &structure.phases[member.phase].outputs[output.output].name;
+                let Some(one) = self.one(agent, name, output.index) else { continue };
+                if found.iter().all(|known| known.name != one.name) {
+                    found.push(one);
+                }
+            }
+        }
+        found
+    }
+}

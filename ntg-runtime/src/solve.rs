@@ -1,0 +1,133 @@
+//! The way from a problem to a report.
+//!
+//! ```text
+//! Problem -> Transcription -> (guess, scales) -> sqp -> Report
+//! ```
+//!
+//! With a continuation this is gone once for every step, each solution the guess of the next.
+
+use crate::guess::continuation::{Setting, set, steps};
+use crate::guess::{Guess, start};
+use crate::problem::Problem;
+use crate::report::{Report, StepReport, user};
+use crate::settings::{InvalidSetting, Settings};
+use crate::solution::Value;
+use crate::sqp::{self, Outcome};
+use crate::status::Status;
+use crate::transcribe::{SetupError, Transcription};
+use ntg_structure::Structure;
+use std::fmt;
+use std::time::{Duration, Instant};
+
+/// Why nothing could be solved at all. That no solution was *found* is no error: the report's
+/// status says so.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The problem cannot be set up with the present parameters, or the guess does not fit it.
+    Setup(SetupError),
+    /// A setting is out of its range.
+    Setting(InvalidSetting),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Setup(error) => write!(f, "{error}"),
+            Self::Setting(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Setup(error) => Some(error),
+            Self::Setting(error) => Some(error),
+        }
+    }
+}
+
+impl From<SetupError> for Error {
+    fn from(error: SetupError) -> Self {
+        Self::Setup(error)
+    }
+}
+
+impl From<InvalidSetting> for Error {
+    fn from(error: InvalidSetting) -> Self {
+        Self::Setting(error)
+    }
+}
+
+/// Solves a problem from the spec's own guess.
+///
+/// # Errors
+/// [`Error`] if the problem cannot be set up; a solve that ends without solution is a report.
+pub fn solve(problem: &dyn Problem, settings: &Settings) -> Result<Report, Error> {
+    run(problem, None, settings)
+}
+
+/// Solves a problem from a program's guess.
+///
+/// # Errors
+/// As [`solve`], and where the guess does not fit the problem.
+pub fn solve_from(problem: &dyn Problem, guess: &Guess, settings: &Settings) -> Result<Report, Error> {
+    run(problem, Some(guess), settings)
+}
+
+fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Result<Report, Error> {
+    settings.validate()?;
+    let began = Instant::now();
+    let structure = problem.structure();
+    let steps = steps(&structure);
+    let mut history: Vec<StepReport> = vec![];
+    let mut last: Option<Vec<f64>> = None;
+    for (i, step) in steps.iter().enumerate() {
+        let step_began = Instant::now();
+        let mut nlp = Transcription::with(problem, set(&structure, step))?;
+        // The layout is the same in every step: only parameters change.
+        let first = match &last {
+            Some(x) => start(&nlp, Some(&Guess::raw(x.clone())))?,
+            None => start(&nlp, guess)?,
+        };
+        nlp.set_scales(&first, settings)?;
+        let outcome = sqp::solve(&nlp, &first, &remaining(settings, began));
+        let stop = i + 1 == steps.len() || matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
+        history.push(record(&nlp, &structure, step, &outcome, step_began));
+        if stop {
+            let mut report = Report::new(&nlp, outcome, settings, history)?;
+            report.seconds = began.elapsed().as_secs_f64();
+            return Ok(report);
+        }
+        // A step that failed has still moved; the next one may recover from there.
+        last = Some(if outcome.x.iter().all(|v| v.is_finite()) { outcome.x } else { first });
+    }
+    Err(SetupError::Malformed { message: "a continuation has no step".into() }.into())
+}
+
+/// The settings with what is left of the time limit.
+fn remaining(settings: &Settings, began: Instant) -> Settings {
+    let time_limit = settings.time_limit.map(|limit| limit.saturating_sub(began.elapsed()).max(Duration::from_nanos(1)));
+    Settings { time_limit, ..settings.clone() }
+}
+
+fn record(
+    nlp: &Transcription,
+    structure: &Structure,
+    step: &[Setting],
+    outcome: &Outcome,
+    began: Instant,
+) -> StepReport {
+    let parameter = |(parameter, value): &Setting| {
+        let declared = &structure.parameters[*parameter];
+        Value { name: declared.name.clone(), value: value / declared.unit.factor, unit: declared.unit.clone() }
+    };
+    StepReport {
+        parameters: step.iter().map(parameter).collect(),
+        status: outcome.status.clone(),
+        objective: user(nlp, outcome.objective),
+        iterations: outcome.iterations,
+        seconds: began.elapsed().as_secs_f64(),
+    }
+}
