@@ -20,6 +20,8 @@ const HIGHEST_PRICE: f64 = 1e7;
 const RISE: f64 = 10.0;
 /// The share of the violation that a step must remove for its price to be high enough.
 const FAIR: f64 = 0.5;
+/// A higher price must buy this many times as much as the one before.
+const WORTH: f64 = 1.1;
 /// A share of the violation so small that removing it is no progress.
 const NOTHING: f64 = 1e-6;
 
@@ -55,7 +57,8 @@ impl Elastic {
     /// Finds a step for a model with this `violation`; counts subproblems in `qps`.
     pub(super) fn step(&mut self, model: &Model<'_>, violation: f64, step: &mut Step, qps: &mut usize) -> Found {
         let slope = model.gradient.iter().fold(1.0_f64, |size, g| size.max(g.abs()));
-        let mut best = None;
+        let (mut best, mut removed_before) = (None, 0.0);
+        self.price = (self.price / RISE).max(FIRST_PRICE);
         loop {
             *qps += 1;
             let priced = Model { penalty: self.price, ..*model };
@@ -72,7 +75,10 @@ impl Elastic {
             if self.price >= HIGHEST_PRICE * slope {
                 return if removed > NOTHING * violation { found } else { Found::Stationary };
             }
-            best = Some(found);
+            if removed > NOTHING * violation && removed <= WORTH * removed_before {
+                return found;
+            }
+            (best, removed_before) = (Some(found), removed);
             self.price *= RISE;
         }
     }

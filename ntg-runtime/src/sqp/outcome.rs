@@ -13,8 +13,10 @@ pub struct IterationRecord {
     pub step: f64,
     /// Whether the subproblem was solved in elastic mode.
     pub elastic: bool,
-    /// Whether the subproblem held the exact Hessian.
+    /// Whether it was Newton's step, with the exact Hessian.
     pub exact: bool,
+    /// Whether it was Newton's step, with a mean of the exact and the clipped Hessian.
+    pub mixed: bool,
     /// Whether the accepted step holds a second-order correction.
     pub corrected: bool,
 }

@@ -25,6 +25,8 @@ const LARGEST_PROXIMAL: f64 = 1e8;
 const PROXIMAL_STEP: f64 = 10.0;
 /// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
 const UNBOUNDED: f64 = 1e10;
+/// Shares of the clipped Hessian in the one of Newton's step, in the order of trial.
+const CLIPPED_SHARES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 /// A step cut to this fraction was a bad proposal.
 const SHORT: f64 = 1.0 / 64.0;
 /// A full step halved this often has no effect any more.
@@ -44,6 +46,10 @@ pub(super) struct Run<'a, N: Nlp> {
     pub(super) convex: Step,
     /// Newton's proposal.
     pub(super) newton: Step,
+    /// The active bounds with which `newton` began.
+    guess: Step,
+    /// How much of the clipped Hessian is in the one that `newton` was made with.
+    share: f64,
     /// Whether `newton` is the proposal that is searched.
     pub(super) use_newton: bool,
     /// A step corrected for curvature.
@@ -62,6 +68,8 @@ pub(super) struct Run<'a, N: Nlp> {
     /// Whether the multipliers are still those of the start.
     untouched: bool,
     repeat_newton: bool,
+    /// Whether the subproblem had no minimum without a larger proximal term.
+    pub(super) falls: bool,
     pub(super) proximal: f64,
     record: IterationRecord,
     history: Vec<IterationRecord>,
@@ -96,6 +104,8 @@ impl<'a, N: Nlp> Run<'a, N> {
             bound_multipliers: bounds,
             convex: Step::new(n, m),
             newton: Step::new(n, m),
+            guess: Step::new(n, m),
+            share: 0.0,
             use_newton: false,
             corrected: Step::new(n, m),
             settled: Step::new(n, m),
@@ -108,6 +118,7 @@ impl<'a, N: Nlp> Run<'a, N> {
             stretched: false,
             untouched: from.is_none(),
             repeat_newton: false,
+            falls: false,
             proximal: LEAST_PROXIMAL,
             record: IterationRecord::default(),
             history: Vec::with_capacity(settings.max_iterations.min(HISTORY) + 1),
@@ -175,32 +186,64 @@ impl<'a, N: Nlp> Run<'a, N> {
         self.solve_newton()
     }
 
+    /// Newton's step from the active bounds in `newton`: with the exact Hessian, else with as
+    /// little of the clipped one mixed in as makes the step lead to a minimum of the model.
     fn solve_newton(&mut self) -> bool {
-        let (model, exact) = (model(&self.program, &self.x, &self.program.exact, 0.0), &mut self.exact);
-        self.use_newton = exact.solve(&model, &mut self.newton);
-        self.use_newton
+        self.guess.copy_from(&self.newton);
+        for share in CLIPPED_SHARES {
+            self.program.mix(share);
+            let model = model(&self.program, &self.x, &self.program.mixed, 0.0);
+            self.use_newton = self.exact.solve(&model, &mut self.newton);
+            if self.use_newton {
+                self.share = share;
+                return true;
+            }
+            self.newton.copy_from(&self.guess);
+        }
+        false
     }
 
     /// Solves the convex subproblem, in elastic form where the ordinary one has no solution; a
     /// status if that is the end.
     pub(super) fn subproblem(&mut self) -> Option<Status> {
         self.use_newton = false;
+        self.falls = false;
+        loop {
+            if let Some(result) = self.ordinary_subproblem().or_else(|| self.elastic_subproblem()) {
+                return result;
+            }
+            // Neither form could be solved: once more with a larger proximal term.
+            if self.proximal >= 1.0 {
+                return Some(Status::SubproblemFailed);
+            }
+            self.falls = true;
+            self.grow_proximal();
+        }
+    }
+
+    /// A step and no status, or nothing.
+    fn ordinary_subproblem(&mut self) -> Option<Option<Status>> {
         while !self.stretched {
             let model = model(&self.program, &self.x, &self.program.convex, self.proximal);
             self.qps += 1;
             match self.subproblem.solve(&model, &mut self.convex) {
                 Verdict::Solved => {
                     self.price = None;
-                    return None;
+                    return Some(None);
                 }
-                Verdict::Unbounded if self.proximal < 1.0 => self.grow_proximal(),
+                // Where every row is satisfied, there is a step, if only a short one.
+                Verdict::Unbounded | Verdict::Failed if self.proximal < 1.0 && !self.violated() => {
+                    self.falls = true;
+                    self.grow_proximal();
+                }
                 _ => break,
             }
         }
-        self.elastic_subproblem()
+        None
     }
 
-    fn elastic_subproblem(&mut self) -> Option<Status> {
+    /// A step, or the end, or nothing.
+    fn elastic_subproblem(&mut self) -> Option<Option<Status>> {
         let model = model(&self.program, &self.x, &self.program.convex, self.proximal);
         let violation = super::globalise::violation(&self.program.limits, &self.program.rows);
         let elastic = self.elastic.get_or_insert_with(|| Elastic::new(&model));
@@ -211,20 +254,19 @@ impl<'a, N: Nlp> Run<'a, N> {
                 if feasible {
                     elastic.reset();
                 }
-                None
+                Some(None)
             }
-            Found::Stationary if self.record.residuals.scaled.primal > self.settings.constraint_tolerance => {
-                Some(Status::Infeasible { rows: self.violations() })
-            }
+            Found::Stationary if self.violated() => Some(Some(Status::Infeasible { rows: self.violations() })),
             Found::Stationary | Found::Failed => {
                 self.stretched = false;
-                if self.proximal >= 1.0 {
-                    return Some(Status::SubproblemFailed);
-                }
-                self.grow_proximal();
-                self.subproblem()
+                None
             }
         }
+    }
+
+    /// Whether a row is violated by more than the tolerance.
+    fn violated(&self) -> bool {
+        self.record.residuals.scaled.primal > self.settings.constraint_tolerance
     }
 
     /// After a search that found nothing: shorter steps, or the end.
@@ -243,7 +285,7 @@ impl<'a, N: Nlp> Run<'a, N> {
     /// Begins the next iteration in elastic mode if rows are violated: linearised rows that can be
     /// satisfied only by steps that lead nowhere are as bad as rows that cannot.
     fn stretch(&mut self) {
-        self.stretched |= self.record.residuals.scaled.primal > self.settings.constraint_tolerance;
+        self.stretched |= self.violated();
     }
 
     fn grow_proximal(&mut self) {
@@ -269,7 +311,8 @@ impl<'a, N: Nlp> Run<'a, N> {
         self.repeat_newton = self.use_newton;
         self.record.step = alpha;
         self.record.elastic = self.price.is_some();
-        self.record.exact = self.use_newton;
+        self.record.exact = self.use_newton && self.share == 0.0;
+        self.record.mixed = self.use_newton && self.share > 0.0;
         self.record.corrected = self.trial.corrected;
         self.history.push(self.record);
         self.iterations += 1;

@@ -30,6 +30,8 @@ pub(super) struct Program<'a, N: Nlp> {
     pub(super) exact: Csc,
     /// The same with every element made convex.
     pub(super) convex: Csc,
+    /// What [`Program::mix`] made of the two.
+    pub(super) mixed: Csc,
     convexifier: Convexifier,
     work: N::Workspace,
     at: Evaluation,
@@ -64,7 +66,8 @@ impl<'a, N: Nlp> Program<'a, N> {
             objective: 0.0,
             jacobian,
             exact: hessian.clone(),
-            convex: hessian,
+            convex: hessian.clone(),
+            mixed: hessian,
             convexifier,
             work,
             at,
@@ -120,6 +123,14 @@ impl<'a, N: Nlp> Program<'a, N> {
         self.assembly.hessian(blocks, &self.at, |k, block, _| convexifier.clip(k, block));
         scale_hessian(&self.assembly.hessian, &self.scales.variables, &mut self.convex);
         Ok(())
+    }
+
+    /// Makes `mixed` a mean of the exact and the convex Hessian; `share` is that of the convex one.
+    pub(super) fn mix(&mut self, share: f64) {
+        let both = self.exact.value.iter().zip(&self.convex.value);
+        for (mixed, (exact, convex)) in self.mixed.value.iter_mut().zip(both) {
+            *mixed = (1.0 - share) * exact + share * convex;
+        }
     }
 
     /// The residuals of the latest point with scaled multipliers.

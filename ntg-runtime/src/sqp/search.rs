@@ -12,6 +12,10 @@ use crate::nlp::{Nlp, NotFinite};
 /// Fractions below this are not tried.
 const SHORTEST: f64 = 1e-8;
 
+/// Multiples of the step above this are not tried, and the factor between those that are.
+const LONGEST: f64 = 1e12;
+const LONGER: f64 = 10.0;
+
 /// A point that is tried.
 pub(super) struct Trial {
     pub(super) x: Vec<f64>,
@@ -53,6 +57,10 @@ impl<N: Nlp> Run<'_, N> {
     pub(super) fn search(&mut self) -> bool {
         let Some(descent) = self.descent() else { return false };
         if self.full(&descent) {
+            if self.trial.corrected {
+                return true;
+            }
+            self.lengthen(&descent);
             return true;
         }
         let mut alpha = 0.5;
@@ -65,11 +73,24 @@ impl<N: Nlp> Run<'_, N> {
         false
     }
 
+    /// Where the subproblem had no minimum, follows an accepted step as far as it leads down.
+    fn lengthen(&mut self, descent: &Descent) {
+        let mut alpha = 1.0;
+        while self.falls && alpha < LONGEST {
+            if !self.attempt(descent, LONGER * alpha, false) {
+                // What was accepted once is accepted again.
+                self.attempt(descent, alpha, false);
+                return;
+            }
+            alpha *= LONGER;
+        }
+    }
+
     /// What the model promises for the proposal.
     fn descent(&mut self) -> Option<Descent> {
         let program = &self.program;
         let (step, hessian) =
-            if self.use_newton { (&self.newton, &program.exact) } else { (&self.convex, &program.convex) };
+            if self.use_newton { (&self.newton, &program.mixed) } else { (&self.convex, &program.convex) };
         let prediction = Prediction {
             slope: program.gradient.iter().zip(&step.d).map(|(g, d)| g * d).sum(),
             curvature: hessian.quadratic_form(&step.d),
@@ -130,7 +151,7 @@ impl<N: Nlp> Run<'_, N> {
         self.program.jacobian.add_product(-1.0, &proposal.d, &mut self.trial.buffer);
         self.corrected.copy_from(proposal);
         let (hessian, proximal) =
-            if self.use_newton { (&self.program.exact, 0.0) } else { (&self.program.convex, self.proximal) };
+            if self.use_newton { (&self.program.mixed, 0.0) } else { (&self.program.convex, self.proximal) };
         let mut model = model(&self.program, &self.x, hessian, proximal);
         model.rows = &self.trial.buffer;
         if self.use_newton {
