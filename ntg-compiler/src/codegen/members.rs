@@ -1,7 +1,8 @@
-//! The members of a typed solution, each a question to the untyped one.
+//! The members of a typed solution, each a question to the runtime's untyped one.
 //!
-//! Everything that generated code asks of `::ntg::runtime::Solution` is in this file. Questions
-//! are paths: `x`, `x[3]`, `covert.x`, `uav[2].leg[1].x`.
+//! Everything that generated code asks of `::ntg::runtime::solution` is in this file. Questions
+//! are names with the path of their agent: `x`, `x[3]`, `uav[2].x`. An agent's struct and those of
+//! its phases hold that path as `_agent`, with the point after it; the problem's own needs none.
 
 use ntg_structure::{Family, Unit};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -10,109 +11,85 @@ use quote::quote;
 use super::data::ToRust;
 use super::parameters::unit_in_words;
 
-/// What a question is about.
+/// What a method asks for.
 #[derive(Clone, Copy)]
 pub(super) enum Question {
-    /// An output along the scope.
-    Output,
-    /// A named expression along the scope.
-    Named,
+    /// A named expression along an agent's time.
+    Signal,
     /// A named expression that is a number.
     Number,
     /// A declared variable.
     Variable,
     /// A named duration.
     Duration,
-    /// The multipliers of a named constraint.
-    Multiplier,
 }
 
-impl Question {
-    /// The method of the untyped solution.
-    fn method(self) -> TokenStream {
-        match self {
-            Self::Output => quote! { output },
-            Self::Named => quote! { named },
-            Self::Number => quote! { number },
-            Self::Variable => quote! { variable },
-            Self::Duration => quote! { duration },
-            Self::Multiplier => quote! { multiplier },
-        }
-    }
-
-    /// The type of the answer.
-    fn answer(self) -> TokenStream {
-        match self {
-            Self::Output | Self::Named => quote! { ::ntg::runtime::Trajectory },
-            Self::Multiplier => quote! { ::ntg::runtime::Multiplier },
-            Self::Number | Self::Variable | Self::Duration => quote! { f64 },
-        }
-    }
+/// The type of an output's field.
+pub(super) fn trajectory(family: Option<Family>) -> TokenStream {
+    in_family(quote! { ::ntg::runtime::solution::Trajectory }, family)
 }
 
-/// The type of an answer, or of a family of answers.
-pub(super) fn kind(question: Question, family: Option<Family>) -> TokenStream {
-    let answer = question.answer();
-    match family {
-        None => answer,
-        Some(_) => quote! { ::ntg::runtime::Family<#answer> },
-    }
-}
-
-/// The expression that asks `solution` for `name` below `path`, both local variables.
-/// The solution knows every name of the structure that it was made from.
-pub(super) fn ask(question: Question, name: &str, family: Option<Family>, in_root: bool) -> TokenStream {
-    let method = question.method();
-    let path = path(name, family.is_some(), in_root);
-    let one = quote! { solution.#method(#path).expect("the solution knows the names of its problem") };
-    match family {
-        None => one,
-        Some(family) => members(family, &one),
-    }
-}
-
-/// A family of what `one` is for the index `i`.
-pub(super) fn members(Family { first, last }: Family, one: &TokenStream) -> TokenStream {
-    let (first, last) = (first.to_rust(), last.to_rust());
-    quote! { ::ntg::runtime::Family::new(#first, (#first..=#last).map(|i| #one).collect()) }
-}
-
-/// `"x"`, `&format!("{path}.x[{i}]")`: the path of a thing in this scope.
-pub(super) fn path(name: &str, indexed: bool, in_root: bool) -> TokenStream {
-    let index = if indexed { "[{i}]" } else { "" };
-    match (indexed, in_root) {
-        (false, true) => {
-            let name = Literal::string(name);
-            quote! { #name }
-        }
-        (_, true) => {
-            let format = Literal::string(&format!("{name}{index}"));
-            quote! { &::std::format!(#format) }
-        }
-        (_, false) => {
-            let format = Literal::string(&format!("{{path}}.{name}{index}"));
-            quote! { &::std::format!(#format) }
-        }
-    }
+/// The value of an output's field, in a function that has `solution`, and `agent` where there is
+/// an agent to be named.
+pub(super) fn output(name: &str, family: Option<Family>, in_root: bool) -> TokenStream {
+    let path = path(name, family, if in_root { None } else { Some(quote! { agent }) });
+    members(family, quote! { known(solution.output(#path)) })
 }
 
 /// A documented method that asks a question.
 pub(super) fn method(
-    ident: &Ident,
-    doc: &[String],
-    question: Question,
-    name: &str,
+    (ident, doc): (&Ident, &[String]),
+    (question, name): (Question, &str),
     family: Option<Family>,
     in_root: bool,
 ) -> TokenStream {
-    let (answer, kind) = (ask(question, name, family, in_root), kind(question, family));
-    let path = (!in_root).then(|| quote! { let path = &self._path; });
+    let path = path(name, family, if in_root { None } else { Some(quote! { self._agent }) });
+    let signal = quote! { known(self._solution.signal(&*self._problem, #path)) };
+    let (answer, kind) = match question {
+        Question::Signal => (signal, quote! { ::ntg::runtime::solution::Signal<'_> }),
+        Question::Number => (quote! { #signal.at(0.0) }, quote! { f64 }),
+        Question::Variable => (quote! { known(self._solution.variable(#path)) }, quote! { f64 }),
+        Question::Duration => (quote! { known(self._solution.time(#path)) }, quote! { f64 }),
+    };
+    let (answer, kind) = (members(family, answer), in_family(kind, family));
     quote! {
         #(#[doc = #doc])*
         pub fn #ident(&self) -> #kind {
-            let solution = &self._solution;
-            #path
             #answer
+        }
+    }
+}
+
+/// `one`, or the family of what it is for each index `i`.
+pub(super) fn members(family: Option<Family>, one: TokenStream) -> TokenStream {
+    let Some(Family { first, last }) = family else { return one };
+    let (first, last) = (first.to_rust(), last.to_rust());
+    quote! { ::ntg::runtime::solution::Family::new(#first, (#first..=#last).map(|i| #one).collect()) }
+}
+
+fn in_family(kind: TokenStream, family: Option<Family>) -> TokenStream {
+    if family.is_some() {
+        quote! { ::ntg::runtime::solution::Family<#kind> }
+    } else {
+        kind
+    }
+}
+
+/// `"x"`, `&format!("{}x[{i}]", self._agent)`: the path of a thing.
+pub(super) fn path(name: &str, family: Option<Family>, agent: Option<TokenStream>) -> TokenStream {
+    let index = if family.is_some() { "[{i}]" } else { "" };
+    match agent {
+        None if index.is_empty() => {
+            let name = Literal::string(name);
+            quote! { #name }
+        }
+        None => {
+            let format = Literal::string(&format!("{name}{index}"));
+            quote! { &::std::format!(#format) }
+        }
+        Some(agent) => {
+            let format = Literal::string(&format!("{{}}{name}{index}"));
+            quote! { &::std::format!(#format, #agent) }
         }
     }
 }
@@ -123,7 +100,17 @@ pub(super) fn of_problem(objective: &Unit) -> TokenStream {
     quote! {
         #[doc = #doc]
         pub fn objective(&self) -> f64 {
-            self._solution.objective()
+            self._report.objective
+        }
+
+        /// Whether a solution was found; `status` says what happened otherwise.
+        pub fn is_solved(&self) -> bool {
+            self._report.is_solved()
+        }
+
+        /// Why the solve ended; it says so in words, and `advice` what to try next.
+        pub fn status(&self) -> &::ntg::runtime::status::Status {
+            &self._report.status
         }
 
         /// `count` equally spaced times from the start to the end of the whole mission, in seconds.
@@ -132,33 +119,49 @@ pub(super) fn of_problem(objective: &Unit) -> TokenStream {
         }
 
         /// How the solve went: why it ended, cost, violations at and between the points.
-        pub fn report(&self) -> &::ntg::runtime::Report {
-            self._solution.report()
+        pub fn report(&self) -> &::ntg::runtime::report::Report {
+            &self._report
         }
 
         /// The solution as every problem has it, by names: to save it, or to start from it.
-        pub fn untyped(&self) -> &::ntg::runtime::Solution {
+        pub fn untyped(&self) -> &::ntg::runtime::solution::Solution {
             &self._solution
+        }
+    }
+}
+
+/// A method that gives a constraint's multipliers; `full` is its name with its path.
+pub(super) fn multiplier(ident: &Ident, name: &str, full: &str) -> TokenStream {
+    let doc = format!(" Multipliers of `{name}`: how the optimum changes with its bound, at each member and point.");
+    quote! {
+        #[doc = #doc]
+        pub fn #ident(&self) -> ::std::vec::Vec<::ntg::runtime::report::Multiplier> {
+            self._solution.multipliers(#full)
         }
     }
 }
 
 /// What every agent and phase answers.
 pub(super) fn of_stretch() -> TokenStream {
+    let time = |what: &str| {
+        let format = Literal::string(&format!("{what}({{}})"));
+        quote! { known(self._solution.time(&::std::format!(#format, self._path))) }
+    };
+    let [start, end, duration] = ["start", "end", "duration"].map(time);
     quote! {
         /// When it starts, in seconds of mission time.
         pub fn start(&self) -> f64 {
-            self._solution.start(&self._path).expect("the solution knows the names of its problem")
+            #start
         }
 
         /// When it ends, in seconds of mission time.
         pub fn end(&self) -> f64 {
-            self._solution.end(&self._path).expect("the solution knows the names of its problem")
+            #end
         }
 
         /// How long it lasts, in seconds.
         pub fn duration(&self) -> f64 {
-            self.end() - self.start()
+            #duration
         }
     }
 }

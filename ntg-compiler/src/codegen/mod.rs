@@ -63,7 +63,7 @@ pub fn generate_at(program: &Program, place_of: &dyn Fn(&str) -> Span) -> TokenS
 
         #[allow(
             dead_code, missing_docs, non_camel_case_types, non_snake_case, unreachable_pub, unused_imports,
-            unused_variables, uncommon_codepoints, confusable_idents, mixed_script_confusables,
+            unused_variables, confusable_idents, mixed_script_confusables,
             clippy::all, clippy::pedantic, clippy::nursery,
             reason = "generated from a spec, whose author chose the names"
         )]

@@ -8,17 +8,18 @@
 //! Fields are the user's names and one of ours that begins with `_`, as no name of a spec does.
 //! Among methods ours come first: a `let report` is reached as `report_()`.
 
-use ntg_structure::{Domain, Named, Structure, Unit, Variable};
-use proc_macro2::{Ident, Span, TokenStream};
+use ntg_structure::{Domain, Family, Named, Structure, Unit, Variable};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use super::members::{self, Question};
 use super::names::{self, camel, ident_at};
 use super::parameters::{doc_lines, unit_in_words};
-use super::tree::{Scope, scopes};
+use super::tree::{Kind, Scope, scopes};
 
 /// Methods that are ours.
-const OURS: [&str; 9] = ["objective", "times", "report", "untyped", "start", "end", "duration", "new", "clone"];
+const OURS: [&str; 11] =
+    ["objective", "is_solved", "status", "times", "report", "untyped", "start", "end", "duration", "new", "clone"];
 
 /// `VanDerPolSolution`.
 pub(super) fn type_name(problem: &str) -> Ident {
@@ -30,16 +31,16 @@ pub(super) fn solve(structure: &Structure, name: &Ident) -> TokenStream {
     let solution = type_name(&structure.name);
     quote! {
         impl #name {
-            /// Solves the problem from the guess of the spec.
+            /// Solves the problem from the guess of the spec. Ask the solution's `is_solved` whether
+            /// one was found; if not, it is the point at which the solver stopped.
             ///
             /// # Errors
-            /// The problem cannot be stated with these parameters and settings, or the solver
-            /// stopped without a solution; the error says why, and holds where it stopped.
+            /// The problem cannot be set up with these parameters, or a setting is out of its range.
             pub fn solve(
                 &self,
-                settings: &::ntg::runtime::Settings,
+                settings: &::ntg::runtime::settings::Settings,
             ) -> ::core::result::Result<#solution, ::ntg::runtime::Error> {
-                ::ntg::runtime::solve(self, settings).map(#solution::new)
+                ::ntg::runtime::solve(self, settings).map(|report| #solution::new(self, report))
             }
 
             /// Solves the problem from a guess of the program: a route, an earlier solution, or
@@ -49,10 +50,10 @@ pub(super) fn solve(structure: &Structure, name: &Ident) -> TokenStream {
             /// As `solve`; and the guess does not fit the problem.
             pub fn solve_from(
                 &self,
-                guess: &::ntg::runtime::Guess,
-                settings: &::ntg::runtime::Settings,
+                guess: &::ntg::runtime::guess::Guess,
+                settings: &::ntg::runtime::settings::Settings,
             ) -> ::core::result::Result<#solution, ::ntg::runtime::Error> {
-                ::ntg::runtime::solve_from(self, guess, settings).map(#solution::new)
+                ::ntg::runtime::solve_from(self, guess, settings).map(|report| #solution::new(self, report))
             }
         }
     }
@@ -74,7 +75,14 @@ pub(super) fn solution(structure: &Structure, place_of: &dyn Fn(&str) -> Span) -
         items.push(writer.scope(&scope, &name, &children));
         open.extend(scope.children.into_iter().zip(children).rev());
     }
-    items.into_iter().collect()
+    quote! {
+        #(#items)*
+
+        /// What a solution of this problem has by construction.
+        fn known<T>(found: ::core::option::Option<T>) -> T {
+            found.expect("a solution knows the names of its problem")
+        }
+    }
 }
 
 /// What every part of the solution needs.
@@ -96,32 +104,37 @@ impl Writer<'_> {
 
     /// The struct of one scope, how it is made, and its methods.
     fn scope(&self, scope: &Scope<'_>, name: &Ident, children: &[Ident]) -> TokenStream {
-        let in_root = scope.path.is_empty();
+        let in_root = scope.kind == Kind::Problem;
         let mut parts = Parts { fields: vec![], values: vec![], methods: vec![], names: names::Scope::with(&OURS) };
         for output in &scope.outputs {
             let ident = self.ident(&output.name);
             let doc = doc_lines(&output.doc, &in_unit(&output.unit));
-            let kind = members::kind(Question::Output, output.family);
-            let value = members::ask(Question::Output, &output.name, output.family, in_root);
+            let (kind, value) =
+                (members::trajectory(output.family), members::output(&output.name, output.family, in_root));
             parts.fields.push(quote! { #(#[doc = #doc])* pub #ident: #kind });
             parts.values.push(quote! { #ident: #value });
         }
         for (child, kind) in scope.children.iter().zip(children) {
-            self.child(child, kind, &mut parts);
+            self.child(child, kind, in_root, &mut parts);
         }
         self.methods(scope, &mut parts);
 
+        let problem = names::ident(&self.structure.name);
         let Parts { fields, values, methods, .. } = parts;
-        let make = if in_root { make_root(&values) } else { make_child(&values) };
-        let path = (!in_root).then(|| quote! { _path: ::std::string::String, });
+        let make = if in_root { make_root(&problem, &values) } else { make_child(&problem, &values) };
+        let own = match in_root {
+            true => quote! { _report: ::std::sync::Arc<::ntg::runtime::report::Report>, },
+            false => quote! { _agent: ::std::string::String, _path: ::std::string::String, },
+        };
         let doc = self.title(scope);
         quote! {
             #[doc = #doc]
             #[derive(Clone, Debug)]
             pub struct #name {
                 #(#fields,)*
-                #path
-                _solution: ::std::sync::Arc<::ntg::runtime::Solution>,
+                _problem: ::std::sync::Arc<#problem>,
+                _solution: ::ntg::runtime::solution::Solution,
+                #own
             }
 
             impl #name {
@@ -133,33 +146,42 @@ impl Writer<'_> {
 
     /// An agent or phase within: a field, or for a family a field of ours and a method that takes
     /// the index.
-    fn child(&self, child: &Scope<'_>, kind: &Ident, parts: &mut Parts) {
-        let Some((name, family)) = child.path.last() else { return };
+    fn child(&self, child: &Scope<'_>, kind: &Ident, in_root: bool, parts: &mut Parts) {
+        let Some((name, family)) = child.path.last().copied() else { return };
+        let prefix = (!in_root).then(|| quote! { agent });
+        let path = members::path(name, family, prefix);
+        let agent = match (child.kind, in_root) {
+            (Kind::Agent, _) => with_point(name, family),
+            (_, true) => quote! { "" },
+            (_, false) => quote! { agent },
+        };
+        let one = quote! { #kind::new(&problem, &solution, #agent, #path) };
         let ident = self.ident(name);
-        let path = members::path(name, family.is_some(), child.path.len() == 1);
-        let one = quote! { #kind::new(&solution, #path) };
-        let Some(family) = family else {
+        let Some(Family { first, last }) = family else {
             let doc = format!(" What happens in `{name}`.");
             parts.fields.push(quote! { #[doc = #doc] pub #ident: #kind });
             parts.values.push(quote! { #ident: #one });
             return;
         };
-        let (field, value) = (format_ident!("_{}", name), members::members(*family, &one));
-        parts.fields.push(quote! { #field: ::ntg::runtime::Family<#kind> });
+        let (field, value) = (format_ident!("_{}", name), members::members(family, one));
+        parts.fields.push(quote! { #field: ::ntg::runtime::solution::Family<#kind> });
         parts.values.push(quote! { #field: #value });
         let ident = parts.method(self, name);
-        let doc = format!(" What `{name}[index]` does; {} to {}, none outside.", family.first, family.last);
+        let doc = format!(" What `{name}[index]` does; `index` is in {first}..={last}.");
         parts.methods.push(quote! {
             #[doc = #doc]
-            pub fn #ident(&self, index: i64) -> ::core::option::Option<&#kind> {
-                self.#field.get(index)
+            ///
+            /// # Panics
+            /// If there is no such member, as for a slice.
+            pub fn #ident(&self, index: i64) -> &#kind {
+                &self.#field[index]
             }
         });
     }
 
     /// Everything in a scope that is no field.
     fn methods(&self, scope: &Scope<'_>, parts: &mut Parts) {
-        let in_root = scope.path.is_empty();
+        let in_root = scope.kind == Kind::Problem;
         if in_root {
             parts.methods.push(members::of_problem(&self.structure.objective_unit));
             for variable in &self.structure.variables {
@@ -174,7 +196,7 @@ impl Writer<'_> {
         for duration in &scope.durations {
             let ident = parts.method(self, &format!("duration_{duration}"));
             let doc = [format!(" The duration `{duration}`, in seconds.")];
-            parts.methods.push(members::method(&ident, &doc, Question::Duration, duration, None, in_root));
+            parts.methods.push(members::method((&ident, &doc), (Question::Duration, duration), None, in_root));
         }
         self.multipliers(scope, parts);
     }
@@ -182,31 +204,34 @@ impl Writer<'_> {
     fn variable(&self, variable: &Variable, parts: &mut Parts) {
         let ident = parts.method(self, &variable.name);
         let doc = doc_lines(&variable.doc, &in_unit(&variable.unit));
-        parts.methods.push(members::method(&ident, &doc, Question::Variable, &variable.name, variable.family, true));
+        parts.methods.push(members::method(
+            (&ident, &doc),
+            (Question::Variable, &variable.name),
+            variable.family,
+            true,
+        ));
     }
 
     fn named(&self, named: &Named, in_root: bool, parts: &mut Parts) {
         let ident = parts.method(self, &named.name);
         let doc = doc_lines(&named.doc, &in_unit(&named.unit));
-        let question = if named.domain == Domain::Mission { Question::Number } else { Question::Named };
-        parts.methods.push(members::method(&ident, &doc, question, &named.name, named.family, in_root));
+        let question = if named.domain == Domain::Mission { Question::Number } else { Question::Signal };
+        parts.methods.push(members::method((&ident, &doc), (question, &named.name), named.family, in_root));
     }
 
     /// A method for each constraint of this scope that has a name.
     fn multipliers(&self, scope: &Scope<'_>, parts: &mut Parts) {
         let path: Vec<&str> = scope.path.iter().map(|(name, _)| *name).collect();
-        let in_root = path.is_empty();
-        let mut written = vec![];
-        for constraint in &self.structure.constraints {
-            let Some(full) = &constraint.name else { continue };
+        let path = path.join(".");
+        let mut written: Vec<&str> = vec![];
+        for full in self.structure.constraints.iter().filter_map(|constraint| constraint.name.as_deref()) {
             let (before, name) = full.rsplit_once('.').unwrap_or(("", full));
-            if before != path.join(".") || written.contains(&name) {
+            if before != path || written.contains(&full) {
                 continue;
             }
-            written.push(name);
+            written.push(full);
             let ident = parts.method(self, &format!("multiplier_{name}"));
-            let doc = [format!(" How much the optimum changes with the bound of `{name}`.")];
-            parts.methods.push(members::method(&ident, &doc, Question::Multiplier, name, None, in_root));
+            parts.methods.push(members::multiplier(&ident, name, full));
         }
     }
 
@@ -235,25 +260,48 @@ impl Parts {
 }
 
 /// How the problem's solution is made.
-fn make_root(values: &[TokenStream]) -> TokenStream {
+fn make_root(problem: &Ident, values: &[TokenStream]) -> TokenStream {
     quote! {
-        fn new(solution: ::ntg::runtime::Solution) -> Self {
-            let solution = ::std::sync::Arc::new(solution);
-            Self { #(#values,)* _solution: solution }
+        fn new(problem: &#problem, report: ::ntg::runtime::report::Report) -> Self {
+            let problem = ::std::sync::Arc::new(::std::clone::Clone::clone(problem));
+            let solution = ::std::clone::Clone::clone(&report.solution);
+            Self {
+                #(#values,)*
+                _problem: problem,
+                _solution: solution,
+                _report: ::std::sync::Arc::new(report),
+            }
         }
     }
 }
 
 /// How an agent or phase of it is made.
-fn make_child(values: &[TokenStream]) -> TokenStream {
+fn make_child(problem: &Ident, values: &[TokenStream]) -> TokenStream {
     quote! {
-        fn new(solution: &::std::sync::Arc<::ntg::runtime::Solution>, path: &str) -> Self {
+        fn new(
+            problem: &::std::sync::Arc<#problem>,
+            solution: &::ntg::runtime::solution::Solution,
+            agent: &str,
+            path: &str,
+        ) -> Self {
             Self {
                 #(#values,)*
+                _problem: ::std::clone::Clone::clone(problem),
+                _solution: ::std::clone::Clone::clone(solution),
+                _agent: ::std::convert::From::from(agent),
                 _path: ::std::convert::From::from(path),
-                _solution: ::std::sync::Arc::clone(solution),
             }
         }
+    }
+}
+
+/// The path of an agent as a prefix of others.
+fn with_point(agent: &str, family: Option<Family>) -> TokenStream {
+    let format = Literal::string(&if family.is_some() { format!("{agent}[{{i}}].") } else { format!("{agent}.") });
+    if family.is_some() {
+        quote! { &::std::format!(#format) }
+    } else {
+        quote! { #format }
     }
 }
 

@@ -9,8 +9,21 @@
 
 use ntg_structure::{Domain, Family, Named, Output, Structure};
 
+/// What a scope stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The whole problem, which may be an agent's too.
+    Problem,
+    /// A named agent.
+    Agent,
+    /// A named phase.
+    Phase,
+}
+
 /// A scope with its own type in the generated code.
 pub(super) struct Scope<'a> {
+    /// What it stands for.
+    pub(super) kind: Kind,
     /// The names from the problem down to here, each with its family.
     pub(super) path: Vec<(&'a str, Option<Family>)>,
     /// Outputs, which become fields.
@@ -23,16 +36,20 @@ pub(super) struct Scope<'a> {
     pub(super) children: Vec<Scope<'a>>,
 }
 
+impl<'a> Scope<'a> {
+    fn new(kind: Kind, path: Vec<(&'a str, Option<Family>)>) -> Self {
+        Self { kind, path, outputs: vec![], named: vec![], durations: vec![], children: vec![] }
+    }
+}
+
 /// The scope of the whole problem.
 pub(super) fn scopes(structure: &Structure) -> Scope<'_> {
-    let mut root =
-        Scope { path: vec![], outputs: vec![], named: numbers(structure), durations: vec![], children: vec![] };
+    let mut root = Scope { named: numbers(structure), ..Scope::new(Kind::Problem, vec![]) };
     for (agent, declared) in structure.agents.iter().enumerate() {
         match &declared.name {
             None => fill(&mut root, structure, agent),
             Some(name) => {
-                let path = vec![(name.as_str(), declared.family)];
-                let mut scope = Scope { path, outputs: vec![], named: vec![], durations: vec![], children: vec![] };
+                let mut scope = Scope::new(Kind::Agent, vec![(name.as_str(), declared.family)]);
                 fill(&mut scope, structure, agent);
                 root.children.push(scope);
             }
@@ -77,9 +94,11 @@ fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
         };
         let mut path = scope.path.clone();
         path.push((name, declared.family));
-        let durations = declared.duration_name.as_deref().into_iter().collect();
-        let outputs = declared.outputs.iter().collect();
-        scope.children.push(Scope { path, outputs, named: along(phase).collect(), durations, children: vec![] });
+        let mut within = Scope::new(Kind::Phase, path);
+        within.outputs.extend(&declared.outputs);
+        within.named.extend(along(phase));
+        within.durations.extend(declared.duration_name.as_deref());
+        scope.children.push(within);
     }
 }
 
