@@ -31,7 +31,7 @@ pub(super) fn derive(
     slots: usize,
     data: usize,
     mode: Mode,
-) -> (Kernel, KernelBody, Vec<Option<Span>>) {
+) -> (Kernel, KernelBody, Vec<Span>) {
     let Formulas { mut dag, values, origin } = formulas;
     let (inputs, rows) = (slots + data, values.len());
     let variables = ids(0, slots);
@@ -88,13 +88,14 @@ fn out_degree(degree: Degree) -> OutDegree {
 
 /// Operations that can give infinity or NaN from finite operands: first their values, then the
 /// factors in which their derivatives are singular.
-fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (Vec<NodeId>, Vec<Option<Span>>) {
-    let schedule = dag.schedule(values);
+fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (Vec<NodeId>, Vec<Span>) {
+    // What the compiler has made itself, such as `1 / T`, is of no help to a person.
+    let schedule: Vec<NodeId> = dag.schedule(values).into_iter().filter(|id| origin.contains_key(id)).collect();
     let (mut nodes, mut spans) = (Vec::new(), Vec::new());
     for id in &schedule {
         if may_fail(dag, dag.node(*id)) {
             nodes.push(*id);
-            spans.push(origin.get(id).copied());
+            spans.push(origin[id]);
         }
     }
     for id in schedule {
@@ -109,7 +110,7 @@ fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (
         };
         let one = dag.constant(1.0);
         nodes.push(dag.div(one, singular));
-        spans.push(origin.get(&id).copied());
+        spans.push(origin[&id]);
     }
     (nodes, spans)
 }

@@ -48,7 +48,7 @@ pub(super) fn call(lowering: &mut Lowering<'_>, name: &str, mode: Mode, roots: &
 
     let (mut shape, mut body, probes) = derive(formulas, slots.len() + reductions.len(), data.len(), mode);
     shape.name = name.to_owned();
-    shape.probes = probes.into_iter().map(|span| lowering.place_or_none(span)).collect();
+    shape.probes = probes.into_iter().map(|span| lowering.place(span)).collect();
     body.names = names;
     body.labels = roots.iter().map(|root| root.label.clone()).collect();
     Call { kernel: lowering.kernel(shape, body), slots, reductions, data }

@@ -245,9 +245,4 @@ impl Lowering<'_> {
         let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         Place { line: number(at.line), column: number(at.column), text: self.source.snippet(span) }
     }
-
-    /// As `place`, for nodes that the compiler made itself.
-    pub(super) fn place_or_none(&self, span: Option<Span>) -> Place {
-        span.map_or_else(Place::default, |span| self.place(span))
-    }
 }
