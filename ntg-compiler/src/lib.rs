@@ -1,5 +1,45 @@
-//! (see Cargo.toml)
+//! The ntg compiler: from the text of a spec to kernels with exact derivatives, and to Rust.
+//!
+//! It reads no files and no clock: a spec comes in as a [`Source`], tables through a [`Loader`].
+//! Each stage is a folder, takes what the one before it gives, and knows nothing of those after it:
+//!
+//! ```text
+//! Source --syntax--> ast::Spec --model--> Problem --program--> Program --codegen--> Rust
+//! ```
+//!
+//! `expr` is the algebra that `model` and `program` share.
+
+pub mod codegen;
 pub mod diagnostic;
 pub mod expr;
+pub mod model;
+pub mod program;
 pub mod source;
 pub mod syntax;
+
+use diagnostic::{Diagnostic, Diagnostics, Severity};
+use model::Loader;
+use program::Program;
+use source::Source;
+
+/// A spec that has been compiled.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// What is computed.
+    pub program: Program,
+    /// What the user should know though nothing is wrong: gradients that may jump, fits of tables.
+    pub notes: Vec<Diagnostic>,
+}
+
+/// Compiles a spec.
+///
+/// # Errors
+/// Everything that is wrong with it, in source order.
+pub fn compile(source: &Source, loader: &dyn Loader) -> Result<Compiled, Diagnostics> {
+    let spec = syntax::parse(source)?;
+    let (problem, found) = model::build(&spec, source, loader);
+    let (errors, notes) = found.into_iter().partition(|d: &Diagnostic| d.severity == Severity::Error);
+    Diagnostics::or(errors)?;
+    let problem = problem.expect("a problem is missing only where there are errors");
+    Ok(Compiled { program: program::lower(problem, source), notes })
+}
