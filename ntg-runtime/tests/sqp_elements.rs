@@ -84,7 +84,13 @@ fn values(p: &Program, x: &[f64], out: &mut Evaluation) -> Vec<f64> {
 }
 
 /// Gradient of the Lagrangian with these weights.
-fn lagrangian_gradient(p: &Program, assembly: &mut Assembly, x: &[f64], weights: &[f64], out: &mut Evaluation) -> Vec<f64> {
+fn lagrangian_gradient(
+    p: &Program,
+    assembly: &mut Assembly,
+    x: &[f64],
+    weights: &[f64],
+    out: &mut Evaluation,
+) -> Vec<f64> {
     p.derivatives(x, weights[0], &weights[1..], &mut (), out).expect("the tests' points are regular");
     assembly.first(p.blocks(), out);
     let mut gradient: Vec<f64> = assembly.gradient.iter().map(|g| weights[0] * g).collect();
@@ -104,7 +110,8 @@ fn assembled_derivatives_agree_with_differences() {
         assembly.hessian(p.blocks(), &out, |_, _, _| {});
         let h = 1e-5;
         for j in 0..n {
-            let moved = |by: f64| x.iter().enumerate().map(|(k, x)| if k == j { x + by } else { *x }).collect::<Vec<_>>();
+            let moved =
+                |by: f64| x.iter().enumerate().map(|(k, x)| if k == j { x + by } else { *x }).collect::<Vec<_>>();
             let (up, down) = (values(&p, &moved(h), &mut out), values(&p, &moved(-h), &mut out));
             let slope: f64 = (0..=m).map(|i| weights[i] * (up[i] - down[i]) / (2.0 * h)).sum();
             assert!((slope - gradient[j]).abs() < 1e-6 * (1.0 + slope.abs()), "gradient {j}");

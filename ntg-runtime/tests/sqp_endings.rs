@@ -33,9 +33,7 @@ fn linear_contradiction_names_its_rows() {
 #[test]
 fn nonlinear_contradiction_ends_where_the_violation_is_least() {
     // A parabola above 1 and a line: x^2 + 1 <= y <= 0.
-    let p = Program::dense(&[FREE, (-INF, 0.0)], &[(-INF, 0.0)], |x| {
-        vec![x[0].clone(), x[0].powi(2) + 1.0 - &x[1]]
-    });
+    let p = Program::dense(&[FREE, (-INF, 0.0)], &[(-INF, 0.0)], |x| vec![x[0].clone(), x[0].powi(2) + 1.0 - &x[1]]);
     let found = solve(&p, &[3.0, -1.0], &Settings::default());
     let Status::Infeasible { rows } = &found.status else { panic!("{}", found.status) };
     assert_eq!(rows.len(), 1);
@@ -123,7 +121,10 @@ fn limits_of_time_and_iterations_hold() {
 fn same_program_same_bits() {
     let run = || solve(&rosenbrock(), &[-1.2, 1.0], &Settings::default());
     let (a, b) = (run(), run());
-    assert_eq!(a.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), b.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+    assert_eq!(
+        a.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>(),
+        b.x.iter().map(|x| x.to_bits()).collect::<Vec<_>>()
+    );
     assert_eq!(a.history, b.history);
 }
 

@@ -44,9 +44,7 @@ fn near(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn hs6_curved_equality() {
-    let p = Program::dense(&[FREE; 2], &[(0.0, 0.0)], |x| {
-        vec![(1.0 - &x[0]).powi(2), 10.0 * (&x[1] - x[0].powi(2))]
-    });
+    let p = Program::dense(&[FREE; 2], &[(0.0, 0.0)], |x| vec![(1.0 - &x[0]).powi(2), 10.0 * (&x[1] - x[0].powi(2))]);
     let found = solved(&p, &[-1.2, 1.0], 0.0);
     near(&found.x, &[1.0, 1.0]);
 }
@@ -181,8 +179,7 @@ fn hs71_product() {
 fn hs76_quadratic() {
     let rows = [(-INF, 5.0), (-INF, 4.0), (1.5, INF)];
     let p = Program::dense(&[(0.0, INF); 4], &rows, |x| {
-        let f = x[0].powi(2) + 0.5 * x[1].powi(2) + x[2].powi(2) + 0.5 * x[3].powi(2) - &x[0] * &x[2]
-            + &x[2] * &x[3]
+        let f = x[0].powi(2) + 0.5 * x[1].powi(2) + x[2].powi(2) + 0.5 * x[3].powi(2) - &x[0] * &x[2] + &x[2] * &x[3]
             - &x[0]
             - 3.0 * &x[1]
             + &x[2]
@@ -296,9 +293,7 @@ fn nonconvex_quadratic_in_a_box_ends_at_a_vertex() {
 
 #[test]
 fn rosenbrock() {
-    let p = Program::dense(&[FREE; 2], &[], |x| {
-        vec![100.0 * (&x[1] - x[0].powi(2)).powi(2) + (1.0 - &x[0]).powi(2)]
-    });
+    let p = Program::dense(&[FREE; 2], &[], |x| vec![100.0 * (&x[1] - x[0].powi(2)).powi(2) + (1.0 - &x[0]).powi(2)]);
     near(&solved(&p, &[-1.2, 1.0], 0.0).x, &[1.0, 1.0]);
 }
 

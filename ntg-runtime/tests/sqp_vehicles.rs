@@ -59,7 +59,9 @@ fn derivative(d: usize, t: f64) -> Vec<f64> {
         let factor = order as f64 - 1.0;
         (0..lower.len() - 1)
             .map(|i| {
-                factor * (share(knot(i), knot(i + order - 1), lower[i]) - share(knot(i + 1), knot(i + order), lower[i + 1]))
+                factor
+                    * (share(knot(i), knot(i + order - 1), lower[i])
+                        - share(knot(i + 1), knot(i + order), lower[i + 1]))
             })
             .collect()
     }

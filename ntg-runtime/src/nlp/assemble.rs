@@ -98,7 +98,9 @@ impl Assembly {
                         let column = local as usize;
                         let slope: f64 = entries
                             .iter()
-                            .map(|&(entry, slot)| values.jacobian[entry * block.elements + e] * map[slot * width + column])
+                            .map(|&(entry, slot)| {
+                                values.jacobian[entry * block.elements + e] * map[slot * width + column]
+                            })
                             .sum();
                         out[position as usize] += block.weight[lane] * slope;
                     }
@@ -192,9 +194,8 @@ fn each_place(block: &Block, rows: &[Vec<(usize, usize)>], e: usize, mut visit: 
 /// Calls `visit(a, b)`, `a <= b`, for the pairs of local variables that second derivatives connect.
 fn each_pair(block: &Block, part: &[Option<usize>], e: usize, mut visit: impl FnMut(usize, usize)) {
     let (map, width) = (block.map(e), block.variables(e).len());
-    let touches = |p: usize, local: usize| {
-        (0..block.slots).any(|slot| part[slot] == Some(p) && map[slot * width + local] != 0.0)
-    };
+    let touches =
+        |p: usize, local: usize| (0..block.slots).any(|slot| part[slot] == Some(p) && map[slot * width + local] != 0.0);
     for b in 0..width {
         for a in 0..=b {
             if (0..block.slots).any(|p| part[p] == Some(p) && touches(p, a) && touches(p, b)) {

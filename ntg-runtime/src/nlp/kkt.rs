@@ -83,9 +83,9 @@ pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residua
 fn relaxation(scales: &Scales, point: &Point<'_>) -> f64 {
     let rows = point.row_multipliers.iter().zip(&scales.rows).map(|(lambda, factor)| (lambda / factor).abs());
     let bounds = point.bound_multipliers.iter().zip(&scales.variables).map(|(mu, size)| (mu * size).abs());
-    let (sum, count) = rows.chain(bounds).fold((0.0, 0.0), |(sum, count), size| {
-        if size > 0.0 { (sum + size, count + 1.0) } else { (sum, count) }
-    });
+    let (sum, count) = rows
+        .chain(bounds)
+        .fold((0.0, 0.0), |(sum, count), size| if size > 0.0 { (sum + size, count + 1.0) } else { (sum, count) });
     let mean = if count > 0.0 { scales.objective * sum / count } else { 0.0 };
     (mean / LARGE_MULTIPLIER).max(1.0)
 }

@@ -71,9 +71,8 @@ fn by_row(matrix: &Csc) -> Vec<Vec<usize>> {
 /// `(half_band + 1)^2 + border * half_band`-like work smaller; gives border and half band.
 fn border(n: usize, edges: &[(usize, usize)]) -> (Vec<usize>, usize) {
     let mut inside = vec![true; n];
-    let band = |inside: &[bool]| {
-        edges.iter().filter(|(i, j)| inside[*i] && inside[*j]).map(|(i, j)| j - i).max().unwrap_or(0)
-    };
+    let band =
+        |inside: &[bool]| edges.iter().filter(|(i, j)| inside[*i] && inside[*j]).map(|(i, j)| j - i).max().unwrap_or(0);
     let mut best = (Vec::new(), band(&inside));
     let work = |half_band: usize, border: usize| (half_band + border + 1).pow(2);
     let mut border = Vec::new();

@@ -65,8 +65,7 @@ impl Elastic {
             if self.subproblem.solve(&priced, step) != Verdict::Solved {
                 return best.unwrap_or(Found::Failed);
             }
-            let linearised =
-                linearised_violation(model.limits, model.rows, model.jacobian, &step.d, &mut self.buffer);
+            let linearised = linearised_violation(model.limits, model.rows, model.jacobian, &step.d, &mut self.buffer);
             let removed = violation - linearised;
             let found = Found::Step { price: self.price, feasible: linearised <= NOTHING * violation };
             if removed >= FAIR * violation {
@@ -81,6 +80,11 @@ impl Elastic {
             (best, removed_before) = (Some(found), removed);
             self.price *= RISE;
         }
+    }
+
+    /// The step that reduces the sum of squares of the linearised violations, (6.14).
+    pub(super) fn least_squares(&mut self, model: &Model<'_>, step: &mut Step) -> bool {
+        self.subproblem.solve(&Model { penalty: 1.0, squared: true, ..*model }, step) == Verdict::Solved
     }
 
     /// Solves again at the same price for other rows.

@@ -13,9 +13,11 @@
 mod clarabel;
 mod convexify;
 mod elastic;
+mod ending;
 mod exact;
 mod globalise;
 mod outcome;
+mod restore;
 mod run;
 mod scaled;
 mod search;

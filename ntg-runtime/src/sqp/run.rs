@@ -1,18 +1,18 @@
-//! The state of a solve, and the steps of the loop that make proposals and decide about the end.
-//! The search along a proposal is in `search.rs`.
+//! The state of a solve, and the steps of the loop that make proposals and move on.
+//! The search along a proposal is in `search.rs`, the end in `ending.rs`.
 
 use super::clarabel::Verdict;
 use super::elastic::{Elastic, Found};
 use super::exact::ExactStep;
 use super::globalise::Merit;
-use super::outcome::{IterationRecord, Multipliers, Outcome};
+use super::outcome::{IterationRecord, Multipliers};
 use super::scaled::Program;
 use super::search::Trial;
 use super::step::Step;
 use super::subproblem::{Model, Subproblem};
-use crate::nlp::{Csc, Limits, Nlp, NotFinite, kkt};
-use crate::settings::{Control, Progress, Settings};
-use crate::status::{Bounded, Status, Violation};
+use crate::nlp::{Csc, Nlp, NotFinite};
+use crate::settings::Settings;
+use crate::status::Status;
 use std::time::Instant;
 
 /// The smallest proximal term: it bounds the step where the clipped Hessian is singular.
@@ -23,10 +23,10 @@ const FIRST_PROXIMAL: f64 = 1e-3;
 const LARGEST_PROXIMAL: f64 = 1e8;
 /// Factor by which the proximal term grows after a failure and shrinks after a success.
 const PROXIMAL_STEP: f64 = 10.0;
-/// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
-const UNBOUNDED: f64 = 1e10;
 /// Shares of the clipped Hessian in the one of Newton's step, in the order of trial.
 const CLIPPED_SHARES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+/// How often restoration is tried in one solve.
+const RESTORATIONS: usize = 3;
 /// A step cut to this fraction was a bad proposal.
 const SHORT: f64 = 1.0 / 64.0;
 /// A full step halved this often has no effect any more.
@@ -39,9 +39,9 @@ pub(super) struct Run<'a, N: Nlp> {
     pub(super) settings: &'a Settings,
     pub(super) program: Program<'a, N>,
     pub(super) x: Vec<f64>,
-    previous: Vec<f64>,
-    row_multipliers: Vec<f64>,
-    bound_multipliers: Vec<f64>,
+    pub(super) previous: Vec<f64>,
+    pub(super) row_multipliers: Vec<f64>,
+    pub(super) bound_multipliers: Vec<f64>,
     /// The subproblem's proposal.
     pub(super) convex: Step,
     /// Newton's proposal.
@@ -66,16 +66,18 @@ pub(super) struct Run<'a, N: Nlp> {
     /// Whether the next iteration begins in elastic mode.
     stretched: bool,
     /// Whether the multipliers are still those of the start.
-    untouched: bool,
+    pub(super) untouched: bool,
     repeat_newton: bool,
+    /// How often restoration may still be tried.
+    restorations: usize,
     /// Whether the subproblem had no minimum without a larger proximal term.
     pub(super) falls: bool,
     pub(super) proximal: f64,
-    record: IterationRecord,
-    history: Vec<IterationRecord>,
-    iterations: usize,
+    pub(super) record: IterationRecord,
+    pub(super) history: Vec<IterationRecord>,
+    pub(super) iterations: usize,
     pub(super) qps: usize,
-    begin: Instant,
+    pub(super) begin: Instant,
 }
 
 impl<'a, N: Nlp> Run<'a, N> {
@@ -118,6 +120,7 @@ impl<'a, N: Nlp> Run<'a, N> {
             stretched: false,
             untouched: from.is_none(),
             repeat_newton: false,
+            restorations: RESTORATIONS,
             falls: false,
             proximal: LEAST_PROXIMAL,
             record: IterationRecord::default(),
@@ -127,46 +130,6 @@ impl<'a, N: Nlp> Run<'a, N> {
             begin,
             program,
         })
-    }
-
-    /// Computes the residuals of the present point, (6.2) to (6.5).
-    pub(super) fn measure(&mut self) {
-        self.record = IterationRecord {
-            objective: self.program.objective / self.program.scales.objective,
-            residuals: self.program.residuals(&self.row_multipliers, &self.bound_multipliers),
-            ..IterationRecord::default()
-        };
-    }
-
-    /// Whether the solve is over, and why.
-    pub(super) fn stops(&mut self) -> Option<Status> {
-        let found = self.record.residuals.scaled;
-        let tolerance = self.settings.tolerance;
-        let feasible = found.primal <= self.settings.constraint_tolerance;
-        if feasible && found.dual <= tolerance && found.complementarity <= tolerance {
-            return Some(Status::Solved);
-        }
-        let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-        if self.program.objective < -UNBOUNDED || largest > UNBOUNDED {
-            return Some(Status::Unbounded);
-        }
-        if let Some(watch) = &self.settings.on_iteration {
-            let progress = Progress {
-                iteration: self.iterations,
-                objective: self.record.objective,
-                primal: found.primal,
-                dual: found.dual,
-                step: self.history.last().map_or(0.0, |last| last.step),
-                seconds: self.begin.elapsed().as_secs_f64(),
-            };
-            if watch(&progress) == Control::Cancel {
-                return Some(Status::Cancelled);
-            }
-        }
-        if self.settings.time_limit.is_some_and(|limit| self.begin.elapsed() >= limit) {
-            return Some(Status::TimeLimit);
-        }
-        (self.iterations >= self.settings.max_iterations).then_some(Status::IterationLimit)
     }
 
     /// Newton's step on the active bounds of the last one, if that was taken in full.
@@ -256,12 +219,25 @@ impl<'a, N: Nlp> Run<'a, N> {
                 }
                 Some(None)
             }
-            Found::Stationary if self.violated() => Some(Some(Status::Infeasible { rows: self.violations() })),
+            Found::Stationary if self.violated() => Some(self.restored()),
             Found::Stationary | Found::Failed => {
                 self.stretched = false;
                 None
             }
         }
+    }
+
+    /// Where the sum of violations cannot be reduced, perhaps the sum of their squares can.
+    fn restored(&mut self) -> Option<Status> {
+        self.stretched = false;
+        if self.restorations > 0 {
+            self.restorations -= 1;
+            if self.restore() {
+                return None;
+            }
+            self.measure();
+        }
+        Some(Status::Infeasible { rows: self.violations() })
     }
 
     /// Whether a row is violated by more than the tolerance.
@@ -342,45 +318,6 @@ impl<'a, N: Nlp> Run<'a, N> {
         }
         result
     }
-
-    /// What is violated at the present point, the worst first.
-    fn violations(&self) -> Vec<Violation> {
-        let nlp = self.program.nlp;
-        let tolerance = self.settings.constraint_tolerance;
-        let limits: &Limits = &self.program.limits;
-        let mut found: Vec<(f64, Violation)> = Vec::new();
-        for (i, &scaled) in self.program.rows.iter().enumerate() {
-            let size = kkt::violation(scaled, limits.row_lower[i], limits.row_upper[i]);
-            if size > tolerance {
-                let value = scaled / self.program.scales.rows[i];
-                let bounds = nlp.limits();
-                let bound = if scaled < limits.row_lower[i] { bounds.row_lower[i] } else { bounds.row_upper[i] };
-                let (of, name, violation) = (Bounded::Row(i), nlp.row_name(i), (value - bound).abs());
-                found.push((size, Violation { of, name, value, bound, violation }));
-            }
-        }
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        found.into_iter().map(|(_, violation)| violation).collect()
-    }
-
-    /// Ends the solve.
-    pub(super) fn outcome(mut self, status: Status) -> Outcome {
-        self.history.push(self.record);
-        let (row_multipliers, bound_multipliers) =
-            self.program.multipliers(&self.row_multipliers, &self.bound_multipliers);
-        Outcome {
-            status,
-            x: self.program.unscale(&self.x),
-            row_multipliers,
-            bound_multipliers,
-            objective: self.record.objective,
-            residuals: self.record.residuals,
-            iterations: self.iterations,
-            qps: self.qps,
-            history: self.history,
-            seconds: self.begin.elapsed().as_secs_f64(),
-        }
-    }
 }
 
 /// The subproblem's data at the present point, with one of the Hessians.
@@ -399,5 +336,6 @@ pub(super) fn model<'m, N: Nlp>(
         hessian,
         proximal,
         penalty: 0.0,
+        squared: false,
     }
 }

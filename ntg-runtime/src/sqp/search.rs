@@ -19,9 +19,9 @@ const LONGER: f64 = 10.0;
 /// A point that is tried.
 pub(super) struct Trial {
     pub(super) x: Vec<f64>,
-    rows: Vec<f64>,
+    pub(super) rows: Vec<f64>,
     /// Linearised rows, and rows corrected for curvature.
-    buffer: Vec<f64>,
+    pub(super) buffer: Vec<f64>,
     violation: f64,
     /// The fraction of the step at which `x` was accepted.
     pub(super) alpha: f64,

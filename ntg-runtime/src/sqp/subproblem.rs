@@ -58,6 +58,8 @@ pub(super) struct Model<'a> {
     pub(super) proximal: f64,
     /// Price of violating a row; used in elastic form only.
     pub(super) penalty: f64,
+    /// Whether half the square of each violation is priced instead of its size.
+    pub(super) squared: bool,
 }
 
 /// A subproblem whose pattern is fixed, its solver and its buffers.
@@ -74,6 +76,8 @@ pub(super) struct Subproblem {
     sources: Vec<Source>,
     factor: Vec<f64>,
     slope: Vec<f64>,
+    /// Diagonal entries of the Hessian for the elastic variables.
+    square: Vec<f64>,
     solver: QuadraticSolver,
 }
 
@@ -97,6 +101,7 @@ impl Subproblem {
             b: vec![0.0; a.rows],
             factor: vec![1.0; sides.len()],
             slope: vec![0.0; jacobian.rows],
+            square: vec![0.0; stretched.len()],
             sides,
             stretched,
             a,
@@ -108,8 +113,7 @@ impl Subproblem {
     /// Solves for `model`; when solved, writes step, multipliers and active bounds to `step`.
     pub(super) fn solve(&mut self, model: &Model<'_>, step: &mut Step) -> Verdict {
         let size = self.load(model);
-        let problem =
-            Quadratic { p: &self.p, q: &self.q, a: &self.a, b: &self.b, equalities: self.equalities };
+        let problem = Quadratic { p: &self.p, q: &self.q, a: &self.a, b: &self.b, equalities: self.equalities };
         let verdict = self.solver.solve(&problem);
         if verdict == Verdict::Solved {
             self.unload(model, size, step);
@@ -136,13 +140,18 @@ impl Subproblem {
         }
         self.q[..n].copy_from_slice(model.gradient);
         for (k, &side) in self.stretched.iter().enumerate() {
-            self.q[n + k] = model.penalty / self.factor[side];
+            let price = model.penalty / self.factor[side];
+            self.q[n + k] = if model.squared { 0.0 } else { price };
+            self.square[k] = if model.squared { price / self.factor[side] } else { 0.0 };
         }
         let size = 1.0 / self.q.iter().fold(1.0_f64, |size, q| size.max(q.abs()));
         self.q.iter_mut().for_each(|q| *q *= size);
         let entries = model.hessian.value.len();
         for (value, h) in self.p.value[..entries].iter_mut().zip(&model.hessian.value) {
             *value = size * h;
+        }
+        for (k, square) in self.square.iter().enumerate() {
+            self.p.value[entries + k] = size * square;
         }
         for j in 0..n {
             // The diagonal entry is the last one of a column of an upper triangle.
