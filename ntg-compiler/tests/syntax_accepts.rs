@@ -339,8 +339,8 @@ fn rough_tokens(text: &str) -> Vec<(String, bool)> {
         let end_of = |while_it: fn(char) -> bool| rest.find(|c| !while_it(c)).unwrap_or(rest.len());
         let length = if is_doc {
             rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with('"') {
-            rest[1..].find('"').map_or(rest.len(), |end| end + 2)
+        } else if let Some(string) = rest.strip_prefix('"') {
+            string.find('"').map_or(rest.len(), |end| end + 2)
         } else if rest.starts_with(|c: char| c.is_ascii_digit()) {
             let digits = end_of(|c| c.is_alphanumeric());
             let fraction =

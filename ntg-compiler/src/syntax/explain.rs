@@ -41,7 +41,9 @@ pub(super) fn explain(scan: &Scan, stuck: &Stuck, base: usize) -> Diagnostic {
 
 /// A statement of another place, or one that begins with no word of the language.
 pub(super) fn misplaced(scan: &Scan, body: Body, at: usize, end: usize) -> Option<Diagnostic> {
-    let token = scan.tokens[at..end].iter().find(|token| token.kind != TokenKind::Doc)?;
+    let Some(token) = scan.tokens[at..end].iter().find(|token| token.kind != TokenKind::Doc) else {
+        return Some(stray_doc(scan.tokens[at].span));
+    };
     let word = text(scan, token);
     if word == ";" {
         let finding = Diagnostic::new(Code::Unexpected, token.span, "there is no statement before this `;`");
@@ -91,6 +93,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
     }
     let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
     match nearest_item_word(word) {
+        _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
         Some(meant) => finding.help(format!("did you mean `{meant}`?")),
         None => finding.help("a statement begins with a word such as `let`, `output`, `param` or `trajectory`"),
     }
@@ -162,6 +165,9 @@ impl Here<'_> {
             return None;
         }
         let finding = Diagnostic::new(Code::MalformedUnit, self.span(), self.message());
+        if self.token.is_some_and(|token| text(self.scan, token) == "..") {
+            return Some(finding.help("a family names its index, `let x[i in 1 .. N]`; sizes stand in `output` only"));
+        }
         Some(finding.help("write units as in `[km]`, `[m/s^2]`, `[kg*m^2]`, `[1]`, with whole powers"))
     }
 
@@ -218,6 +224,9 @@ impl Here<'_> {
             return Some(
                 "constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`, with `==`".into(),
             );
+        }
+        if this == "," && self.expected.has(Rule::semicolon) {
+            return Some("a list stands in parentheses, `(1, 2)`".into());
         }
         if matches!(this, ")" | "]") && before == "," {
             return Some("remove the comma before it".into());

@@ -12,7 +12,6 @@
 
 pub mod ast;
 mod explain;
-mod expression;
 mod grammar;
 mod parse;
 mod recover;

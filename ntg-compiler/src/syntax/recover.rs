@@ -25,8 +25,11 @@ pub(super) fn recover(scan: &Scan) -> Vec<Diagnostic> {
 pub(super) fn join(scan: &Scan, later: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let blamed = |finding: &Diagnostic| {
         let statement = statement_around(scan, finding.span.start);
-        let lexical = scan.found.iter().filter(|known| known.code != Code::Comment);
-        lexical.into_iter().any(|known| statement.contains(known.span))
+        scan.found.iter().any(|known| {
+            // Behind a missing semicolon another statement begins.
+            let other = finding.code == Code::MissingSemicolon && known.span.start >= finding.span.start;
+            known.code != Code::Comment && !other && statement.contains(known.span)
+        })
     };
     let mut found: Vec<Diagnostic> = later.into_iter().filter(|finding| !blamed(finding)).collect();
     found.extend(scan.found.iter().cloned());
@@ -77,6 +80,9 @@ impl Walk<'_> {
             let at = tokens.first().map_or(Span::new(0, 0), |token| token.span);
             return self.one_problem(at, "there is no problem here");
         };
+        if self.text(first) != "problem" {
+            return self.one_problem(tokens[first].span, "a spec begins with `problem`");
+        }
         let Some(brace) = self.next_brace(first, tokens.len()) else {
             return self.head(Rule::whole_problem_head, 0, tokens.len());
         };

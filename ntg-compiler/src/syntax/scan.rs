@@ -92,6 +92,8 @@ struct Scanner<'a> {
     clean: Vec<u8>,
     found: Vec<Diagnostic>,
     brackets: Brackets,
+    /// Whether a comment or string without an end has taken some of the text with it.
+    swallowed: bool,
 }
 
 impl<'a> Scanner<'a> {
@@ -104,6 +106,7 @@ impl<'a> Scanner<'a> {
             clean: text.as_bytes().to_vec(),
             found: vec![],
             brackets: Brackets::default(),
+            swallowed: false,
         };
         if text.starts_with('\u{feff}') {
             scanner.pos = '\u{feff}'.len_utf8();
@@ -114,7 +117,7 @@ impl<'a> Scanner<'a> {
 
     fn finish(mut self) -> Scan {
         let end = self.text.len();
-        let hopeless = self.brackets.finish(end, &mut self.found);
+        let hopeless = self.brackets.finish(end, self.swallowed, &mut self.found);
         let clean = String::from_utf8(self.clean).expect("edits replace whole characters by ASCII");
         Scan { tokens: self.tokens, comments: self.comments, clean, found: self.found, hopeless }
     }

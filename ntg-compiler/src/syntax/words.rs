@@ -101,6 +101,23 @@ mod tests {
     }
 
     #[test]
+    fn the_grammar_reserves_the_same_words_the_longest_first() {
+        let grammar = include_str!("grammar.pest");
+        let rule = grammar
+            .split_once("reserved = @{")
+            .and_then(|(_, rest)| rest.split_once('}'))
+            .expect("the rule is there")
+            .0;
+        let mut reserved: Vec<&str> = rule.split('"').skip(1).step_by(2).collect();
+        assert!(reserved.windows(2).all(|pair| pair[0].len() >= pair[1].len()), "{reserved:?}");
+        let mut words: Vec<&str> =
+            [ITEM_WORDS, EXPRESSION_WORDS, LATER_WORDS].iter().flat_map(|list| list.iter()).copied().collect();
+        reserved.sort_unstable();
+        words.sort_unstable();
+        assert_eq!(reserved, words);
+    }
+
+    #[test]
     fn the_lists_are_sorted_and_do_not_overlap() {
         let all: Vec<&str> = [ITEM_WORDS, EXPRESSION_WORDS, LATER_WORDS, NEVER_NAMES]
             .iter()

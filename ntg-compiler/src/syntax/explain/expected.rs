@@ -11,7 +11,11 @@ pub(super) struct Expected {
 
 impl Expected {
     pub(super) fn new(rules: &[Rule]) -> Self {
-        Self { rules: rules.to_vec() }
+        let mut rules = rules.to_vec();
+        if rules.contains(&Rule::extent) {
+            rules.extend([Rule::equals, Rule::kw_in]);
+        }
+        Self { rules }
     }
 
     pub(super) fn has(&self, rule: Rule) -> bool {
@@ -29,24 +33,34 @@ impl Expected {
 
     /// Whether only parts of a unit would have done.
     pub(super) fn is_inside_unit(&self) -> bool {
-        let of_unit = |rule: &Rule| kind(*rule) == Kind::Unit && *rule != Rule::unit;
+        let of_unit = |rule: &Rule| matches!(kind(*rule), Kind::Unit | Kind::Power) && *rule != Rule::unit;
         let closes =
             |rule: &Rule| matches!(rule, Rule::right_bracket | Rule::right_parenthesis | Rule::caret | Rule::minus);
         self.rules.iter().any(of_unit) && self.rules.iter().all(|rule| of_unit(rule) || closes(rule))
     }
 
-    /// What to name, in the order in which it is said. What may always go on (an index, a path, a unit, an
-    /// operator) is named only if nothing ends the thing.
+    /// What to name, in the order in which it is said, without what only clouds it.
     fn words(&self) -> Vec<String> {
         let mut kinds: Vec<Kind> = self.rules.iter().map(|rule| kind(*rule)).collect();
         kinds.sort();
         kinds.dedup();
-        if kinds.iter().any(|kind| !kind.is_minor()) {
-            kinds.retain(|kind| !kind.is_minor());
-        }
-        if kinds.contains(&Kind::Statement) {
-            kinds.retain(|kind| !matches!(kind, Kind::Name | Kind::Keyword(_)));
-        }
+        let has = |kind: Kind| kinds.contains(&kind);
+        let (expression, statement) = (has(Kind::Expression), has(Kind::Statement));
+        let (operator, relation) = (has(Kind::Operator), has(Kind::Relation));
+        let (opens, ends) = (has(Kind::Mark("(")), has(Kind::Mark(";")));
+        let major = kinds.iter().any(|kind| !kind.is_minor());
+        kinds.retain(|kind| match kind {
+            // An expression may begin with both.
+            Kind::Name | Kind::Mark("(") if expression => false,
+            Kind::Name | Kind::Keyword(_) if statement => false,
+            // What is complete may always go on: with an index, a path, a unit, as a call, as a name before a colon.
+            kind if kind.is_minor() => !major,
+            Kind::Mark("(") if operator => false,
+            Kind::Mark(":") if operator && opens => false,
+            Kind::Relation => !ends,
+            Kind::Operator | Kind::Keyword(_) if relation && !ends => false,
+            _ => true,
+        });
         kinds.iter().map(Kind::words).collect()
     }
 }
@@ -71,6 +85,7 @@ enum Kind {
     Expression,
     Name,
     Unit,
+    Power,
     Relation,
     Symmetry,
     Setting,
@@ -96,7 +111,8 @@ impl Kind {
             Self::Expression => "an expression",
             Self::Name => "a name",
             Self::Unit => "a unit",
-            Self::Relation => "`==`, `<=`, `>=`",
+            Self::Power => "a whole number",
+            Self::Relation => "`==`, `<=` or `>=`",
             Self::Symmetry => "`even`, `periodic`",
             Self::Setting => "a setting",
             Self::String => "a file name in quotes",
@@ -139,7 +155,10 @@ fn kind(rule: Rule) -> Kind {
         | R::guess_head => Kind::Statement,
         R::statement | R::constraint | R::repeated => Kind::Constraint,
         R::guess_statement | R::guess_repeated | R::route | R::assign => Kind::Guess,
-        R::expression
+        R::bounds
+        | R::expression
+        | R::whole_expression
+        | R::whole_values
         | R::minus
         | R::number
         | R::numeral
@@ -164,9 +183,8 @@ fn kind(rule: Rule) -> Kind {
         | R::unit_factor
         | R::unit_one
         | R::unit_symbol
-        | R::unit_group
-        | R::unit_power
-        | R::unit_digits => Kind::Unit,
+        | R::unit_group => Kind::Unit,
+        R::unit_power | R::unit_digits => Kind::Power,
         R::relation => Kind::Relation,
         R::symmetry => Kind::Symmetry,
         R::setting => Kind::Setting,
@@ -180,7 +198,7 @@ fn kind(rule: Rule) -> Kind {
 fn mark(rule: Rule) -> Kind {
     use Rule as R;
     match rule {
-        R::left_brace | R::rows => Kind::Mark("{"),
+        R::left_brace | R::rows | R::head_end => Kind::Mark("{"),
         R::right_brace => Kind::Mark("}"),
         R::left_parenthesis | R::settings => Kind::Mark("("),
         R::right_parenthesis => Kind::Mark(")"),
@@ -194,13 +212,18 @@ fn mark(rule: Rule) -> Kind {
         R::dot => Kind::Minor("."),
         R::dots => Kind::Mark(".."),
         R::equals => Kind::Mark("="),
-        R::extent | R::bounds => Kind::Mark("="),
+        R::extent => Kind::Mark("="),
         R::after => Kind::Keyword("after".into()),
         R::spline => Kind::Keyword("spline".into()),
         R::method => Kind::Name,
-        R::place => Kind::Statement,
-        R::problem | R::problem_head => Kind::Keyword("problem".into()),
-        R::for_head => Kind::Keyword("for".into()),
+        R::place
+        | R::whole_block_head
+        | R::whole_guess_head
+        | R::whole_phase_head
+        | R::whole_agent_head
+        | R::whole_table_head => Kind::Statement,
+        R::problem | R::problem_head | R::whole_problem_head => Kind::Keyword("problem".into()),
+        R::for_head | R::whole_for_head => Kind::Keyword("for".into()),
         R::doc | R::doc_line => Kind::Minor("///"),
         _ => {
             // A keyword's rule is called after it.

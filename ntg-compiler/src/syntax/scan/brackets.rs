@@ -58,9 +58,10 @@ impl Brackets {
     }
 
     /// Reports what is still open at the end; gives whether the grammar can make nothing of the text.
-    pub(super) fn finish(mut self, end: usize, found: &mut Vec<Diagnostic>) -> bool {
-        if self.too_deep {
-            return true; // The scan stopped there, so nothing is known of the rest.
+    /// With some of the text `swallowed`, what looks open may have been closed there.
+    pub(super) fn finish(mut self, end: usize, swallowed: bool, found: &mut Vec<Diagnostic>) -> bool {
+        if self.too_deep || swallowed {
+            return self.too_deep || self.unmatched_brace || self.open.iter().any(|frame| frame.opener == b'{');
         }
         self.drop_parentheses(found);
         let missing = self.open.len();

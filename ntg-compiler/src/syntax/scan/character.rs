@@ -7,17 +7,17 @@ impl Scanner<'_> {
     /// Refuses a character, says what to write instead, and writes that into the clean text where it fits.
     pub(super) fn unknown_character(&mut self, c: char) {
         let start = self.pos;
-        let mut length = c.len_utf8();
-        let (mut instead, mut help) = advice(c);
+        // A run of the same character is one mistake.
+        let count = self.rest().chars().take_while(|next| *next == c).count();
+        let length = count * c.len_utf8();
+        let (instead, mut help) = advice(c);
         if c == '\'' {
-            length = self.rest().bytes().take_while(|byte| *byte == b'\'').count();
-            help = self.prime(length);
-            instead = "";
+            help = self.prime(count);
         }
         let name = if c.is_control() || c.is_whitespace() || c == '\u{feff}' {
             format!("the character U+{:04X}", c as u32)
         } else {
-            format!("`{}`", &self.rest()[..length.min(30)])
+            format!("`{}`", c.to_string().repeat(count.min(8)))
         };
         let message = format!("{name} is not part of the language");
         self.report(Diagnostic::new(Code::UnknownCharacter, self.ahead(length), message).help(help));

@@ -40,6 +40,7 @@ impl Scanner<'_> {
                 let finding = Diagnostic::new(Code::Unclosed, self.ahead(2), message);
                 self.report(finding.help("write `*/` at its end; comments nest, each `/*` needs its own"));
                 self.keep(rest.len());
+                self.swallowed = true;
             }
         }
     }

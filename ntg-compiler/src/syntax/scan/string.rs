@@ -14,6 +14,7 @@ impl Scanner<'_> {
             self.report(finding.help("write `\"` at its end, on the same line"));
             self.blank(self.pos, self.pos + line.len());
             self.pos += line.len();
+            self.swallowed = true;
             return;
         };
         let length = inner + 2;

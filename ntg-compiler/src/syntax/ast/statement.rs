@@ -1,0 +1,170 @@
+//! What stands in blocks: constraints, guesses, and loops around them; a part of `ast`.
+//!
+//! See `ast` for what holds of these types.
+
+use super::{Bounds, Doc, Event, Expr, Ident, IndexRange, Path};
+use crate::source::Span;
+
+/// `initial { ... }`, `trajectory { ... }`, `final { ... }`, `temporal { ... }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Where its constraints hold.
+    pub place: BlockPlace,
+    /// What stands in it.
+    pub statements: Vec<Statement<Constraint>>,
+}
+
+/// Where the constraints of a block hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockPlace {
+    /// At the start.
+    Initial,
+    /// All the way.
+    Trajectory,
+    /// At the end.
+    Final,
+    /// At no single point.
+    Temporal,
+}
+
+/// Something in a block, or a loop around some of it.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "the lint takes `T` for empty; a constraint is as large as a loop")]
+pub enum Statement<T> {
+    /// The thing itself.
+    One(T),
+    /// `for i in 1 .. N { ... }`
+    For(For<T>),
+}
+
+/// `for i in 1 .. N { ... }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct For<T> {
+    /// The index and its range.
+    pub over: IndexRange,
+    /// What is repeated.
+    pub body: Vec<Statement<T>>,
+    /// From `for` to the closing brace.
+    pub span: Span,
+}
+
+/// `name: relation;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constraint {
+    /// The doc comment before it.
+    pub doc: Option<Doc>,
+    /// Its name.
+    pub name: Option<Ident>,
+    /// What must hold.
+    pub relation: Relation,
+    /// From its first word to before its `;`, the doc comment excluded.
+    pub span: Span,
+}
+
+/// What a constraint demands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Relation {
+    /// `left == right`, `left <= right`, `left >= right`
+    Compare {
+        /// Left of the sign.
+        left: Expr,
+        /// The sign.
+        comparison: Comparison,
+        /// Where the sign stands.
+        comparison_span: Span,
+        /// Right of the sign.
+        right: Expr,
+    },
+    /// `first <= middle <= last`, or with `>=` twice
+    Between {
+        /// Left of both signs.
+        first: Expr,
+        /// Both signs; never `==`.
+        comparison: Comparison,
+        /// Between the signs.
+        middle: Expr,
+        /// Right of both signs.
+        last: Expr,
+    },
+    /// `value in lower .. upper`
+    In {
+        /// What is bounded.
+        value: Expr,
+        /// Its bounds.
+        bounds: Bounds,
+    },
+}
+
+/// The signs that a constraint may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// `==`
+    Equal,
+    /// `<=`
+    AtMost,
+    /// `>=`
+    AtLeast,
+}
+
+/// `guess { ... }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guess {
+    /// What stands in it.
+    pub statements: Vec<Statement<GuessKind>>,
+}
+
+/// What a guess says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GuessKind {
+    /// `z = 1 - tau;`, `duration(covert) = 600 [s];`
+    Assign(Assign),
+    /// `(x, y) through (0, 0), (1, 5) [km];`
+    Route(Route),
+}
+
+/// `target = value;` in a guess.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assign {
+    /// What is guessed.
+    pub target: Target,
+    /// Its guess.
+    pub value: Expr,
+    /// All of it.
+    pub span: Span,
+}
+
+/// What a guess can be given for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// An output, a variable or a named duration.
+    Path(Path),
+    /// `duration(covert)`, `start(uav[1])`, or `duration` alone for the scope that it stands in.
+    Event {
+        /// Which of a phase's times.
+        event: Event,
+        /// Of which phase or agent.
+        path: Option<Path>,
+        /// All of it.
+        span: Span,
+    },
+}
+
+/// `(x, y) through (0, 0), (1, 5) [km];`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// The outputs, one at least.
+    pub outputs: Vec<Path>,
+    /// The points, one at least, each with as many coordinates as there are outputs.
+    pub points: Vec<Point>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// `(1, 5)`: a point of a route.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// One coordinate for each output.
+    pub coordinates: Vec<Expr>,
+    /// All of it, parentheses included.
+    pub span: Span,
+}
