@@ -66,7 +66,64 @@ codes! {
     MalformedUnit "E018" "a unit that is not written as units are";
     OneProblem "E019" "a spec is exactly one problem";
 
+    UnknownName "E020" "a name that nothing has";
+    DeclaredTwice "E021" "a name or setting declared twice in one place";
+    ShadowsFunction "E022" "a name that a function of the language has";
+    Circle "E023" "a definition or function that needs itself";
+    NoFunction "E024" "something applied that is no function";
+    ArgumentCount "E025" "too many or too few arguments";
+    WrongIndices "E026" "an index that is missing or superfluous";
+    NotWhole "E027" "something other than a whole number of constants and indices";
+    IndexOutside "E028" "an index outside its range";
+    NotConstant "E029" "something that is not known where constants stand";
+    NoValue "E030" "a name that stands for no value";
+    WrongCount "E031" "a list with too many or too few elements";
+    NotFinite "E032" "a number that is not finite";
+    WrongContinuation "E033" "a continuation of something else than a number";
+    UnknownUnit "E040" "a unit symbol that is not known";
+    DimensionMismatch "E041" "different dimensions joined or compared";
+    NotPure "E042" "a quantity where a pure number is needed";
+    WildExponent "E043" "an exponent that leaves no dimension";
+    WrongUnit "E044" "a declared unit of another dimension";
+    UnusableUnit "E045" "a unit too large or too small";
+    VariesAlong "E050" "a trajectory quantity where a single number stands";
+    TimeOutOfPlace "E051" "`t` or `tau` where it has no value";
+    EventAlong "E052" "an event time or integral where an expression belongs to a point";
+    ForeignTrajectory "E053" "a trajectory quantity of another phase or agent";
+    NoDerivative "E054" "a derivative that a spline does not have";
+    WrongSpline "E055" "a spline that does not exist";
+    BoundsCross "E056" "bounds that cross";
+    Contradiction "E057" "conditions that contradict each other";
+    TooManyRows "E058" "more boundary conditions than an output can meet";
+    NoObjective "E059" "no objective, and an open trajectory";
+    WrongDuration "E060" "a duration that is missing, superfluous or not positive";
+    MixedSenses "E061" "minimised and maximised at once";
+    WrongPoints "E062" "a number of points that makes no rule";
+    WrongPartial "E063" "a derivative that cannot be taken";
+    WrongOrder "E064" "an order of differentiation that means nothing";
+    NotGuessable "E065" "a guess of or from something that cannot be guessed";
+    NeverHolds "E066" "a constraint that can never hold";
+    NoOutput "E067" "a phase in which nothing can move";
+    NodesNotIncreasing "E070" "table nodes that do not increase";
+    RaggedTable "E071" "rows of a table with different lengths";
+    UnreadableTable "E072" "a table file that cannot be read";
+    WrongTable "E073" "a table that has no interpolant";
+    UnknownPhase "E080" "a phase or agent that does not exist";
+    PhaseCircle "E081" "phases that follow one another in a circle";
+    PhaseFork "E082" "two phases after one";
+    WrongLevel "E083" "an item that means nothing at its level";
+    EmptyFamily "E084" "a family without members";
+    WrongAfter "E085" "an index after which a phase cannot follow";
+    WhichAgent "E086" "an agent that is not named";
+
     SourceTooLarge "E090" "a spec too large to be read";
+    TooManySteps "E091" "a problem too large to be given a meaning";
+    TooDeepMeaning "E092" "definitions nested too deeply in one another";
+
+    GradientJumps "N001" "a gradient that may jump";
+    DerivativeJumps "N002" "a derivative that jumps at the knots";
+    FitReport "N003" "how well a table follows its values";
+    AlwaysHolds "N004" "a constraint that always holds";
 }
 
 impl Code {

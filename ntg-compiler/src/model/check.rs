@@ -1,0 +1,253 @@
+//! What can be seen only on the whole: that something is wanted, and that it is not impossible.
+//!
+//! Takes the finished problem.
+//! Finds: boundary conditions that contradict one another or a bound, more of them than an output
+//! can meet, a problem without an objective.
+//! Only what constants decide is told here; what parameters decide is the solver's affair.
+
+use std::collections::HashMap;
+
+use ntg_structure::Block;
+
+use super::constants::extremes;
+use super::elaborator::Elaborator;
+use super::problem::{Constraint, Domain, Duration, Form, Leaf, Loop};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{InputId, Node, NodeId};
+use crate::source::Span;
+
+/// Values that boundary conditions fix at one point: leaf, value, place of the condition.
+type Fixed = HashMap<InputId, (f64, Span)>; // Looked up, never iterated.
+
+/// How far beyond a bound a fixed value must be, relative to both, to contradict it. A value exactly
+/// on its bound is no contradiction, and unit conversions round.
+const SLACK: f64 = 1e-9;
+
+impl Elaborator<'_> {
+    /// The last step of the pass.
+    pub(super) fn check(&mut self) {
+        if self.has_failed() {
+            return; // The rest would only repeat it.
+        }
+        for phase in 0..self.problem.phases.len() {
+            for block in [Block::Initial, Block::Final] {
+                self.check_end(phase, block);
+            }
+            self.check_rows(phase);
+        }
+        self.check_objective();
+    }
+
+    fn at_end(&self, phase: usize, block: Block) -> Vec<usize> {
+        let here = |constraint: &Constraint| match (&constraint.domain, block) {
+            (Domain::Start(at), Block::Initial) | (Domain::End(at), Block::Final) => at.phase == phase,
+            _ => false,
+        };
+        (0..self.problem.constraints.len()).filter(|k| here(&self.problem.constraints[*k])).collect()
+    }
+
+    /// Conditions at one end of a phase, against one another and against the bounds along the phase.
+    fn check_end(&mut self, phase: usize, block: Block) {
+        let rows = self.at_end(phase, block);
+        let mut fixed = Fixed::new();
+        for k in &rows {
+            self.fix(&mut fixed, *k);
+        }
+        if fixed.is_empty() {
+            return;
+        }
+        let along = (0..self.problem.constraints.len())
+            .filter(|k| matches!(&self.problem.constraints[*k].domain, Domain::Path(at) if at.phase == phase));
+        let along: Vec<usize> = along.collect();
+        for k in rows.into_iter().chain(along) {
+            self.check_against(&fixed, k);
+        }
+    }
+
+    /// Notes a condition that fixes one leaf; tells when it was fixed to something else.
+    fn fix(&mut self, fixed: &mut Fixed, k: usize) {
+        let constraint = &self.problem.constraints[k];
+        let (Some(lower), Some(upper)) = (constraint.bounds.lower, constraint.bounds.upper) else { return };
+        let (Some(value), Node::Input(input)) =
+            (self.problem.dag.is_constant(lower), self.problem.dag.node(constraint.body).clone())
+        else {
+            return;
+        };
+        let is_flat = matches!(self.problem.leaves.leaf(input), Leaf::Flat { .. });
+        if lower != upper || !is_flat || !constraint.loops.is_empty() {
+            return;
+        }
+        let span = constraint.span;
+        match fixed.get(&input).copied() {
+            Some((other, _)) if close(value, other) => {}
+            Some((_, first)) => {
+                let message = "two boundary conditions contradict each other";
+                let finding = Diagnostic::new(Code::Contradiction, span, message)
+                    .label(span, "fixes it to another value")
+                    .label(first, "fixes it here");
+                self.report(finding.help("remove one of them"));
+            }
+            None => {
+                fixed.insert(input, (value, span));
+            }
+        }
+    }
+
+    /// Tells when the fixed values put the body of a constraint outside its constant bounds.
+    fn check_against(&mut self, fixed: &Fixed, k: usize) {
+        let constraint = self.problem.constraints[k].clone();
+        let inputs = self.problem.dag.inputs_of(&[constraint.body]);
+        if inputs.is_empty() || inputs.iter().any(|input| !fixed.contains_key(input)) {
+            return;
+        }
+        let mut values: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.
+        for input in &inputs {
+            values.insert(*input, self.problem.dag.constant(fixed[input].0));
+        }
+        let body = self.problem.dag.substitute(&[constraint.body], |input| values.get(&input).copied())[0];
+        let known = |node: Option<NodeId>| node.and_then(|node| self.problem.dag.is_constant(node));
+        let Some(value) = known(Some(body)) else { return };
+        let below = known(constraint.bounds.lower).is_some_and(|lower| value < lower && !close(value, lower));
+        let above = known(constraint.bounds.upper).is_some_and(|upper| value > upper && !close(value, upper));
+        let Some(by) = inputs.iter().map(|input| fixed[input].1).find(|span| *span != constraint.span) else { return };
+        if !below && !above {
+            return;
+        }
+        let shown = (value / constraint.unit.factor * 1e6).round() / 1e6;
+        let unit =
+            if constraint.unit.symbol.is_empty() { String::new() } else { format!(" [{}]", constraint.unit.symbol) };
+        let message = "a boundary condition contradicts a bound";
+        let finding = Diagnostic::new(Code::Contradiction, constraint.span, message)
+            .label(constraint.span, format!("it is {shown}{unit} at that end"))
+            .label(by, "this boundary condition fixes it");
+        self.report(finding.help("loosen the bound, or change the boundary condition"));
+    }
+
+    /// Tells when one output has more boundary conditions than it can meet.
+    fn check_rows(&mut self, phase: usize) {
+        let mut all: Vec<(usize, Option<Form>, Vec<Span>)> = Vec::new();
+        for block in [Block::Initial, Block::Final] {
+            let mut here: Vec<(usize, Option<Form>, Vec<Span>)> = Vec::new();
+            let mut bodies: Vec<NodeId> = Vec::new();
+            for k in self.at_end(phase, block) {
+                let constraint = &self.problem.constraints[k];
+                let equality = constraint.bounds.lower.is_some() && constraint.bounds.lower == constraint.bounds.upper;
+                // A row that is there twice demands nothing more.
+                if !equality || bodies.contains(&constraint.body) {
+                    continue;
+                }
+                bodies.push(constraint.body);
+                let span = constraint.span;
+                if let Some((output, index)) = self.only_output(constraint.body) {
+                    add_row(&mut here, output, &index, span);
+                    add_row(&mut all, output, &index, span);
+                }
+            }
+            let orders: Vec<usize> = self.problem.phases[phase].outputs.iter().map(|o| o.spline.order).collect();
+            let end = if block == Block::Initial { "start" } else { "end" };
+            let too_many: Vec<_> = here.into_iter().filter(|(output, _, rows)| rows.len() > orders[*output]).collect();
+            for (output, _, rows) in too_many {
+                let k = orders[output];
+                let what = format!("a spline of order {k} can meet {k} of them at one point");
+                self.too_many(phase, output, &rows, &format!("at the {end}"), &what);
+            }
+        }
+        for (output, _, rows) in all {
+            let count = coefficients(&self.problem.phases[phase].outputs[output].spline);
+            if rows.len() > count {
+                let what = format!("its spline has {count} coefficients");
+                self.too_many(phase, output, &rows, "at both ends", &what);
+            }
+        }
+    }
+
+    /// The output whose value or derivatives are all that a body depends on.
+    fn only_output(&self, body: NodeId) -> Option<(usize, Option<Form>)> {
+        let mut only: Option<(usize, Option<Form>)> = None;
+        for input in self.problem.dag.inputs_of(&[body]) {
+            match self.problem.leaves.leaf(input) {
+                Leaf::Flat { output, index, .. } => {
+                    let this = (*output, index.clone());
+                    if only.as_ref().is_some_and(|other| *other != this) {
+                        return None;
+                    }
+                    only = Some(this);
+                }
+                Leaf::Parameter { .. } | Leaf::Index(_) => {}
+                _ => return None,
+            }
+        }
+        only
+    }
+
+    fn too_many(&mut self, phase: usize, output: usize, rows: &[Span], place: &str, what: &str) {
+        let output = &self.problem.phases[phase].outputs[output];
+        let message = format!("`{}` has {} conditions {place}, more than it can meet", output.name, rows.len());
+        let span = rows[rows.len() - 1];
+        let finding = Diagnostic::new(Code::TooManyRows, span, message)
+            .label(span, "one condition too many")
+            .label(output.span, what.to_owned());
+        self.report(
+            finding.help("remove a condition, or declare the output with more `intervals` or a higher `order`"),
+        );
+    }
+
+    /// Tells when nothing says which of many trajectories is wanted.
+    fn check_objective(&mut self) {
+        if !self.problem.objective.is_empty() {
+            return;
+        }
+        let equality = |c: &Constraint| c.bounds.lower.is_some() && c.bounds.lower == c.bounds.upper;
+        let dynamic = self.problem.constraints.iter().any(|c| equality(c) && c.block == Block::Trajectory);
+        let rows: i64 = self.problem.constraints.iter().filter(|c| equality(c)).map(|c| members(&c.loops)).sum();
+        let mut unknowns = self.problem.variables.len() as i64;
+        for (k, phase) in self.problem.phases.iter().enumerate() {
+            let copies = members(
+                &(*self.phase_context(k, super::scope::Allow::All, super::scope::Point::Nowhere).loops).clone(),
+            );
+            let outputs = phase.outputs.iter().map(|output| {
+                let size = output.family.map_or(1, |(first, last)| (last - first + 1).max(0));
+                size.saturating_mul(coefficients(&output.spline) as i64)
+            });
+            let free = i64::from(matches!(phase.duration, Duration::Free(_)));
+            unknowns = unknowns.saturating_add(copies.saturating_mul(outputs.sum::<i64>() + free));
+        }
+        if dynamic || rows >= unknowns {
+            return;
+        }
+        let message = "nothing is minimised, and the constraints leave the trajectory open";
+        let finding = Diagnostic::new(Code::NoObjective, self.problem.span, message);
+        self.report(finding.help("write `minimize ...;`, for instance the integral of a squared derivative; `minimize 0;` if any trajectory will do"));
+    }
+}
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SLACK * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+}
+
+fn add_row(rows: &mut Vec<(usize, Option<Form>, Vec<Span>)>, output: usize, index: &Option<Form>, span: Span) {
+    match rows.iter_mut().find(|(o, i, _)| *o == output && i == index) {
+        Some((_, _, spans)) => spans.push(span),
+        None => rows.push((output, index.clone(), vec![span])),
+    }
+}
+
+/// l (k - m) + m.
+fn coefficients(spline: &ntg_structure::Spline) -> usize {
+    let (k, m, l) = (spline.order, spline.smoothness, spline.breakpoints.len().saturating_sub(1));
+    l * k.saturating_sub(m) + m
+}
+
+/// How many members nested loops have, at most.
+fn members(loops: &[Loop]) -> i64 {
+    let mut count: i64 = 1;
+    for (k, over) in loops.iter().enumerate() {
+        let (Some((first, _)), Some((_, last))) =
+            (extremes(&over.first, &loops[..k]), extremes(&over.last, &loops[..k]))
+        else {
+            return 0;
+        };
+        count = count.saturating_mul(last.saturating_sub(first).saturating_add(1).max(0));
+    }
+    count
+}

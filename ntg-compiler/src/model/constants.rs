@@ -1,0 +1,305 @@
+//! Compile-time numbers, and whole numbers that are affine in loop indices.
+//!
+//! Takes expressions, gives numbers or [`Form`]s.
+//! Finds: what is no constant where only constants stand, what is no whole number, indices
+//! outside their range.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use ntg_structure::Unit;
+
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
+use super::problem::{Form, IndexId, Loop};
+use super::scope::{Allow, Context, Meaning};
+use super::value::{Value, What};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+use crate::syntax::ast::{Expr, ExprKind, IndexRange, MulOp, Sign};
+
+/// A number that the compiler knows, in SI units.
+pub(super) struct Constant {
+    pub(super) value: f64,
+    pub(super) dimension: Option<Dimension>,
+    pub(super) unit: Option<Rc<Unit>>,
+}
+
+/// The largest index or size: beyond it, nothing could be solved any more.
+const LARGEST: i64 = 1_000_000_000;
+
+impl Form {
+    /// A number that depends on no index.
+    pub fn number(constant: i64) -> Self {
+        Self { constant, terms: Vec::new() }
+    }
+
+    /// An index itself.
+    pub fn index(index: IndexId) -> Self {
+        Self { constant: 0, terms: vec![(index, 1)] }
+    }
+
+    /// Its value, when it depends on no index.
+    pub fn as_number(&self) -> Option<i64> {
+        self.terms.is_empty().then_some(self.constant)
+    }
+
+    /// `self + factor * other`, if it does not overflow.
+    fn plus(&self, factor: i64, other: &Self) -> Option<Self> {
+        let constant = self.constant.checked_add(other.constant.checked_mul(factor)?)?;
+        let mut terms = self.terms.clone();
+        for (index, coefficient) in &other.terms {
+            let change = coefficient.checked_mul(factor)?;
+            match terms.binary_search_by_key(index, |(i, _)| *i) {
+                Ok(k) => terms[k].1 = terms[k].1.checked_add(change)?,
+                Err(k) => terms.insert(k, (*index, change)),
+            }
+        }
+        terms.retain(|(_, coefficient)| *coefficient != 0);
+        Some(Self { constant, terms })
+    }
+
+    /// The same divided by a number that divides it.
+    fn divided(&self, divisor: i64) -> Option<Self> {
+        let exact = |n: i64| (divisor != 0 && n.checked_rem(divisor)? == 0).then(|| n / divisor);
+        let terms = self.terms.iter().map(|(i, c)| Some((*i, exact(*c)?))).collect::<Option<_>>()?;
+        Some(Self { constant: exact(self.constant)?, terms })
+    }
+
+    /// Its value for given indices; an index that is not given counts as 0.
+    pub fn at(&self, indices: &HashMap<IndexId, i64>) -> i64 {
+        let terms = self.terms.iter().map(|(i, c)| c.saturating_mul(indices.get(i).copied().unwrap_or(0)));
+        terms.fold(self.constant, i64::saturating_add)
+    }
+}
+
+impl<'a> Elaborator<'a> {
+    /// A number that the compiler knows; `what` says for what it is needed.
+    pub(super) fn constant(&mut self, cx: &Context<'a>, expr: &'a Expr, what: &str) -> Option<Constant> {
+        let value = self.value(&cx.allowing(Allow::Constants), expr);
+        let value = self.settle_constant(value, what)?;
+        match self.problem.dag.is_constant(value.node) {
+            Some(number) => Some(Constant { value: number, dimension: value.dimension, unit: value.unit }),
+            None => {
+                let message = "this has no finite value";
+                self.report(
+                    Diagnostic::new(Code::NotFinite, expr.span, message)
+                        .help("check it for a division by zero, or a logarithm or root of a negative number"),
+                );
+                None
+            }
+        }
+    }
+
+    /// A whole number that depends on nothing but constants and indices in sight.
+    pub(super) fn form(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Form> {
+        let failed = self.found.len();
+        let form = self.affine(cx, expr);
+        if form.is_none() && self.found.len() == failed {
+            self.report(
+                Diagnostic::new(Code::NotWhole, expr.span, "this is not a whole number made of constants and indices")
+                    .help("write something like `2`, `N`, `i + 1` or `2 * i - 1`"),
+            );
+        }
+        form.filter(|form| self.is_small(form, expr.span))
+    }
+
+    /// A whole number that depends on no index.
+    pub(super) fn whole(&mut self, cx: &Context<'a>, expr: &'a Expr, what: &str) -> Option<i64> {
+        let constant = self.constant(cx, expr, what)?;
+        let number = constant.value;
+        let pure = constant.dimension.is_none_or(|d| d.is_none());
+        if pure && number.fract() == 0.0 && number.abs() <= LARGEST as f64 {
+            return Some(number as i64);
+        }
+        let message = format!(
+            "{what} must be a whole number, this is {}",
+            if pure { number.to_string() } else { constant.dimension.unwrap_or(Dimension::NONE).describe() }
+        );
+        self.report(Diagnostic::new(Code::NotWhole, expr.span, message).help("write a whole number without a unit"));
+        None
+    }
+
+    fn is_small(&mut self, form: &Form, span: Span) -> bool {
+        let small = |n: &i64| n.abs() <= LARGEST;
+        let fine = small(&form.constant) && form.terms.iter().all(|(_, c)| small(c));
+        if !fine {
+            let message = format!("an index or size beyond {LARGEST}");
+            self.report(Diagnostic::new(Code::NotWhole, span, message).help("use a smaller number"));
+        }
+        fine
+    }
+
+    /// As `form`; silent where only the shape is wrong.
+    fn affine(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Form> {
+        match &expr.kind {
+            ExprKind::Path(path) if path.segments.len() == 1 && path.segments[0].indices.is_empty() => {
+                match self.index_in_sight(cx, &path.segments[0].name.text) {
+                    Some(form) => Some(form),
+                    None => self.whole_leaf(cx, expr),
+                }
+            }
+            ExprKind::Neg(inner) => Form::default().plus(-1, &self.affine(cx, inner)?),
+            ExprKind::Sum(terms) => {
+                let mut total = Form::default();
+                for (sign, term) in terms {
+                    let term = self.affine(cx, term)?;
+                    total = total.plus(if *sign == Sign::Plus { 1 } else { -1 }, &term)?;
+                }
+                Some(total)
+            }
+            ExprKind::Product(factors) => {
+                let mut total = Form::number(1);
+                for (op, factor) in factors {
+                    let factor = self.affine(cx, factor)?;
+                    total = match op {
+                        MulOp::Multiply => match (total.as_number(), factor.as_number()) {
+                            (_, Some(number)) => Form::default().plus(number, &total)?,
+                            (Some(number), None) => Form::default().plus(number, &factor)?,
+                            (None, None) => return None,
+                        },
+                        MulOp::Divide => total.divided(factor.as_number()?)?,
+                    };
+                }
+                Some(total)
+            }
+            _ => self.whole_leaf(cx, expr),
+        }
+    }
+
+    fn whole_leaf(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Form> {
+        self.whole(cx, expr, "an index or size").map(Form::number)
+    }
+
+    /// The form of a name, if it is an index.
+    pub(super) fn index_in_sight(&self, cx: &Context<'a>, name: &str) -> Option<Form> {
+        match cx.local(name) {
+            Some(Meaning::Index(form)) => return Some(form.clone()),
+            Some(Meaning::Argument(_)) => return None,
+            None => {}
+        }
+        let mut next = Some(cx.scope);
+        while let Some(id) = next {
+            let scope = &self.scopes[id];
+            if scope.names.contains_key(name) {
+                return None;
+            }
+            if scope.index.is_some_and(|index| index.text == name) {
+                return if scope.phase.is_some() { cx.phase.clone() } else { cx.agent.clone() };
+            }
+            next = scope.parent;
+        }
+        None
+    }
+
+    /// A loop and the context inside it.
+    pub(super) fn range(&mut self, cx: &Context<'a>, range: &'a IndexRange) -> Option<(Loop, Context<'a>)> {
+        let name = range.index.text.as_str();
+        let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
+        let declared = super::scope::look_up(&self.scopes, cx.lexical, name).map(|(_, declared)| declared);
+        if hidden || declared.is_some() {
+            let mut finding =
+                Diagnostic::new(Code::DeclaredTwice, range.index.span, format!("`{name}` is declared twice"))
+                    .label(range.index.span, "declared again as an index here");
+            if let Some(declared) = declared.filter(|_| !hidden) {
+                finding = finding.label(declared.span, "first declared here");
+            }
+            self.report(finding.help("give the index another name"));
+        }
+        let first = self.form(cx, &range.first);
+        let last = self.form(cx, &range.last);
+        let over = self.new_index(first?, last?);
+        let meaning = Meaning::Index(Form::index(over.index));
+        Some((over.clone(), cx.inside(over).with(name, meaning)))
+    }
+
+    /// An index as a number.
+    pub(super) fn index_value(&mut self, cx: &Context<'a>, form: &Form, text: &str, span: Span) -> Value {
+        if let Some(number) = form.as_number() {
+            let node = self.problem.dag.constant(number as f64);
+            return Value::new(node, Dimension::NONE, span);
+        }
+        if cx.allow == Allow::Constants {
+            return self.misplaced_value(What::Index, span, text, Some(Dimension::NONE));
+        }
+        let node = self.leaf(super::problem::Leaf::Index(form.clone()));
+        Value::new(node, Dimension::NONE, span)
+    }
+
+    /// Tells when an index leaves `first ..= last` for some members of the loops around it.
+    pub(super) fn check_index(
+        &mut self,
+        cx: &Context<'a>,
+        form: &Form,
+        ends: (i64, i64),
+        name: &str,
+        span: Span,
+    ) -> bool {
+        let Some((least, most)) = extremes(form, &cx.loops) else { return true };
+        let (first, last) = ends;
+        let outside = if least < first { least } else { most };
+        if (first..=last).contains(&outside) {
+            return true;
+        }
+        let text = self.text(span);
+        let value = if form.as_number().is_some() { String::new() } else { format!(" (where it is {outside})") };
+        let message = format!("`{text}`{value} is outside the indices of `{name}`");
+        let members =
+            if last < first { "it has no members".to_owned() } else { format!("its indices are {first} .. {last}") };
+        self.report(Diagnostic::new(Code::IndexOutside, span, message).help(members));
+        false
+    }
+}
+
+/// The least and greatest values of a form over the members of the loops; none where there are no
+/// members.
+pub(super) fn extremes(form: &Form, loops: &[Loop]) -> Option<(i64, i64)> {
+    let mut search = Search { form, loops, indices: HashMap::new(), found: None, budget: 50_000, visits: 0 };
+    search.descend(0);
+    search.found
+}
+
+struct Search<'s> {
+    form: &'s Form,
+    loops: &'s [Loop],
+    indices: HashMap<IndexId, i64>, // Looked up, never iterated.
+    found: Option<(i64, i64)>,
+    budget: usize,
+    visits: usize,
+}
+
+/// Members visited at most: with many loops even their ends alone are too many.
+const MAX_VISITS: usize = 200_000;
+
+impl Search<'_> {
+    /// Visits the members of loop `k` and of those inside it. A form is affine, so in the innermost
+    /// loop, and once the budget is spent in every loop, only the ends are visited.
+    fn descend(&mut self, k: usize) {
+        let Some(over) = self.loops.get(k) else {
+            let value = self.form.at(&self.indices);
+            self.found = Some(self.found.map_or((value, value), |(a, b)| (a.min(value), b.max(value))));
+            return;
+        };
+        let (first, last) = (over.first.at(&self.indices), over.last.at(&self.indices));
+        self.visits += 1;
+        if first > last || self.visits > MAX_VISITS {
+            return;
+        }
+        let ends_only = k + 1 == self.loops.len() || last - first > 10_000;
+        let visit = |search: &mut Self, value: i64| {
+            search.indices.insert(over.index, value);
+            search.budget = search.budget.saturating_sub(1);
+            search.descend(k + 1);
+        };
+        if ends_only {
+            visit(self, first);
+            visit(self, last);
+        } else {
+            let mut value = first;
+            while value <= last {
+                visit(self, value);
+                value = if self.budget == 0 && value < last { last } else { value + 1 };
+            }
+        }
+    }
+}

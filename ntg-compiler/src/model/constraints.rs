@@ -1,0 +1,270 @@
+//! Constraints in all their forms.
+//!
+//! Takes the four kinds of blocks, fills `Problem::constraints`.
+//! What does not change while the problem is solved goes into the bounds; otherwise the body is a
+//! difference, bounded by 0.
+//! Finds: sides of different dimensions, constraints that constants decide.
+
+use ntg_structure::{Block, Unit};
+
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
+use super::problem::{Bounds, Constraint, Domain};
+use super::scope::{Allow, Context, Point};
+use super::settle::Use;
+use super::units;
+use super::value::Value;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::ast::{self, BlockPlace, Comparison, Expr, ItemKind, Relation, Statement};
+
+/// Where the constraints of a block are given a meaning.
+#[derive(Clone)]
+struct Site {
+    block: Block,
+    agent: Option<usize>,
+    phase: Option<usize>,
+}
+
+/// What is bounded, by what, and in which unit it is shown.
+struct Body {
+    value: Value,
+    bounds: Bounds,
+    unit: Unit,
+}
+
+impl<'a> Elaborator<'a> {
+    /// All constraints, scope by scope.
+    pub(super) fn constraints(&mut self) {
+        for scope in 0..self.scopes.len() {
+            for item in self.items[scope] {
+                if let ItemKind::Block(block) = &item.kind {
+                    self.block(scope, block);
+                }
+            }
+        }
+    }
+
+    fn block(&mut self, scope: usize, block: &'a ast::Block) {
+        let agent = self.scopes[scope].agent;
+        let phase = self.scopes[scope].phase;
+        match (block.place, agent) {
+            (BlockPlace::Temporal, _) => {
+                let cx = match (phase, agent) {
+                    (Some(phase), _) => self.phase_context(phase, Allow::All, Point::Nowhere),
+                    (None, Some(agent)) => self.agent_context(agent, Allow::All),
+                    (None, None) => Context::of(scope, Allow::All),
+                };
+                let site = Site { block: Block::Temporal, agent, phase };
+                self.statements(&cx, &block.statements, &site);
+            }
+            (_, None) => {} // Told of as standing at the wrong level.
+            (BlockPlace::Trajectory, Some(agent)) => {
+                let phases = phase.map_or_else(|| self.agents[agent].phases.clone(), |phase| vec![phase]);
+                for phase in phases {
+                    let cx = self.phase_context(phase, Allow::All, Point::Path);
+                    let site = Site { block: Block::Trajectory, agent: Some(agent), phase: Some(phase) };
+                    self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
+                }
+            }
+            (BlockPlace::Initial | BlockPlace::Final, Some(agent)) => {
+                self.end_block(scope, agent, phase, block);
+            }
+        }
+    }
+
+    /// `initial` or `final`: of a phase, or of the whole agent.
+    fn end_block(&mut self, scope: usize, agent: usize, phase: Option<usize>, block: &'a ast::Block) {
+        let (kind, point) = match block.place {
+            BlockPlace::Initial => (Block::Initial, Point::Start),
+            _ => (Block::Final, Point::End),
+        };
+        let cx = match phase {
+            Some(phase) => self.phase_context(phase, Allow::All, point),
+            None => {
+                let stretches = self.stretches(agent, None);
+                let ends = (stretches.first(), stretches.last());
+                let (Some(first), Some(last)) = ends else { return };
+                let stretch = if kind == Block::Initial { self.first_member(first) } else { self.last_member(last) };
+                let outer = self.agent_context(agent, Allow::All);
+                Context { scope: self.phases[stretch.phase].scope, phase: stretch.index, point, ..outer }
+            }
+        };
+        let site = Site { block: kind, agent: Some(agent), phase };
+        self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
+    }
+
+    fn statements(&mut self, cx: &Context<'a>, statements: &'a [Statement<ast::Constraint>], site: &Site) {
+        for statement in statements {
+            match statement {
+                Statement::One(constraint) => self.constraint(cx, constraint, site),
+                Statement::For(inner) => {
+                    if let Some((_, inside)) = self.range(cx, &inner.over) {
+                        self.statements(&inside, &inner.body, site);
+                    }
+                }
+            }
+        }
+    }
+
+    fn constraint(&mut self, cx: &Context<'a>, constraint: &'a ast::Constraint, site: &Site) {
+        self.event = None;
+        let bodies = self.relation(cx, &constraint.relation, site);
+        let event = self.event.take();
+        match site.block {
+            Block::Trajectory => {
+                self.event = event;
+                self.no_event(constraint.span, "this constraint holds at every point of the trajectory");
+            }
+            // A boundary value or integral beside values at the end itself: a constraint of the mission.
+            Block::Initial | Block::Final if event.is_some() => {
+                let mission = if cx.point == Point::Start { Point::MissionStart } else { Point::MissionEnd };
+                let moved = cx.at(mission);
+                let bodies = self.relation(&moved, &constraint.relation, site);
+                self.event = None;
+                return self.push_all(&moved, constraint, site, bodies);
+            }
+            _ => {}
+        }
+        self.push_all(cx, constraint, site, bodies);
+    }
+
+    /// The bodies with their bounds that a relation demands.
+    fn relation(&mut self, cx: &Context<'a>, relation: &'a Relation, site: &Site) -> Vec<Body> {
+        let place = if site.block == Block::Temporal { Use::Temporal } else { Use::Point };
+        let value = |this: &mut Self, expr: &'a Expr| this.usable(cx, expr, place);
+        match relation {
+            Relation::Compare { left, comparison, right, .. } => {
+                let (left, right) = (value(self, left), value(self, right));
+                let (Some(left), Some(right)) = (left, right) else { return vec![] };
+                self.compare(*comparison, &left, &right).into_iter().collect()
+            }
+            Relation::Between { first, comparison, middle, last } => {
+                let (first, middle, last) = (value(self, first), value(self, middle), value(self, last));
+                let (Some(first), Some(middle), Some(last)) = (first, middle, last) else { return vec![] };
+                match comparison {
+                    Comparison::AtLeast => self.within(Some(&last), &middle, Some(&first)),
+                    _ => self.within(Some(&first), &middle, Some(&last)),
+                }
+            }
+            Relation::In { value: body, bounds } => {
+                let body = value(self, body);
+                let lower = bounds.lower.as_ref().map(|end| value(self, end));
+                let upper = bounds.upper.as_ref().map(|end| value(self, end));
+                let (Some(body), false) = (body, matches!(lower, Some(None)) || matches!(upper, Some(None))) else {
+                    return vec![];
+                };
+                self.within(lower.flatten().as_ref(), &body, upper.flatten().as_ref())
+            }
+        }
+    }
+
+    fn compare(&mut self, comparison: Comparison, left: &Value, right: &Value) -> Option<Body> {
+        if self.clash("compare", left, right) {
+            return None;
+        }
+        self.decided(comparison, left, right);
+        let (a, b) = (self.kinds(left.node).is_fixed(), self.kinds(right.node).is_fixed());
+        // The side that changes is the body; a difference where both do.
+        let (body, bound, swapped) = match (a, b) {
+            (_, true) => (left.clone(), right.node, false),
+            (true, false) => (right.clone(), left.node, true),
+            (false, false) => {
+                let node = self.problem.dag.sub(left.node, right.node);
+                let zero = self.problem.dag.constant(0.0);
+                (Value { node, ..left.clone() }, zero, false)
+            }
+        };
+        let bounds = match (comparison, swapped) {
+            (Comparison::Equal, _) => Bounds { lower: Some(bound), upper: Some(bound) },
+            (Comparison::AtMost, false) | (Comparison::AtLeast, true) => Bounds { lower: None, upper: Some(bound) },
+            (Comparison::AtLeast, false) | (Comparison::AtMost, true) => Bounds { lower: Some(bound), upper: None },
+        };
+        let unit = self.shown(&[&body, left, right]);
+        Some(Body { value: body, bounds, unit })
+    }
+
+    /// `lower <= body <= upper`; two constraints where a bound changes along the way.
+    fn within(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> Vec<Body> {
+        let fixed = [lower, upper].into_iter().flatten().all(|end| self.kinds(end.node).is_fixed());
+        if !fixed || self.kinds(body.node).is_fixed() {
+            let above = lower.and_then(|lower| self.compare(Comparison::AtMost, lower, body));
+            let below = upper.and_then(|upper| self.compare(Comparison::AtMost, body, upper));
+            return above.into_iter().chain(below).collect();
+        }
+        let below = lower.is_some_and(|lower| self.clash("compare", lower, body));
+        let above = upper.is_some_and(|upper| self.clash("compare", body, upper));
+        if below || above {
+            return vec![];
+        }
+        let bounds = Bounds { lower: lower.map(|v| v.node), upper: upper.map(|v| v.node) };
+        if let (Some(lower), Some(upper)) = (lower, upper) {
+            self.crossing(&bounds, lower.span.to(upper.span));
+        }
+        let sides: Vec<&Value> = [Some(body), lower, upper].into_iter().flatten().collect();
+        let unit = self.shown(&sides);
+        vec![Body { value: body.clone(), bounds, unit }]
+    }
+
+    /// The unit in which violations are shown: that of the first value that has one.
+    fn shown(&self, values: &[&Value]) -> Unit {
+        let unit = values.iter().find_map(|value| value.unit.as_ref());
+        let dimension = values.iter().find_map(|value| value.dimension).unwrap_or(Dimension::NONE);
+        unit.map_or_else(|| units::si(&dimension), |unit| (**unit).clone())
+    }
+
+    /// Tells when both sides are constants.
+    fn decided(&mut self, comparison: Comparison, left: &Value, right: &Value) {
+        let known = |value: &Value| self.problem.dag.is_constant(value.node);
+        let (Some(a), Some(b)) = (known(left), known(right)) else { return };
+        let span = left.span.to(right.span);
+        let holds = match comparison {
+            Comparison::Equal => a == b,
+            Comparison::AtMost => a <= b,
+            Comparison::AtLeast => a >= b,
+        };
+        if holds {
+            let finding =
+                Diagnostic::new(Code::AlwaysHolds, span, "this constraint always holds: both sides are constants");
+            self.report(finding.help("remove it, or check which name was meant"));
+        } else {
+            let finding =
+                Diagnostic::new(Code::NeverHolds, span, "this constraint can never hold: both sides are constants");
+            self.report(finding.help("check the signs and units of both sides"));
+        }
+    }
+
+    fn push_all(&mut self, cx: &Context<'a>, constraint: &'a ast::Constraint, site: &Site, bodies: Vec<Body>) {
+        for Body { value: body, bounds, unit } in bodies {
+            if self.problem.dag.is_constant(body.node).is_some() {
+                continue; // Decided, and told.
+            }
+            let domain = self.domain(cx);
+            let name = constraint.name.as_ref().map(|name| match site.agent {
+                Some(agent) => self.path_name(agent, site.phase, &name.text),
+                None => name.text.clone(),
+            });
+            self.origin(body.node, constraint.span);
+            self.problem.constraints.push(Constraint {
+                name,
+                span: constraint.span,
+                block: site.block,
+                unit,
+                loops: (*cx.loops).clone(),
+                domain,
+                body: body.node,
+                bounds,
+            });
+        }
+    }
+
+    /// Where an expression elaborated in a context lives.
+    pub(super) fn domain(&self, cx: &Context<'a>) -> Domain {
+        let phase = self.scopes[cx.scope].phase.map(|phase| cx.phase_at(phase));
+        match (cx.point, phase) {
+            (Point::Path, Some(phase)) => Domain::Path(phase),
+            (Point::Start, Some(phase)) => Domain::Start(phase),
+            (Point::End, Some(phase)) => Domain::End(phase),
+            _ => Domain::Mission,
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! `der` and `partial`.
+//!
+//! `der` is the derivative with respect to real time, by the chain rule down to derivatives of
+//! outputs (docs/maths.md, section 3); `partial` is the derivative of an application with respect to one
+//! of its arguments.
+//! Finds: derivatives that a spline does not have; notes those that jump at its knots.
+
+use std::collections::HashMap;
+
+use super::dimension::Ratio;
+use super::elaborator::Elaborator;
+use super::problem::{Leaf, PhaseAt};
+use super::scope::{Context, Entity, look_up};
+use super::value::Value;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{InputId, NodeId, forward};
+use crate::source::Span;
+use crate::syntax::ast::{Call, Expr, ExprKind};
+
+/// The highest derivative that may be asked for at once: far above the order of any useful spline.
+const MAX_DERIVATIVE: i64 = 32;
+
+impl<'a> Elaborator<'a> {
+    /// `der(e)`, `der(e, j)`.
+    pub(super) fn derivative(&mut self, cx: &Context<'a>, of: &'a Expr, order: Option<&'a Expr>, span: Span) -> Value {
+        let times = match order {
+            None => Some(1),
+            Some(order) => self.derivative_order(cx, order),
+        };
+        let value = self.value(cx, of);
+        let Some(times) = times else { return self.poison(span) };
+        if !value.is_sound() {
+            let dimension = value.dimension.map(|d| d.over(&self.time.power(Ratio::whole(times))));
+            return value.map(value.node, dimension, span);
+        }
+        let mut node = value.node;
+        let mut dimension = value.dimension;
+        for _ in 0..times {
+            let Some(rate) = self.rate(cx, node, span) else { return self.poison(span) };
+            node = rate;
+            dimension = dimension.map(|d| d.over(&self.time));
+        }
+        value.map(node, dimension, span)
+    }
+
+    fn derivative_order(&mut self, cx: &Context<'a>, order: &'a Expr) -> Option<i64> {
+        let times = self.whole(cx, order, "the order of a derivative")?;
+        if (0..=MAX_DERIVATIVE).contains(&times) {
+            return Some(times);
+        }
+        let message = format!("the order of a derivative is a number from 0 to {MAX_DERIVATIVE}, not {times}");
+        self.report(Diagnostic::new(Code::WrongOrder, order.span, message).help("write `der(x)`, `der(x, 2)`"));
+        None
+    }
+
+    /// The derivative of a node with respect to real time.
+    fn rate(&mut self, cx: &Context<'a>, node: NodeId, span: Span) -> Option<NodeId> {
+        let mut rates: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.
+        let mut sound = true;
+        for input in self.problem.dag.inputs_of(&[node]) {
+            let leaf = self.problem.leaves.leaf(input).clone();
+            let rate = match leaf {
+                Leaf::Flat { phase, at, output, index, order } => {
+                    let order = order + 1;
+                    sound &= self.has_derivative(&phase, output, order, span);
+                    Some(self.leaf(Leaf::Flat { phase, at, output, index, order }))
+                }
+                Leaf::Time(_) => Some(self.problem.dag.constant(1.0)),
+                Leaf::Tau => self.rate_of_tau(cx),
+                Leaf::Symbol(_) => {
+                    let message = "a function that differentiates its argument has no partial derivative";
+                    self.report(Diagnostic::new(Code::WrongPartial, span, message).help("differentiate it by hand"));
+                    sound = false;
+                    None
+                }
+                _ => None,
+            };
+            if let Some(rate) = rate {
+                rates.insert(input, rate);
+            }
+        }
+        if !sound {
+            return None;
+        }
+        match forward(&mut self.problem.dag, node, |input| rates.get(&input).copied()) {
+            Ok(rate) => Some(rate),
+            Err(_) => {
+                let message = "the second derivative of a product over an index is not supported";
+                self.report(
+                    Diagnostic::new(Code::WrongPartial, span, message)
+                        .help("write the product as `exp(sum(i in ..., log(...)))`, or without an index"),
+                );
+                None
+            }
+        }
+    }
+
+    fn rate_of_tau(&mut self, cx: &Context<'a>) -> Option<NodeId> {
+        let phase = self.scopes[cx.scope].phase?;
+        let duration = self.leaf(Leaf::Duration(cx.phase_at(phase)));
+        let one = self.problem.dag.constant(1.0);
+        Some(self.problem.dag.div(one, duration))
+    }
+
+    /// Tells of a derivative that a spline has not, notes one that jumps at its knots.
+    fn has_derivative(&mut self, phase: &PhaseAt, output: usize, order: usize, span: Span) -> bool {
+        let output = &self.problem.phases[phase.phase].outputs[output];
+        let (name, spline, declared) = (output.name.clone(), &output.spline, output.span);
+        let (k, m, knots) = (spline.order, spline.smoothness, spline.breakpoints.len());
+        if order >= k {
+            let message = format!("`{name}` has no derivative of order {order}: its spline is of order {k}");
+            let finding = Diagnostic::new(Code::NoDerivative, span, message)
+                .label(span, format!("needs the derivative of order {order} of `{name}`"))
+                .label(declared, format!("`order = {k}`: derivatives up to {}", k.saturating_sub(1)))
+                .help(format!("declare `{name}` with `order = {}` or more", order + 1));
+            self.report(finding);
+            return false;
+        }
+        if order >= m && knots > 2 {
+            let message = format!("the derivative of order {order} of `{name}` jumps at the knots of its spline");
+            let finding = Diagnostic::new(Code::DerivativeJumps, span, message).label(
+                declared,
+                format!("`smoothness = {m}`: derivatives up to {} are continuous", m.saturating_sub(1)),
+            );
+            let finding = if m == 0 {
+                finding
+            } else {
+                finding.help(format!(
+                    "for a continuous one, declare `order = {}, smoothness = {}` or more",
+                    (order + 2).max(k),
+                    order + 1
+                ))
+            };
+            self.report(finding);
+        }
+        true
+    }
+
+    /// `partial(f(s, w), s)`.
+    pub(super) fn partial(&mut self, cx: &Context<'a>, of: &'a Call, argument: &'a Expr, span: Span) -> Value {
+        let arguments: Vec<Value> = of.arguments.iter().map(|argument| self.value(cx, argument)).collect();
+        let entity = look_up(&self.scopes, cx.scope, &of.function.text).map(|(_, declared)| declared.entity);
+        let formal: Vec<String> = match entity {
+            Some(Entity::Function(f)) => self.functions[f].function.parameters.iter().map(|p| p.text.clone()).collect(),
+            Some(Entity::Table(t)) => self.signatures[t].axes.iter().map(|(name, _)| name.clone()).collect(),
+            _ => {
+                let message = "`partial` differentiates the application of a `fn` or a `table`";
+                let finding = Diagnostic::new(Code::WrongPartial, of.span, message)
+                    .help("declare a `fn` whose body is what you want to differentiate");
+                return self.refuse(finding, span);
+            }
+        };
+        let Some(k) = self.which_argument(of, argument, &formal) else { return self.poison(span) };
+        match entity {
+            Some(Entity::Table(table)) => self.apply_table(cx, table, of, &arguments, Some(k)).at(span),
+            Some(Entity::Function(function)) => self.partial_function(cx, function, of, arguments, k, span),
+            _ => self.poison(span),
+        }
+    }
+
+    /// With respect to which argument: the one that is written the same, or has that name in the declaration.
+    fn which_argument(&mut self, of: &Call, argument: &Expr, formal: &[String]) -> Option<usize> {
+        let text = self.text(argument.span);
+        let written = of.arguments.iter().position(|a| self.text(a.span) == text);
+        let named = || match &argument.kind {
+            ExprKind::Path(path) if path.segments.len() == 1 => {
+                formal.iter().position(|name| *name == path.segments[0].name.text)
+            }
+            _ => None,
+        };
+        let found = written.or_else(named).filter(|k| *k < of.arguments.len());
+        if found.is_none() {
+            let message = format!("`{text}` is no argument of `{}`", self.text(of.span));
+            let finding = Diagnostic::new(Code::WrongPartial, argument.span, message);
+            self.report(finding.help(format!("write one of its arguments: `{}`", formal.join("`, `"))));
+        }
+        found
+    }
+
+    /// Differentiates with a placeholder in place of the argument, then puts the argument back.
+    fn partial_function(
+        &mut self,
+        cx: &Context<'a>,
+        function: usize,
+        of: &'a Call,
+        mut arguments: Vec<Value>,
+        k: usize,
+        span: Span,
+    ) -> Value {
+        let symbol = Leaf::Symbol(self.next_symbol);
+        self.next_symbol += 1;
+        let placeholder = self.leaf(symbol.clone());
+        let id = self.problem.leaves.id(symbol);
+        let argument = arguments[k].clone();
+        arguments[k].node = placeholder;
+        let value = self.inline(cx, function, of, arguments);
+        if !value.is_sound() {
+            return value.at(span);
+        }
+        let one = self.problem.dag.constant(1.0);
+        let Ok(slope) = forward(&mut self.problem.dag, value.node, |input| (input == id).then_some(one)) else {
+            let message = "the second derivative of a product over an index is not supported";
+            let finding = Diagnostic::new(Code::WrongPartial, span, message).help("differentiate it by hand");
+            return self.refuse(finding, span);
+        };
+        let node = self.problem.dag.substitute(&[slope], |input| (input == id).then_some(argument.node))[0];
+        let dimension = value.dimension.zip(argument.dimension).map(|(v, a)| v.over(&a));
+        value.map(node, dimension.or(value.dimension), span)
+    }
+}

@@ -1,0 +1,286 @@
+//! The state of the one pass that gives a spec its meaning, and its small tools.
+//!
+//! Names, dimensions and meaning are found together: `expression` and its sisters turn an
+//! expression of the spec into a [`Value`] in a [`Context`]; every finding is kept, none ends the
+//! pass. A template that several phases share is elaborated once for each, so findings
+//! are kept without repetition.
+
+use std::collections::{HashMap, HashSet};
+
+use ntg_structure::Unit;
+
+use super::Loader;
+use super::definitions::{Memo, MemoKey};
+use super::dimension::Dimension;
+use super::kinds::Kinds;
+use super::problem::{Form, IndexId, Leaf, Loop, Problem};
+use super::scope::{Declared, Scope, ScopeId};
+use super::units::{self, Quantity};
+use super::value::{Flaw, Value};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::NodeId;
+use crate::source::{Source, Span};
+use crate::syntax::ast;
+
+/// A `const` or `let`.
+pub(super) struct Definition<'a> {
+    pub(super) name: &'a ast::Ident,
+    pub(super) doc: String,
+    pub(super) unit: Option<&'a ast::Unit>,
+    pub(super) family: Option<&'a ast::IndexRange>,
+    pub(super) value: &'a ast::Expr,
+    pub(super) scope: ScopeId,
+    pub(super) is_const: bool,
+    pub(super) span: Span,
+}
+
+/// A `fn` and where it stands.
+pub(super) struct FunctionDeclaration<'a> {
+    pub(super) function: &'a ast::Function,
+    pub(super) scope: ScopeId,
+}
+
+/// A phase as it was declared, before its times and splines are known.
+pub(super) struct PhaseDeclaration<'a> {
+    pub(super) scope: ScopeId,
+    pub(super) agent: usize,
+    /// None for the only phase of an agent that declares none.
+    pub(super) item: Option<&'a ast::Phase>,
+    /// The phase before it.
+    pub(super) after: Option<usize>,
+    pub(super) span: Span,
+}
+
+/// An agent as it was declared.
+pub(super) struct AgentDeclaration<'a> {
+    pub(super) scope: ScopeId,
+    /// None for the only agent of a problem that declares none.
+    pub(super) item: Option<&'a ast::Agent>,
+    /// In order of time.
+    pub(super) phases: Vec<usize>,
+}
+
+/// What the signature of a table says, known before its numbers are.
+#[derive(Clone)]
+pub(super) struct TableSignature {
+    pub(super) axes: Vec<(String, Option<Dimension>)>,
+    pub(super) dimension: Option<Dimension>,
+}
+
+/// A continuation before its parameter is known.
+pub(super) struct Steps {
+    pub(super) parameter: usize,
+    pub(super) values: Vec<f64>,
+    pub(super) dimension: Dimension,
+    pub(super) place: Span,
+    pub(super) name: Span,
+}
+
+/// The items of one scope.
+pub(super) type Items<'a> = &'a [ast::Item];
+
+/// See the module's header.
+pub(super) struct Elaborator<'a> {
+    pub(super) source: &'a Source,
+    pub(super) loader: &'a dyn Loader,
+    pub(super) problem: Problem,
+    pub(super) scopes: Vec<Scope<'a>>,
+    /// The items of each scope.
+    pub(super) items: Vec<Items<'a>>,
+    pub(super) definitions: Vec<Definition<'a>>,
+    pub(super) functions: Vec<FunctionDeclaration<'a>>,
+    pub(super) parameters: Vec<(&'a ast::Ident, Option<Dimension>)>,
+    pub(super) variables: Vec<(&'a ast::Variable, Option<Dimension>)>,
+    pub(super) tables: Vec<&'a ast::Table>,
+    pub(super) signatures: Vec<TableSignature>,
+    pub(super) phases: Vec<PhaseDeclaration<'a>>,
+    pub(super) agents: Vec<AgentDeclaration<'a>>,
+    /// Continuations, until all parameters are known.
+    pub(super) pending: Vec<Steps>,
+    /// Dimensions of the outputs of each phase, as in `Problem::phases`.
+    pub(super) output_dimensions: Vec<Vec<Dimension>>,
+    /// The range of every index ever made.
+    pub(super) ranges: HashMap<IndexId, Loop>,
+    /// The index over a family of phases that totals use.
+    pub(super) total_indices: HashMap<usize, u32>,
+    /// The first event time, boundary value or integral in the expression at hand.
+    pub(super) event: Option<(Span, String)>,
+    /// The dimension of time: none in a spec without units.
+    pub(super) time: Dimension,
+    /// The functions being inlined.
+    pub(super) inlining: Vec<usize>,
+    pub(super) memo: HashMap<MemoKey, Memo>,
+    pub(super) kinds: Kinds,
+    pub(super) found: Vec<Diagnostic>,
+    reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
+    next_index: u32,
+    pub(super) next_symbol: u32,
+    steps: usize,
+    depth: usize,
+}
+
+/// How many expressions may be elaborated, inlined functions counted each time. Far above
+/// what people write, reached within a second or two by functions that double one another.
+const MAX_STEPS: usize = 3_000_000;
+
+/// How deeply expressions, definitions and functions may nest in one another.
+const MAX_DEPTH: usize = 700;
+
+impl<'a> Elaborator<'a> {
+    pub(super) fn new(source: &'a Source, loader: &'a dyn Loader) -> Self {
+        Self {
+            source,
+            loader,
+            problem: Problem::default(),
+            scopes: Vec::new(),
+            items: Vec::new(),
+            definitions: Vec::new(),
+            functions: Vec::new(),
+            parameters: Vec::new(),
+            variables: Vec::new(),
+            tables: Vec::new(),
+            signatures: Vec::new(),
+            phases: Vec::new(),
+            agents: Vec::new(),
+            pending: Vec::new(),
+            output_dimensions: Vec::new(),
+            ranges: HashMap::new(),
+            total_indices: HashMap::new(),
+            event: None,
+            time: Dimension::TIME,
+            inlining: Vec::new(),
+            memo: HashMap::new(),
+            kinds: Kinds::default(),
+            found: Vec::new(),
+            reported: HashSet::new(),
+            next_index: 0,
+            next_symbol: 0,
+            steps: 0,
+            depth: 0,
+        }
+    }
+
+    /// Keeps a finding, unless the same was kept before.
+    pub(super) fn report(&mut self, finding: Diagnostic) {
+        let key = (finding.code, finding.span, finding.message.clone());
+        if self.reported.insert(key) {
+            self.found.push(finding);
+        }
+    }
+
+    /// A value that is never reported again.
+    pub(super) fn poison(&mut self, span: Span) -> Value {
+        let node = self.problem.dag.constant(f64::NAN);
+        Value { node, dimension: None, unit: None, span, flaw: Some(Flaw::Reported) }
+    }
+
+    /// Keeps a finding and gives the poison in its place.
+    pub(super) fn refuse(&mut self, finding: Diagnostic, span: Span) -> Value {
+        self.report(finding);
+        self.poison(span)
+    }
+
+    /// Counts one step of elaboration; refuses when there were too many or they nest too deeply.
+    pub(super) fn enter(&mut self, span: Span) -> bool {
+        self.steps += 1;
+        self.depth += 1;
+        if self.steps > MAX_STEPS {
+            if self.steps == MAX_STEPS + 1 {
+                let message = "this problem is too large to be given a meaning";
+                self.report(Diagnostic::new(Code::TooManySteps, span, message).help(
+                    "functions that use one another several times double at every level: name the parts by `let`",
+                ));
+            }
+            return false;
+        }
+        if self.depth > MAX_DEPTH {
+            let message = "definitions and functions are nested too deeply here";
+            self.report(
+                Diagnostic::new(Code::TooDeepMeaning, span, message)
+                    .help("use fewer definitions inside one another, or a sum over an index"),
+            );
+            return false;
+        }
+        true
+    }
+
+    /// Ends what `enter` began.
+    pub(super) fn leave(&mut self) {
+        self.depth -= 1;
+    }
+
+    /// Notes where a node was first written.
+    pub(super) fn origin(&mut self, node: NodeId, span: Span) {
+        self.problem.origin.entry(node).or_insert(span);
+    }
+
+    /// The node of a leaf.
+    pub(super) fn leaf(&mut self, leaf: Leaf) -> NodeId {
+        let id = self.problem.leaves.id(leaf);
+        self.problem.dag.input(id)
+    }
+
+    /// On what a node depends.
+    pub(super) fn kinds(&mut self, node: NodeId) -> super::kinds::Kind {
+        self.kinds.of(&self.problem, node)
+    }
+
+    /// A new index with its range.
+    pub(super) fn new_index(&mut self, first: Form, last: Form) -> Loop {
+        let over = Loop { index: IndexId(self.next_index), first, last };
+        self.next_index += 1;
+        self.ranges.insert(over.index, over.clone());
+        over
+    }
+
+    /// The meaning of a unit; what is wrong with it is told.
+    pub(super) fn unit(&mut self, unit: &ast::Unit) -> Option<(Quantity, Unit)> {
+        match units::quantity(unit) {
+            Ok(quantity) => Some((quantity, units::shown(unit, &quantity, self.source))),
+            Err(finding) => {
+                self.report(finding);
+                None
+            }
+        }
+    }
+
+    /// Declares a name in a scope; tells where that is the second time.
+    pub(super) fn declare(&mut self, scope: ScopeId, ident: &'a ast::Ident, declared: Declared) {
+        if let Some(builtin) = super::functions::builtin(&ident.text) {
+            let message = format!("`{}` is a function of the language", builtin.name());
+            self.report(
+                Diagnostic::new(Code::ShadowsFunction, ident.span, message)
+                    .help(format!("choose another name, such as `{}_1`", ident.text)),
+            );
+        }
+        if let Some(first) = self.scopes[scope].names.get(ident.text.as_str()) {
+            let message = format!("`{}` is declared twice", ident.text);
+            let first = first.span;
+            self.report(
+                Diagnostic::new(Code::DeclaredTwice, ident.span, message)
+                    .label(ident.span, "declared again here")
+                    .label(first, "first declared here")
+                    .help("give one of them another name"),
+            );
+            return;
+        }
+        let scope = &mut self.scopes[scope];
+        scope.names.insert(&ident.text, declared);
+        scope.order.push(&ident.text);
+    }
+
+    /// The text of a place, for messages.
+    pub(super) fn text(&self, span: Span) -> String {
+        self.source.snippet(span)
+    }
+
+    /// Whether an error was found.
+    pub(super) fn has_failed(&self) -> bool {
+        self.found.iter().any(|finding| finding.severity == crate::diagnostic::Severity::Error)
+    }
+}
+
+/// The text of a doc comment.
+pub(super) fn doc_text(doc: &Option<ast::Doc>) -> String {
+    doc.as_ref().map(|doc| doc.text.clone()).unwrap_or_default()
+}

@@ -1,0 +1,243 @@
+//! The meaning of operators and literals; dimensions are checked on the way.
+//!
+//! Takes `ast::Expr` and a context, gives a [`Value`].
+//! Finds: sums of different dimensions, exponents that leave no dimension.
+//! Sums and products are loops, so their length costs no stack.
+
+use std::rc::Rc;
+
+use super::dimension::{Dimension, Ratio};
+use super::elaborator::Elaborator;
+use super::scope::Context;
+use super::value::{Flaw, Value};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+use crate::syntax::ast::{Expr, ExprKind, MulOp, Number, Sign};
+
+impl<'a> Elaborator<'a> {
+    /// The meaning of an expression.
+    pub(super) fn value(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Value {
+        let value = if self.enter(expr.span) { self.kind(cx, expr) } else { self.poison(expr.span) };
+        self.leave();
+        if value.is_sound() {
+            self.origin(value.node, expr.span);
+        }
+        value.at(expr.span)
+    }
+
+    fn kind(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Value {
+        let span = expr.span;
+        match &expr.kind {
+            ExprKind::Number(number) => self.number(number, span),
+            ExprKind::Pi => {
+                let node = self.problem.dag.constant(std::f64::consts::PI);
+                Value::new(node, Dimension::NONE, span)
+            }
+            ExprKind::Time => self.mission_time(cx, span),
+            ExprKind::ScaledTime => self.scaled_time(cx, span),
+            ExprKind::Path(path) => self.path(cx, path),
+            ExprKind::Neg(inner) => {
+                let value = self.value(cx, inner);
+                let node = self.problem.dag.neg(value.node);
+                value.map(node, value.dimension, span).shown_in(value.unit.clone())
+            }
+            ExprKind::Sum(terms) => self.sum(cx, terms, span),
+            ExprKind::Product(factors) => self.product(cx, factors, span),
+            ExprKind::Power(base, exponent) => self.power(cx, base, exponent, span),
+            ExprKind::Call(call) => self.call(cx, call),
+            ExprKind::Der { of, order } => self.derivative(cx, of, order.as_deref(), span),
+            ExprKind::Partial { of, argument } => self.partial(cx, of, argument, span),
+            ExprKind::Integral { path, of } => self.integral(cx, path.as_ref(), of, span),
+            ExprKind::Boundary { boundary, path, of } => self.boundary(cx, *boundary, path.as_ref(), of, span),
+            ExprKind::Event { event, path } => self.event_time(cx, *event, path, span),
+            ExprKind::Reduce(reduction) => self.reduction(cx, reduction, span),
+        }
+    }
+
+    fn number(&mut self, number: &Number, span: Span) -> Value {
+        let Some(unit) = &number.unit else {
+            let node = self.problem.dag.constant(number.value);
+            let mut value = Value::new(node, Dimension::NONE, span);
+            if number.value == 0.0 {
+                value.dimension = None;
+            }
+            return value;
+        };
+        let Some((quantity, shown)) = self.unit(unit) else { return self.poison(span) };
+        let si = number.value * quantity.factor;
+        if !si.is_finite() {
+            let finding = Diagnostic::new(Code::NotFinite, span, "this number is too large in SI units")
+                .help("use a smaller number, or another unit");
+            return self.refuse(finding, span);
+        }
+        let node = self.problem.dag.constant(si);
+        Value::new(node, quantity.dimension, span).shown_in(Some(Rc::new(shown)))
+    }
+
+    fn sum(&mut self, cx: &Context<'a>, terms: &'a [(Sign, Expr)], span: Span) -> Value {
+        let mut total: Option<Value> = None;
+        for (sign, term) in terms {
+            let value = self.value(cx, term);
+            let Some(so_far) = total else {
+                total = Some(value);
+                continue;
+            };
+            let verb = if *sign == Sign::Plus { "add" } else { "subtract" };
+            let node = match sign {
+                Sign::Plus => self.problem.dag.add(so_far.node, value.node),
+                Sign::Minus => self.problem.dag.sub(so_far.node, value.node),
+            };
+            total = Some(self.alike(verb, so_far, &value, node));
+        }
+        total.unwrap_or_else(|| self.poison(span))
+    }
+
+    /// Joins two values that must have one dimension; the result stands where both do.
+    pub(super) fn alike(&mut self, verb: &str, a: Value, b: &Value, node: crate::expr::NodeId) -> Value {
+        let span = a.span.to(b.span);
+        let mut flaw = Flaw::join(&a.flaw, &b.flaw);
+        if self.clash(verb, &a, b) {
+            flaw = Some(Flaw::Reported);
+        }
+        if flaw.is_none() {
+            self.origin(node, span);
+        }
+        let unit = a.unit.or_else(|| b.unit.clone());
+        // Once told, a clash is not told again for the rest of the sum.
+        let dimension = if matches!(flaw, Some(Flaw::Reported)) { None } else { a.dimension.or(b.dimension) };
+        Value { node, dimension, unit, span, flaw }
+    }
+
+    /// Tells when two values have different dimensions.
+    pub(super) fn clash(&mut self, verb: &str, a: &Value, b: &Value) -> bool {
+        let (Some(left), Some(right)) = (a.dimension, b.dimension) else { return false };
+        if left == right {
+            return false;
+        }
+        let (this, that) = (left.describe(), right.describe());
+        let message = match verb {
+            "add" => format!("{that} cannot be added to {this}"),
+            "subtract" => format!("{that} cannot be subtracted from {this}"),
+            "compare" => format!("{this} cannot be compared with {that}"),
+            _ => format!("{this} and {that} cannot be joined by `{verb}`"),
+        };
+        let finding = Diagnostic::new(Code::DimensionMismatch, a.span.to(b.span), message)
+            .label(a.span, format!("this is {this}"))
+            .label(b.span, format!("this is {that}"));
+        let finding = finding.help(self.mend(a, b));
+        self.report(finding);
+        true
+    }
+
+    /// How to mend a clash of dimensions, as well as can be guessed.
+    fn mend(&self, a: &Value, b: &Value) -> String {
+        let bare = |v: &Value| v.dimension == Some(Dimension::NONE) && self.problem.dag.is_constant(v.node).is_some();
+        let unit_of = |v: &Value| match &v.unit {
+            Some(unit) => unit.symbol.clone(),
+            None => v.dimension_or_none().to_string(),
+        };
+        for (number, other) in [(a, b), (b, a)] {
+            let text = self.text(number.span);
+            if bare(number) && text.parse::<f64>().is_ok() {
+                return format!("give the number a unit: `{text} [{}]`", unit_of(other));
+            }
+        }
+        for (number, other) in [(a, b), (b, a)] {
+            if number.dimension == Some(Dimension::NONE) {
+                let text = self.text(number.span);
+                return format!("multiply the pure number by a unit: `({text}) * 1 [{}]`", unit_of(other));
+            }
+        }
+        "bring both to the same dimension: check units, powers and missing factors".to_owned()
+    }
+
+    fn product(&mut self, cx: &Context<'a>, factors: &'a [(MulOp, Expr)], span: Span) -> Value {
+        let mut total: Option<Value> = None;
+        for (op, factor) in factors {
+            let value = self.value(cx, factor);
+            let Some(so_far) = total else {
+                total = Some(value);
+                continue;
+            };
+            total = Some(self.multiplied(*op, so_far, &value));
+        }
+        total.unwrap_or_else(|| self.poison(span))
+    }
+
+    fn multiplied(&mut self, op: MulOp, a: Value, b: &Value) -> Value {
+        let span = a.span.to(b.span);
+        let mut flaw = Flaw::join(&a.flaw, &b.flaw);
+        let (node, dimension) = match op {
+            MulOp::Multiply => {
+                let dimension = a.dimension.zip(b.dimension).map(|(p, q)| p.times(&q));
+                (self.problem.dag.mul(a.node, b.node), dimension)
+            }
+            MulOp::Divide => {
+                if flaw.is_none() && self.problem.dag.is(b.node, 0.0) {
+                    let finding = Diagnostic::new(Code::NotFinite, span, "division by zero")
+                        .label(b.span, "this is 0")
+                        .help("divide by something else");
+                    self.report(finding);
+                    flaw = Some(Flaw::Reported);
+                }
+                let dimension = a.dimension.zip(b.dimension).map(|(p, q)| p.over(&q));
+                (self.problem.dag.div(a.node, b.node), dimension)
+            }
+        };
+        // A multiple of something is shown as that something is.
+        let pure = |v: &Value| v.unit.is_none() && v.dimension == Some(Dimension::NONE);
+        let unit = match op {
+            _ if pure(b) => a.unit,
+            MulOp::Multiply if pure(&a) => b.unit.clone(),
+            _ => None,
+        };
+        if flaw.is_none() {
+            self.origin(node, span);
+        }
+        Value { node, dimension, unit, span, flaw }
+    }
+
+    fn power(&mut self, cx: &Context<'a>, base: &'a Expr, exponent: &'a Expr, span: Span) -> Value {
+        let base = self.value(cx, base);
+        let exponent = self.value(cx, exponent);
+        let flaw = Flaw::join(&base.flaw, &exponent.flaw);
+        let node = self.problem.dag.pow(base.node, exponent.node);
+        if matches!(flaw, Some(Flaw::Reported)) {
+            return self.poison(span);
+        }
+        if let Some(dimension) = exponent.dimension
+            && !dimension.is_none()
+        {
+            let message = format!("an exponent must be a pure number, this is {}", dimension.describe());
+            let finding = Diagnostic::new(Code::NotPure, exponent.span, message)
+                .help(format!("divide it by a unit: `({}) / 1 [{dimension}]`", self.text(exponent.span)));
+            return self.refuse(finding, span);
+        }
+        let dimension = match base.dimension {
+            Some(dimension) if !dimension.is_none() => match self.rational(&exponent) {
+                Some(ratio) => Some(dimension.power(ratio)),
+                None => return self.wild_exponent(&base, &exponent, span),
+            },
+            other => other,
+        };
+        // A zero raised to zero or less is no zero any more.
+        let dimension = dimension.or_else(|| (!self.problem.dag.is(node, 0.0)).then_some(Dimension::NONE));
+        Value { node, dimension, unit: None, span, flaw }
+    }
+
+    /// The exponent as a small rational number, if the compiler knows it.
+    fn rational(&self, exponent: &Value) -> Option<Ratio> {
+        self.problem.dag.is_constant(exponent.node).and_then(Ratio::of)
+    }
+
+    fn wild_exponent(&mut self, base: &Value, exponent: &Value, span: Span) -> Value {
+        let dimension = base.dimension_or_none();
+        let unit = base.unit.as_ref().map_or_else(|| dimension.to_string(), |unit| unit.symbol.clone());
+        let message = format!("{} needs an exponent that is a known ratio of whole numbers", dimension.describe());
+        let finding = Diagnostic::new(Code::WildExponent, exponent.span, message)
+            .label(base.span, format!("this is {}", dimension.describe()))
+            .label(exponent.span, "the dimension of the power depends on this")
+            .help(format!("make the base a pure number: `({} / 1 [{unit}]) ^ ...`", self.text(base.span)));
+        self.refuse(finding, span)
+    }
+}

@@ -1,0 +1,395 @@
+//! The functions of the language, and the application of user functions and tables.
+//!
+//! Takes calls, gives values.
+//! Finds: unknown functions, wrong numbers of arguments, arguments of a wrong dimension, functions
+//! that use themselves; notes gradients that jump.
+//! User functions are inlined: their arguments are values, their bodies are elaborated anew for
+//! every use, so they are generic in dimensions.
+
+use super::dimension::{Dimension, Ratio};
+use super::elaborator::Elaborator;
+use super::kinds::Kind;
+use super::scope::{Allow, Context, Entity, Meaning, look_up, visible};
+use super::suggest::nearest;
+use super::value::{Flaw, Misplaced, Value, What};
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::expr::{NodeId, Unary};
+use crate::syntax::ast::Call;
+
+/// A function of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Builtin {
+    name: &'static str,
+    rule: Rule,
+}
+
+/// What a function does with its arguments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rule {
+    /// A pure number of a pure number.
+    Pure(Unary),
+    /// The square root.
+    Root,
+    /// The absolute value.
+    Abs,
+    /// The sign, a pure number.
+    Sign,
+    /// The angle of two quantities of one dimension.
+    Angle,
+    /// The length of any number of quantities of one dimension.
+    Hypot,
+    /// The smallest of any number.
+    Min,
+    /// The largest of any number.
+    Max,
+    /// `sqrt(u^2 + width^2)`.
+    SmoothAbs,
+    /// `width log(exp(u / width) + exp(v / width))`.
+    SmoothMax,
+}
+
+const BUILTINS: &[Builtin] = &[
+    Builtin { name: "sqrt", rule: Rule::Root },
+    Builtin { name: "exp", rule: Rule::Pure(Unary::Exp) },
+    Builtin { name: "log", rule: Rule::Pure(Unary::Log) },
+    Builtin { name: "sin", rule: Rule::Pure(Unary::Sin) },
+    Builtin { name: "cos", rule: Rule::Pure(Unary::Cos) },
+    Builtin { name: "tan", rule: Rule::Pure(Unary::Tan) },
+    Builtin { name: "asin", rule: Rule::Pure(Unary::Asin) },
+    Builtin { name: "acos", rule: Rule::Pure(Unary::Acos) },
+    Builtin { name: "atan", rule: Rule::Pure(Unary::Atan) },
+    Builtin { name: "atan2", rule: Rule::Angle },
+    Builtin { name: "sinh", rule: Rule::Pure(Unary::Sinh) },
+    Builtin { name: "cosh", rule: Rule::Pure(Unary::Cosh) },
+    Builtin { name: "tanh", rule: Rule::Pure(Unary::Tanh) },
+    Builtin { name: "hypot", rule: Rule::Hypot },
+    Builtin { name: "abs", rule: Rule::Abs },
+    Builtin { name: "min", rule: Rule::Min },
+    Builtin { name: "max", rule: Rule::Max },
+    Builtin { name: "sign", rule: Rule::Sign },
+    Builtin { name: "logistic", rule: Rule::Pure(Unary::Logistic) },
+    Builtin { name: "softplus", rule: Rule::Pure(Unary::Softplus) },
+    Builtin { name: "smooth_abs", rule: Rule::SmoothAbs },
+    Builtin { name: "smooth_max", rule: Rule::SmoothMax },
+];
+
+/// Names that people try, and how the language writes them.
+const HABITS: &[(&str, &str)] = &[
+    ("ln", "log(x)"),
+    ("log10", "log(x) / log(10)"),
+    ("log2", "log(x) / log(2)"),
+    ("pow", "x ^ y"),
+    ("norm", "hypot(x, y)"),
+    ("arctan", "atan(x)"),
+    ("arctan2", "atan2(y, x)"),
+    ("arcsin", "asin(x)"),
+    ("arccos", "acos(x)"),
+    ("sgn", "sign(x)"),
+    ("fabs", "abs(x)"),
+    ("cot", "1 / tan(x)"),
+    ("sec", "1 / cos(x)"),
+    ("sigmoid", "logistic(x)"),
+    ("diff", "der(x)"),
+    ("int", "integral(x)"),
+    ("softmax", "smooth_max(x, y, width)"),
+    ("smooth_min", "-smooth_max(-x, -y, width)"),
+];
+
+impl Builtin {
+    /// Its name.
+    pub(super) fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Least and greatest number of arguments.
+    fn arity(&self) -> (usize, usize) {
+        match self.rule {
+            Rule::Pure(_) | Rule::Root | Rule::Abs | Rule::Sign => (1, 1),
+            Rule::Angle | Rule::SmoothAbs => (2, 2),
+            Rule::Hypot | Rule::Min | Rule::Max => (1, usize::MAX),
+            Rule::SmoothMax => (3, usize::MAX),
+        }
+    }
+}
+
+/// The function of the language with that name.
+pub(super) fn builtin(name: &str) -> Option<Builtin> {
+    BUILTINS.iter().find(|builtin| builtin.name == name).copied()
+}
+
+impl<'a> Elaborator<'a> {
+    /// The application of anything.
+    pub(super) fn call(&mut self, cx: &Context<'a>, call: &'a Call) -> Value {
+        let name = call.function.text.as_str();
+        let arguments: Vec<Value> = call.arguments.iter().map(|argument| self.value(cx, argument)).collect();
+        match look_up(&self.scopes, cx.scope, name).map(|(_, declared)| declared.entity) {
+            Some(Entity::Function(function)) => self.inline(cx, function, call, arguments),
+            Some(Entity::Table(table)) => self.apply_table(cx, table, call, &arguments, None),
+            other => match builtin(name) {
+                Some(builtin) => self.apply(builtin, call, arguments),
+                None => self.no_function(cx, call, other),
+            },
+        }
+    }
+
+    fn no_function(&mut self, cx: &Context<'a>, call: &Call, entity: Option<Entity>) -> Value {
+        let name = call.function.text.as_str();
+        let span = call.function.span;
+        if let Some(entity) = entity {
+            let message = format!("`{name}` is {}, not a function", entity.describe());
+            let finding = Diagnostic::new(Code::NoFunction, span, message);
+            return self.refuse(finding.help(format!("to multiply, write `{name} * (...)`")), call.span);
+        }
+        let finding = Diagnostic::new(Code::NoFunction, span, format!("unknown function `{name}`"));
+        let names = visible(&self.scopes, cx.scope);
+        let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
+        let habit = HABITS.iter().find(|(habit, _)| *habit == name).map(|(_, right)| *right);
+        let finding = match (habit, nearest(name, own.chain(BUILTINS.iter().map(|b| b.name)))) {
+            (Some(right), _) => finding.help(format!("write `{right}`")),
+            (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
+            (None, None) => finding.help("declare it by `fn` or `table`"),
+        };
+        self.refuse(finding, call.span)
+    }
+
+    /// Tells when a call has too many or too few arguments.
+    pub(super) fn arity(&mut self, call: &Call, least: usize, most: usize) -> bool {
+        let given = call.arguments.len();
+        if (least..=most).contains(&given) {
+            return true;
+        }
+        let name = &call.function.text;
+        let plural = |n: usize| if n == 1 { "1 argument".to_owned() } else { format!("{n} arguments") };
+        let wanted = match (least, most) {
+            (a, b) if a == b => plural(a),
+            (a, usize::MAX) => format!("at least {}", plural(a)),
+            (a, b) => format!("{a} to {b} arguments"),
+        };
+        let message = format!("`{name}` takes {wanted}, not {given}");
+        let finding = Diagnostic::new(Code::ArgumentCount, call.span, message);
+        let help = match builtin(name).map(|b| b.rule) {
+            Some(Rule::SmoothAbs) => "write `smooth_abs(u, width)`".to_owned(),
+            Some(Rule::SmoothMax) => "write `smooth_max(u, v, width)`".to_owned(),
+            Some(Rule::Angle) => "write `atan2(y, x)`".to_owned(),
+            _ if given > most => "remove what is too much".to_owned(),
+            _ => "add what is missing".to_owned(),
+        };
+        self.report(finding.help(help));
+        false
+    }
+
+    fn apply(&mut self, builtin: Builtin, call: &Call, arguments: Vec<Value>) -> Value {
+        let (least, most) = builtin.arity();
+        if !self.arity(call, least, most) {
+            return self.poison(call.span);
+        }
+        let flaw = arguments.iter().fold(None, |flaw, value| Flaw::join(&flaw, &value.flaw));
+        if matches!(flaw, Some(Flaw::Reported)) {
+            return self.poison(call.span);
+        }
+        let mut result = self.applied(builtin, call, &arguments);
+        result.flaw = Flaw::join(&result.flaw, &flaw);
+        result
+    }
+
+    fn applied(&mut self, builtin: Builtin, call: &Call, arguments: &[Value]) -> Value {
+        let (first, span) = (&arguments[0], call.span);
+        match builtin.rule {
+            Rule::Pure(op) => {
+                if !self.is_pure(builtin.name, first) {
+                    return self.poison(span);
+                }
+                let node = self.problem.dag.unary(op, first.node);
+                Value::new(node, Dimension::NONE, span)
+            }
+            Rule::Root => {
+                let node = self.problem.dag.sqrt(first.node);
+                first.map(node, first.dimension.map(|d| d.power(Ratio::new(1, 2))), span)
+            }
+            Rule::Abs => {
+                self.kink(call, &[first.node]);
+                let node = self.problem.dag.abs(first.node);
+                first.map(node, first.dimension, span).shown_in(first.unit.clone())
+            }
+            Rule::Sign => {
+                self.kink(call, &[first.node]);
+                let node = self.problem.dag.sign(first.node);
+                first.map(node, Some(Dimension::NONE), span)
+            }
+            _ => self.applied_to_many(builtin, call, arguments),
+        }
+    }
+
+    /// Functions of several quantities of one dimension.
+    fn applied_to_many(&mut self, builtin: Builtin, call: &Call, arguments: &[Value]) -> Value {
+        let mut joined = arguments[0].clone();
+        for other in &arguments[1..] {
+            joined = self.alike(builtin.name, joined, other, other.node);
+        }
+        if matches!(joined.flaw, Some(Flaw::Reported)) {
+            return self.poison(call.span);
+        }
+        let nodes: Vec<NodeId> = arguments.iter().map(|value| value.node).collect();
+        if matches!(builtin.rule, Rule::Min | Rule::Max) && nodes.len() > 1 {
+            self.kink(call, &nodes);
+        }
+        let dag = &mut self.problem.dag;
+        let (node, dimension) = match builtin.rule {
+            Rule::Angle => (dag.atan2(nodes[0], nodes[1]), Some(Dimension::NONE)),
+            Rule::SmoothAbs => (dag.hypot(nodes[0], nodes[1]), joined.dimension),
+            Rule::SmoothMax => (self.smooth_max(&nodes), joined.dimension),
+            Rule::Min => (nodes[1..].iter().fold(nodes[0], |a, b| dag.min(a, *b)), joined.dimension),
+            Rule::Max => (nodes[1..].iter().fold(nodes[0], |a, b| dag.max(a, *b)), joined.dimension),
+            _ if nodes.len() == 1 => (dag.abs(nodes[0]), joined.dimension),
+            _ => (nodes[1..].iter().fold(nodes[0], |a, b| dag.hypot(a, *b)), joined.dimension),
+        };
+        let unit = if builtin.rule == Rule::Angle { None } else { joined.unit.clone() };
+        joined.map(node, dimension, call.span).shown_in(unit)
+    }
+
+    /// `w log(exp(u / w) + exp(v / w) + ...)`, the width `w` being the last; written as
+    /// `u + w softplus((v - u) / w)`, which never overflows.
+    fn smooth_max(&mut self, nodes: &[NodeId]) -> NodeId {
+        let dag = &mut self.problem.dag;
+        let (width, first) = (nodes[nodes.len() - 1], nodes[0]);
+        nodes[1..nodes.len() - 1].iter().fold(first, |u, v| {
+            let difference = dag.sub(*v, u);
+            let scaled = dag.div(difference, width);
+            let excess = dag.softplus(scaled);
+            let excess = dag.mul(width, excess);
+            dag.add(u, excess)
+        })
+    }
+
+    /// Tells when a function of pure numbers is given something else.
+    fn is_pure(&mut self, name: &str, value: &Value) -> bool {
+        let Some(dimension) = value.dimension.filter(|d| !d.is_none()) else { return true };
+        let unit = value.unit.as_ref().map_or_else(|| dimension.to_string(), |unit| unit.symbol.clone());
+        let message = format!("`{name}` takes a pure number, this is {}", dimension.describe());
+        let finding = Diagnostic::new(Code::NotPure, value.span, message)
+            .help(format!("divide it by a unit or a scale: `{name}({} / 1 [{unit}])`", self.text(value.span)));
+        self.report(finding);
+        false
+    }
+
+    /// Notes that the gradient of a call jumps, if what it is applied to changes at all.
+    pub(super) fn kink(&mut self, call: &Call, nodes: &[NodeId]) {
+        let moving = Kind::POINT.and(Kind::VARIABLE).and(Kind::DURATION).and(Kind::BOUNDARY).and(Kind::INTEGRAL);
+        if nodes.iter().any(|node| self.kinds(*node).meets(moving.and(Kind::SYMBOL))) {
+            let name = &call.function.text;
+            let help = match name.as_str() {
+                "abs" => "where that slows the solver down, write `smooth_abs(u, width)`",
+                "max" => "where that slows the solver down, write `smooth_max(u, v, width)`",
+                "min" => "where that slows the solver down, write `-smooth_max(-u, -v, width)`",
+                "sign" => "where that slows the solver down, write `tanh(u / width)`",
+                _ => "where that slows the solver down, write `monotone` instead of `linear`",
+            };
+            let message = format!("the gradient of `{name}` may jump here");
+            self.report(Diagnostic::new(Code::GradientJumps, call.span, message).help(help));
+        }
+    }
+
+    /// A user function applied to values.
+    pub(super) fn inline(&mut self, cx: &Context<'a>, function: usize, call: &'a Call, arguments: Vec<Value>) -> Value {
+        let (declared, scope) = (self.functions[function].function, self.functions[function].scope);
+        let count = declared.parameters.len();
+        if !self.arity(call, count, count) {
+            return self.poison(call.span);
+        }
+        if self.inlining.contains(&function) {
+            let name = &declared.name.text;
+            let message = format!("the function `{name}` uses itself");
+            let finding = Diagnostic::new(Code::Circle, call.span, message)
+                .label(call.span, "used again here")
+                .label(declared.name.span, "declared here")
+                .help("write it without itself: functions are inlined, so they cannot recur; use `sum` or `prod` over an index");
+            return self.refuse(finding, call.span);
+        }
+        let mut inner = Context { locals: None, lexical: scope, ..cx.clone() };
+        for (parameter, value) in declared.parameters.iter().zip(arguments) {
+            inner = inner.with(&parameter.text, Meaning::Argument(value));
+        }
+        let before = self.found.len();
+        self.inlining.push(function);
+        let mut value = self.value(&inner, &declared.body);
+        self.inlining.pop();
+        self.tell_use(before, call);
+        if let Some(Flaw::Misplaced(inside)) = &value.flaw
+            && !call.span.contains(inside.span)
+        {
+            let because = (inside.span, format!("because of `{}` here", inside.text));
+            let because = Some(inside.because.clone().unwrap_or(because));
+            let text = self.text(call.span);
+            let misplaced = Misplaced { span: call.span, what: inside.what, text, because };
+            value.flaw = Some(Flaw::Misplaced(std::rc::Rc::new(misplaced)));
+        }
+        value.at(call.span)
+    }
+
+    /// Findings inside a function's body say in which use of it they were made.
+    fn tell_use(&mut self, before: usize, call: &Call) {
+        for finding in &mut self.found[before..] {
+            let told = finding.labels.iter().any(|(_, label)| label.starts_with("in this use"));
+            if !told && finding.severity == Severity::Error && !call.span.contains(finding.span) {
+                finding.labels.push((call.span, format!("in this use of `{}`", call.function.text)));
+            }
+        }
+    }
+
+    /// A table, or its derivative with respect to one argument, applied to values.
+    pub(super) fn apply_table(
+        &mut self,
+        cx: &Context<'a>,
+        table: usize,
+        call: &'a Call,
+        arguments: &[Value],
+        derivative: Option<usize>,
+    ) -> Value {
+        let signature = self.signatures[table].clone();
+        let Some(unit) = self.problem.tables.get(table).map(|t| t.unit.clone()) else { return self.poison(call.span) };
+        if signature.axes.is_empty() || !self.arity(call, signature.axes.len(), signature.axes.len()) {
+            return self.poison(call.span);
+        }
+        if cx.allow == Allow::Constants && self.tables[table].is_param {
+            return self.misplaced_value(What::Parameter, call.span, &call.function.text, signature.dimension);
+        }
+        let mut flaw = None;
+        for (value, (name, dimension)) in arguments.iter().zip(&signature.axes) {
+            flaw = Flaw::join(&flaw, &value.flaw);
+            let (Some(given), Some(wanted)) = (value.dimension, dimension) else { continue };
+            if given != *wanted {
+                let axis = self.tables[table].axes.iter().find(|axis| axis.name.text == *name).map(|axis| axis.span);
+                let message = format!(
+                    "the argument `{name}` of `{}` is {}, not {}",
+                    call.function.text,
+                    wanted.describe(),
+                    given.describe()
+                );
+                let mut finding = Diagnostic::new(Code::DimensionMismatch, value.span, message)
+                    .label(value.span, format!("this is {}", given.describe()));
+                if let Some(axis) = axis {
+                    finding = finding.label(axis, format!("this is {}", wanted.describe()));
+                }
+                self.report(finding.help("bring the argument to the dimension of the table's nodes"));
+                flaw = Some(Flaw::Reported);
+            }
+        }
+        if matches!(flaw, Some(Flaw::Reported)) {
+            return self.poison(call.span);
+        }
+        let nodes: Vec<NodeId> = arguments.iter().map(|value| value.node).collect();
+        if self.problem.tables[table].method == ntg_structure::TableMethod::Linear {
+            self.kink(call, &nodes);
+        }
+        let mut orders = vec![0; nodes.len()];
+        let mut dimension = signature.dimension;
+        if let Some(k) = derivative {
+            orders[k] = 1;
+            dimension = dimension.zip(signature.axes[k].1).map(|(value, axis)| value.over(&axis));
+        }
+        let number = u32::try_from(table).expect("fewer than 2^32 tables fit in memory");
+        let node = self.problem.dag.table(number, &orders, &nodes);
+        let unit = (derivative.is_none() && !unit.symbol.is_empty()).then(|| std::rc::Rc::new(unit));
+        Value { node, dimension, unit, span: call.span, flaw }
+    }
+}

@@ -1,0 +1,282 @@
+//! Guesses: where the solver starts.
+//!
+//! Takes the `guess` blocks, fills `Problem::guesses` in the order of the spec.
+//! Finds: targets that cannot be guessed, values of another dimension, points of a route with a
+//! wrong number of coordinates.
+//! A value is given a meaning inside its target: `tau` and `t` are those of the target's phase or agent.
+
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
+use super::problem::{Form, Guess, GuessKind, GuessScope};
+use super::scope::{Allow, Context, Entity, Point, look_up};
+use super::settle::Use;
+use super::suggest::nearest;
+use super::value::Value;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::NodeId;
+use crate::source::Span;
+use crate::syntax::ast::{
+    self, Assign, Event, Expr, GuessKind as Kind, ItemKind, Path, Route, Segment, Statement, Target,
+};
+
+/// An output that is guessed.
+struct Guessed<'a> {
+    name: String,
+    index: Option<Form>,
+    dimension: Dimension,
+    /// The context inside the scope that the output belongs to.
+    cx: Context<'a>,
+    span: Span,
+}
+
+impl<'a> Elaborator<'a> {
+    /// All guesses, scope by scope.
+    pub(super) fn guesses(&mut self) {
+        for scope in 0..self.scopes.len() {
+            let cx = match (self.scopes[scope].phase, self.scopes[scope].agent) {
+                (Some(phase), _) => self.phase_context(phase, Allow::Guess, Point::Nowhere),
+                (None, Some(agent)) => self.agent_context(agent, Allow::Guess),
+                (None, None) => Context::of(scope, Allow::Guess),
+            };
+            for item in self.items[scope] {
+                if let ItemKind::Guess(guess) = &item.kind {
+                    self.guess_statements(&cx, &guess.statements);
+                }
+            }
+        }
+    }
+
+    fn guess_statements(&mut self, cx: &Context<'a>, statements: &'a [Statement<Kind>]) {
+        for statement in statements {
+            match statement {
+                Statement::One(Kind::Assign(assign)) => {
+                    self.assign(cx, assign);
+                }
+                Statement::One(Kind::Route(route)) => {
+                    self.route(cx, route);
+                }
+                Statement::For(inner) => {
+                    if let Some((_, inside)) = self.range(cx, &inner.over) {
+                        self.guess_statements(&inside, &inner.body);
+                    }
+                }
+            }
+        }
+    }
+
+    fn assign(&mut self, cx: &Context<'a>, assign: &'a Assign) -> Option<()> {
+        match &assign.target {
+            Target::Path(path) => self.assign_path(cx, path, &assign.value),
+            Target::Event { event, path, span } => self.assign_event(cx, *event, path.as_ref(), *span, &assign.value),
+        }
+    }
+
+    fn assign_path(&mut self, cx: &Context<'a>, path: &'a Path, value: &'a Expr) -> Option<()> {
+        let (last, outer) = path.segments.split_last()?;
+        let (inner, entity) = self.target(cx, outer, last)?;
+        match entity {
+            Entity::Output => {
+                let guessed = self.guessed_output(&inner, last, path.span)?;
+                let node = self.guess_value(&guessed.cx, value, guessed.dimension, path.span)?;
+                let scope = self.guess_scope(&guessed.cx)?;
+                let kind = GuessKind::Output { output: guessed.name, index: guessed.index, value: node };
+                self.push_guess(cx, scope, kind);
+            }
+            Entity::Variable(variable) => {
+                self.no_index(last, "a variable");
+                let dimension = self.variables[variable].1.unwrap_or(Dimension::NONE);
+                let node = self.guess_value(&inner, value, dimension, path.span)?;
+                let scope = self.any_scope(&inner);
+                self.push_guess(cx, scope, GuessKind::Variable(variable, node));
+            }
+            Entity::Duration(home) => {
+                self.no_index(last, "a duration");
+                let mut at = inner;
+                // A phase may name the duration of its agent.
+                if self.scopes[home].phase.is_none() {
+                    at.phase = None;
+                }
+                at.scope = home;
+                let node = self.guess_value(&at, value, self.time, path.span)?;
+                let scope = self.guess_scope(&at)?;
+                self.push_guess(cx, scope, GuessKind::Duration(node));
+            }
+            other => {
+                let message = format!("`{}` is {}: it cannot be guessed", self.text(path.span), other.describe());
+                let finding = Diagnostic::new(Code::NotGuessable, path.span, message);
+                self.report(finding.help("guess outputs, variables, durations and start times"));
+            }
+        }
+        Some(())
+    }
+
+    /// What a target names, and the context inside its path.
+    fn target(&mut self, cx: &Context<'a>, outer: &'a [Segment], last: &'a Segment) -> Option<(Context<'a>, Entity)> {
+        let inner = if outer.is_empty() { cx.clone() } else { self.enter_path(cx, outer)? };
+        let inner = Context { lexical: inner.scope, ..inner };
+        let name = last.name.text.as_str();
+        let found = if outer.is_empty() {
+            look_up(&self.scopes, inner.scope, name).map(|(_, declared)| declared)
+        } else {
+            self.scopes[inner.scope].names.get(name).copied().or_else(|| {
+                // An output of the agent is one of each of its phases.
+                let outer = self.scopes[inner.scope].parent.filter(|_| self.scopes[inner.scope].phase.is_some())?;
+                self.scopes[outer].names.get(name).copied().filter(|declared| declared.entity == Entity::Output)
+            })
+        };
+        if let Some(declared) = found {
+            return Some((inner, declared.entity));
+        }
+        let finding = Diagnostic::new(Code::UnknownName, last.name.span, format!("unknown name `{name}`"));
+        let names = super::scope::visible(&self.scopes, inner.scope);
+        let finding = match nearest(name, names.iter().map(|(name, _)| *name)) {
+            Some(near) => finding.help(format!("did you mean `{near}`?")),
+            None => finding.help("guess outputs, variables, durations and start times"),
+        };
+        self.report(finding);
+        None
+    }
+
+    fn guessed_output(&mut self, cx: &Context<'a>, segment: &'a Segment, span: Span) -> Option<Guessed<'a>> {
+        let scope = &self.scopes[cx.scope];
+        let home = scope.phase.or_else(|| self.agents[scope.agent?].phases.first().copied())?;
+        let name = segment.name.text.clone();
+        let k = self.problem.phases[home].outputs.iter().position(|output| output.name == name)?;
+        let dimension = self.output_dimensions[home][k];
+        let index = match (self.problem.phases[home].outputs[k].family, segment.indices.as_slice()) {
+            (Some(ends), [index]) => {
+                let form = self.form(cx, index)?;
+                if !self.check_index(cx, &form, ends, &name, index.span) {
+                    return None;
+                }
+                Some(form)
+            }
+            (None, []) => None,
+            (family, _) => {
+                self.wrong_indices(segment, family.is_some());
+                return None;
+            }
+        };
+        Some(Guessed { name, index, dimension, cx: cx.clone(), span })
+    }
+
+    /// A guessed value of the dimension of its target.
+    fn guess_value(&mut self, cx: &Context<'a>, expr: &'a Expr, dimension: Dimension, target: Span) -> Option<NodeId> {
+        let value = self.usable(cx, expr, Use::Guess)?;
+        let zero = self.problem.dag.constant(0.0);
+        let target = Value::new(zero, dimension, target);
+        if self.clash("compare", &target, &value) {
+            return None;
+        }
+        Some(value.node)
+    }
+
+    /// The stretch of time of a context.
+    fn guess_scope(&mut self, cx: &Context<'a>) -> Option<GuessScope> {
+        let scope = &self.scopes[cx.scope];
+        let agent = scope.agent?;
+        match scope.phase {
+            Some(phase) if self.phases[phase].item.is_some() => Some(GuessScope::Phase(cx.phase_at(phase))),
+            _ => Some(GuessScope::Agent(agent, cx.agent.clone())),
+        }
+    }
+
+    /// A stretch of time for what belongs to none.
+    fn any_scope(&mut self, cx: &Context<'a>) -> GuessScope {
+        let first = self.problem.agents.first().and_then(|agent| agent.family.as_ref()).map(|over| over.first.clone());
+        self.guess_scope(cx).unwrap_or(GuessScope::Agent(0, first))
+    }
+
+    fn push_guess(&mut self, cx: &Context<'a>, scope: GuessScope, kind: GuessKind) {
+        self.problem.guesses.push(Guess { loops: (*cx.loops).clone(), scope, kind });
+    }
+
+    fn assign_event(
+        &mut self,
+        cx: &Context<'a>,
+        event: Event,
+        path: Option<&'a Path>,
+        span: Span,
+        value: &'a Expr,
+    ) -> Option<()> {
+        let inner = match path {
+            Some(path) => self.enter_path(cx, &path.segments)?,
+            None => cx.clone(),
+        };
+        let Some(scope) = self.guess_scope(&inner) else {
+            let finding = Diagnostic::new(Code::NotGuessable, span, "which agent is meant?");
+            self.report(finding.help("name it: `duration(agent) = ...`"));
+            return None;
+        };
+        let node = self.guess_value(&inner, value, self.time, span)?;
+        match (event, &scope) {
+            (Event::Duration, _) => self.push_guess(cx, scope, GuessKind::Duration(node)),
+            (Event::Start, GuessScope::Agent(..)) => self.push_guess(cx, scope, GuessKind::Start(node)),
+            _ => {
+                let message = format!("`{}` follows from durations: it cannot be guessed", self.text(span));
+                let finding = Diagnostic::new(Code::NotGuessable, span, message);
+                self.report(finding.help("guess `duration(...)` of the phases, or `start(...)` of the agent"));
+            }
+        }
+        Some(())
+    }
+
+    fn route(&mut self, cx: &Context<'a>, route: &'a Route) -> Option<()> {
+        let mut outputs: Vec<Guessed<'a>> = Vec::new();
+        let mut sound = true;
+        for path in &route.outputs {
+            match self.route_output(cx, path) {
+                Some(guessed) => outputs.push(guessed),
+                None => sound = false,
+            }
+        }
+        let first = outputs.first().filter(|_| sound)?;
+        let scope = self.guess_scope(&first.cx.clone())?;
+        for other in &outputs {
+            if self.guess_scope(&other.cx.clone()).as_ref() != Some(&scope) {
+                let finding = Diagnostic::new(Code::NotGuessable, other.span, "a route is about one phase or agent");
+                self.report(finding.help("write a route for each"));
+                return None;
+            }
+        }
+        let mut points = Vec::new();
+        for point in &route.points {
+            points.push(self.route_point(point, &outputs)?);
+        }
+        if points.len() < 2 {
+            let finding = Diagnostic::new(Code::WrongCount, route.span, "a route has two points at least");
+            self.report(finding.help("write where it begins and where it ends"));
+            return None;
+        }
+        let outputs = outputs.into_iter().map(|guessed| (guessed.name, guessed.index)).collect();
+        self.push_guess(cx, scope, GuessKind::Route { outputs, points });
+        Some(())
+    }
+
+    fn route_output(&mut self, cx: &Context<'a>, path: &'a Path) -> Option<Guessed<'a>> {
+        let (last, outer) = path.segments.split_last()?;
+        let (inner, entity) = self.target(cx, outer, last)?;
+        if entity == Entity::Output {
+            return self.guessed_output(&inner, last, path.span);
+        }
+        let message = format!("`{}` is {}: a route leads through outputs", self.text(path.span), entity.describe());
+        let finding = Diagnostic::new(Code::NotGuessable, path.span, message);
+        self.report(finding.help("write it as a guess of its own: `name = value;`"));
+        None
+    }
+
+    fn route_point(&mut self, point: &'a ast::Point, outputs: &[Guessed<'a>]) -> Option<Vec<NodeId>> {
+        if point.coordinates.len() != outputs.len() {
+            let message = format!(
+                "this point has {} coordinates, but the route is about {} outputs",
+                point.coordinates.len(),
+                outputs.len()
+            );
+            let finding = Diagnostic::new(Code::WrongCount, point.span, message);
+            self.report(finding.help("write one coordinate for each output"));
+            return None;
+        }
+        let pairs = point.coordinates.iter().zip(outputs);
+        pairs.map(|(value, output)| self.guess_value(&output.cx, value, output.dimension, output.span)).collect()
+    }
+}

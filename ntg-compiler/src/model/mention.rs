@@ -1,0 +1,35 @@
+//! Which names an expression mentions where its own context holds.
+
+use crate::syntax::ast::{Expr, ExprKind};
+
+/// Names that stand alone and without index in an expression. What is taken at other points
+/// (`integral`, `initial`, `final`) or bound by an index is left out.
+pub(super) fn mentioned(expr: &Expr) -> Vec<&str> {
+    let mut names = Vec::new();
+    let mut open = vec![expr];
+    while let Some(expr) = open.pop() {
+        match &expr.kind {
+            ExprKind::Path(path) => {
+                if let [only] = path.segments.as_slice()
+                    && only.indices.is_empty()
+                {
+                    names.push(only.name.text.as_str());
+                }
+            }
+            ExprKind::Neg(inner) | ExprKind::Der { of: inner, .. } => open.push(inner),
+            ExprKind::Sum(terms) => open.extend(terms.iter().map(|(_, term)| term)),
+            ExprKind::Product(factors) => open.extend(factors.iter().map(|(_, factor)| factor)),
+            ExprKind::Power(base, exponent) => open.extend([&**base, &**exponent]),
+            ExprKind::Call(call) | ExprKind::Partial { of: call, .. } => open.extend(&call.arguments),
+            ExprKind::Number(_)
+            | ExprKind::Pi
+            | ExprKind::Time
+            | ExprKind::ScaledTime
+            | ExprKind::Integral { .. }
+            | ExprKind::Boundary { .. }
+            | ExprKind::Event { .. }
+            | ExprKind::Reduce(_) => {}
+        }
+    }
+    names
+}

@@ -1,0 +1,95 @@
+//! From what was written to what is meant: names, dimensions, times, tables, one graph.
+//!
+//! Takes `ast::Spec`, gives [`problem::Problem`]. Small passes collect what is declared, one pass
+//! elaborates every expression (`elaborator`, `expression`), and `check` looks at the whole.
+//! All findings are told at once: a name that is wrong does not hide the next.
+//! Afterwards: no names are left in expressions, every dimension is right, and everything is in SI units.
+
+mod check;
+mod constants;
+mod constraints;
+mod continuity;
+mod declarations;
+mod definitions;
+mod derivatives;
+mod dimension;
+mod elaborator;
+mod expression;
+mod functions;
+mod guess;
+mod kinds;
+mod mention;
+mod mission;
+mod named;
+mod names;
+mod objective;
+mod order;
+mod outputs;
+mod paths;
+pub mod problem;
+mod quantities;
+mod reductions;
+mod scope;
+mod settle;
+mod suggest;
+mod table_data;
+mod table_report;
+mod tables;
+mod time;
+mod unitless;
+mod units;
+mod value;
+
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::source::Source;
+use crate::syntax::ast;
+use elaborator::{Elaborator, doc_text};
+use problem::Problem;
+
+/// Gets the text of the files that a spec names; the compiler reads none itself.
+pub trait Loader {
+    /// The text of a file whose path is as the spec writes it, or why it cannot be had.
+    ///
+    /// # Errors
+    /// A reason for a person, such as `no such file`.
+    fn load(&self, path: &str) -> Result<String, String>;
+}
+
+/// The meaning of a spec, and everything found on the way: errors, then there is no problem, and
+/// notes, which are in `Problem::notes` too.
+pub fn build(spec: &ast::Spec, source: &Source, loader: &dyn Loader) -> (Option<Problem>, Vec<Diagnostic>) {
+    let mut pass = Elaborator::new(source, loader);
+    pass.elaborate(&spec.problem);
+    let failed = pass.has_failed();
+    let Elaborator { mut found, mut problem, .. } = pass;
+    found.sort_by_key(|finding| (finding.span.start, finding.span.end));
+    problem.notes = found.iter().filter(|finding| finding.severity != Severity::Error).cloned().collect();
+    ((!failed).then_some(problem), found)
+}
+
+impl<'a> Elaborator<'a> {
+    /// The pass, step by step; each needs what the ones before it have found.
+    fn elaborate(&mut self, problem: &'a ast::Problem) {
+        self.problem.name.clone_from(&problem.name.text);
+        self.problem.doc = doc_text(&problem.doc);
+        self.problem.span = problem.name.span;
+        if unitless::is_unitless(&problem.items) {
+            self.time = dimension::Dimension::NONE;
+        }
+        self.declarations(problem);
+        self.order_phases();
+        self.parameters();
+        self.continuations();
+        self.all_tables();
+        self.skeleton();
+        self.outputs();
+        self.variables();
+        self.durations();
+        self.continuity();
+        self.objective();
+        self.constraints();
+        self.named();
+        self.guesses();
+        self.check();
+    }
+}

@@ -1,0 +1,216 @@
+//! What names stand for: indices, arguments, parameters, variables, outputs, durations, definitions.
+//!
+//! Takes paths of the spec, gives values; definitions have a file of their own.
+//! Finds: unknown names, indices that are missing, superfluous or outside, names that are no
+//! values.
+
+use std::rc::Rc;
+
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
+use super::problem::{At, Leaf};
+use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up, visible};
+use super::suggest::nearest;
+use super::value::{Flaw, Misplaced, Value, What};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+use crate::syntax::ast::{Path, Segment};
+
+impl<'a> Elaborator<'a> {
+    /// The meaning of a path as a value.
+    pub(super) fn path(&mut self, cx: &Context<'a>, path: &'a Path) -> Value {
+        let Some((last, outer)) = path.segments.split_last() else { return self.poison(path.span) };
+        if outer.is_empty() {
+            return self.name(cx, last);
+        }
+        if cx.allow < Allow::Guess {
+            let text = self.text(path.span);
+            return self.misplaced_value(What::Mission, path.span, &text, None);
+        }
+        let Some(inner) = self.enter_path(cx, outer) else { return self.poison(path.span) };
+        // Inside another scope only its own names are meant, as numbers of the mission.
+        let inner = Context { lexical: inner.scope, point: Point::Nowhere, ..inner };
+        match self.scopes[inner.scope].names.get(last.name.text.as_str()).map(|d| d.entity) {
+            Some(entity) => self.entity(&inner, entity, last, path.span),
+            None => self.unknown(inner.scope, last, false),
+        }
+    }
+
+    fn name(&mut self, cx: &Context<'a>, segment: &'a Segment) -> Value {
+        let (text, span) = (segment.name.text.as_str(), segment.span);
+        if let Some(Meaning::Argument(value)) = cx.local(text) {
+            let value = value.clone().at(span);
+            self.no_index(segment, "an argument");
+            return value;
+        }
+        if let Some(form) = self.index_in_sight(cx, text) {
+            self.no_index(segment, "an index");
+            return self.index_value(cx, &form, text, span);
+        }
+        match look_up(&self.scopes, cx.scope, text) {
+            Some((_, declared)) => self.entity(cx, declared.entity, segment, span),
+            None => self.unknown(cx.scope, segment, true),
+        }
+    }
+
+    /// Tells of a name that nothing has.
+    fn unknown(&mut self, scope: ScopeId, segment: &Segment, outwards: bool) -> Value {
+        let text = &segment.name.text;
+        let names: Vec<&str> = if outwards {
+            visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
+        } else {
+            self.scopes[scope].order.clone()
+        };
+        let finding = Diagnostic::new(Code::UnknownName, segment.name.span, format!("unknown name `{text}`"));
+        let finding = match nearest(text, names.iter().copied()) {
+            Some(near) => finding.help(format!("did you mean `{near}`?")),
+            None if names.is_empty() => finding.help("nothing is declared here"),
+            None => finding.help(format!("known names are {}", listed(&names))),
+        };
+        self.refuse(finding, segment.span)
+    }
+
+    fn entity(&mut self, cx: &Context<'a>, entity: Entity, segment: &'a Segment, span: Span) -> Value {
+        match entity {
+            Entity::Definition(definition) => self.use_definition(cx, definition, segment, span),
+            Entity::Parameter(parameter) => self.parameter(cx, parameter, segment, span),
+            Entity::Variable(variable) => {
+                self.no_index(segment, "a variable");
+                let dimension = self.variables[variable].1;
+                if cx.allow < Allow::All {
+                    return self.misplaced_value(What::Variable, span, &segment.name.text, dimension);
+                }
+                let node = self.leaf(Leaf::Variable { variable });
+                let unit = self.problem.variables.get(variable).map(|v| Rc::new(v.unit.clone()));
+                Value { node, dimension, unit, span, flaw: None }
+            }
+            Entity::Output => self.output(cx, segment, span),
+            Entity::Duration(scope) => {
+                self.no_index(segment, "a duration");
+                self.named_duration(cx, scope, &segment.name.text, span)
+            }
+            Entity::Table(_) | Entity::Function(_) => {
+                let name = &segment.name.text;
+                let message = format!("`{name}` is {}: it has a value only for arguments", entity.describe());
+                let finding = Diagnostic::new(Code::NoValue, span, message).help(format!("apply it: `{name}(...)`"));
+                self.refuse(finding, span)
+            }
+            Entity::Phase(_) | Entity::Agent(_) => {
+                let name = self.text(segment.span);
+                let message = format!("`{name}` is {}, not a value", entity.describe());
+                let finding = Diagnostic::new(Code::NoValue, span, message)
+                    .help(format!("write `start({name})`, `end({name})`, `duration({name})` or `final({name}, ...)`"));
+                self.refuse(finding, span)
+            }
+        }
+    }
+
+    fn parameter(&mut self, cx: &Context<'a>, parameter: usize, segment: &'a Segment, span: Span) -> Value {
+        let dimension = self.parameters[parameter].1;
+        let text = &segment.name.text;
+        if cx.allow == Allow::Constants {
+            return self.misplaced_value(What::Parameter, span, text, dimension);
+        }
+        let Some(declared) = self.problem.parameters.get(parameter) else { return self.poison(span) };
+        if declared.name.is_empty() {
+            return self.poison(span); // Its declaration was refused.
+        }
+        let (array, members) = (declared.array, declared.value.len() as i64);
+        let unit = Some(Rc::new(declared.unit.clone()));
+        let index = match (array, segment.indices.as_slice()) {
+            (true, [index]) => {
+                let Some(form) = self.form(cx, index) else { return self.poison(span) };
+                if !self.check_index(cx, &form, (1, members), text, index.span) {
+                    return self.poison(span);
+                }
+                Some(form)
+            }
+            (false, []) => None,
+            _ => return self.wrong_indices(segment, array),
+        };
+        let node = self.leaf(Leaf::Parameter { parameter, index });
+        Value { node, dimension, unit, span, flaw: None }
+    }
+
+    fn output(&mut self, cx: &Context<'a>, segment: &'a Segment, span: Span) -> Value {
+        let text = segment.name.text.as_str();
+        let (point, phase) = (cx.point, self.scopes[cx.scope].phase);
+        if cx.allow < Allow::All {
+            let text = self.text(span);
+            return self.misplaced_value(What::Trajectory, span, &text, None);
+        }
+        // Without a phase its dimension is the one of any phase of the agent.
+        let agent_phase = || self.scopes[cx.scope].agent.and_then(|a| self.agents[a].phases.first().copied());
+        let Some(home) = phase.or_else(agent_phase) else { return self.poison(span) };
+        let outputs = self.problem.phases.get(home).map(|phase| phase.outputs.as_slice()).unwrap_or_default();
+        let Some(output) = outputs.iter().position(|o| o.name == text) else { return self.poison(span) };
+        let (unit, family) = (outputs[output].unit.clone(), outputs[output].family);
+        let dimension = self.output_dimensions[home][output];
+        let index = match (family, segment.indices.as_slice()) {
+            (Some(ends), [index]) => {
+                let Some(form) = self.form(cx, index) else { return self.poison(span) };
+                if !self.check_index(cx, &form, ends, text, index.span) {
+                    return self.poison(span);
+                }
+                Some(form)
+            }
+            (None, []) => None,
+            _ => return self.wrong_indices(segment, family.is_some()),
+        };
+        let at = match point {
+            Point::Path | Point::Start | Point::End => At::Here,
+            Point::MissionStart => At::Start,
+            Point::MissionEnd => At::End,
+            Point::Nowhere => {
+                let text = self.text(span);
+                return self.misplaced_value(What::Trajectory, span, &text, Some(dimension));
+            }
+        };
+        let node = self.leaf(Leaf::Flat { phase: cx.phase_at(home), at, output, index, order: 0 });
+        Value::new(node, dimension, span).shown_in(Some(Rc::new(unit)))
+    }
+
+    /// Tells of an index where none may stand; the value is as without it.
+    pub(super) fn no_index(&mut self, segment: &Segment, what: &str) {
+        if let Some(index) = segment.indices.first() {
+            let name = &segment.name.text;
+            let message = format!("`{name}` is {what}, which has no members");
+            self.report(Diagnostic::new(Code::WrongIndices, index.span, message).help(format!("write `{name}` alone")));
+        }
+    }
+
+    pub(super) fn wrong_indices(&mut self, segment: &Segment, is_array: bool) -> Value {
+        let name = &segment.name.text;
+        let message = match (is_array, segment.indices.len()) {
+            (true, 0) => format!("`{name}` is an array: say which member"),
+            (true, n) => format!("`{name}` takes one index, not {n}"),
+            (false, _) => format!("`{name}` is no array"),
+        };
+        let help = if is_array { format!("write `{name}[1]` or `{name}[i]`") } else { format!("write `{name}` alone") };
+        let finding = Diagnostic::new(Code::WrongIndices, segment.span, message).help(help);
+        self.refuse(finding, segment.span)
+    }
+
+    /// A value for something that has none here; whoever uses it tells.
+    pub(super) fn misplaced_value(
+        &mut self,
+        what: What,
+        span: Span,
+        text: &str,
+        dimension: Option<Dimension>,
+    ) -> Value {
+        let node = self.problem.dag.constant(f64::NAN);
+        let misplaced = Misplaced { span, what, text: text.to_owned(), because: None };
+        Value { node, dimension, unit: None, span, flaw: Some(Flaw::Misplaced(Rc::new(misplaced))) }
+    }
+}
+
+/// A list of names for a message, the first few.
+fn listed(names: &[&str]) -> String {
+    const SHOWN: usize = 8;
+    let mut list: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
+    if names.len() > SHOWN {
+        list.push("...".to_owned());
+    }
+    list.join(", ")
+}

@@ -1,0 +1,87 @@
+//! The objective: terms that add up, all minimised or all maximised.
+//!
+//! Takes the `minimize` and `maximize` items of all scopes, fills `Problem::objective`.
+//! Finds: both senses in one problem, terms of different dimensions.
+
+use ntg_structure::Unit;
+
+use super::elaborator::Elaborator;
+use super::problem::Term;
+use super::scope::{Allow, Context, Point};
+use super::settle::Use;
+use super::units;
+use super::value::Value;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+use crate::syntax::ast::{self, ItemKind, Sense};
+
+impl<'a> Elaborator<'a> {
+    /// All terms, scope by scope.
+    pub(super) fn objective(&mut self) {
+        let mut first: Option<(Sense, Span)> = None;
+        let mut sum: Option<Value> = None;
+        let mut declared: Option<Unit> = None;
+        for scope in 0..self.scopes.len() {
+            for item in self.items[scope] {
+                let ItemKind::Objective(objective) = &item.kind else { continue };
+                let (sense, before) = *first.get_or_insert((objective.sense, item.span));
+                if sense != objective.sense {
+                    self.both_senses(item.span, before);
+                    continue;
+                }
+                let Some(value) = self.term(scope, objective, item.span) else { continue };
+                if objective.unit.is_some() && declared.is_none() {
+                    declared = value.unit.as_ref().map(|unit| (**unit).clone());
+                }
+                sum = Some(match sum {
+                    Some(first) => self.alike("add", first, &value, value.node),
+                    None => value,
+                });
+            }
+        }
+        self.problem.maximize = matches!(first, Some((Sense::Maximize, _)));
+        let dimension = sum.map(|value| value.dimension_or_none()).unwrap_or(super::dimension::Dimension::NONE);
+        self.problem.objective_unit = declared.unwrap_or_else(|| units::si(&dimension));
+    }
+
+    fn both_senses(&mut self, span: Span, before: Span) {
+        let message = "a problem is minimised or maximised, not both";
+        let finding = Diagnostic::new(Code::MixedSenses, span, message)
+            .label(span, "this term has the other sense")
+            .label(before, "the first term");
+        self.report(finding.help("change the sign of this term and write the other word"));
+    }
+
+    fn term(&mut self, scope: usize, objective: &'a ast::Objective, span: Span) -> Option<Value> {
+        let (agent, phase) = (self.scopes[scope].agent, self.scopes[scope].phase);
+        let cx = match (phase, agent) {
+            (Some(phase), _) => self.phase_context(phase, Allow::All, Point::Nowhere),
+            (None, Some(agent)) => self.agent_context(agent, Allow::All),
+            (None, None) => Context::of(scope, Allow::All),
+        };
+        let mut value = self.usable(&cx, &objective.value, Use::Objective)?;
+        self.event = None;
+        if let Some(unit) = &objective.unit {
+            let what = objective.name.as_ref().map_or("this term".to_owned(), |name| format!("`{}`", name.text));
+            value = self.declared_unit(value, unit, &what);
+            if !value.is_sound() {
+                return None;
+            }
+        }
+        let unit = match (&objective.unit, &value.unit) {
+            (Some(_), Some(unit)) => (**unit).clone(),
+            _ => units::si(&value.dimension_or_none()),
+        };
+        let body = match objective.sense {
+            Sense::Minimize => value.node,
+            Sense::Maximize => self.problem.dag.neg(value.node),
+        };
+        self.origin(body, objective.value.span);
+        let name = objective.name.as_ref().map(|name| match agent {
+            Some(agent) => self.path_name(agent, phase, &name.text),
+            None => name.text.clone(),
+        });
+        self.problem.objective.push(Term { name, span, unit, loops: (*cx.loops).clone(), body });
+        Some(value.at(objective.value.span))
+    }
+}

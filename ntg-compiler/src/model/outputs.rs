@@ -1,0 +1,198 @@
+//! Flat outputs and their splines in each phase.
+//!
+//! Takes the `output` items of agents and phases, fills `Phase::outputs`: those of the agent, with
+//! another spline where the phase says so, then the phase's own.
+//! Finds: splines that do not exist, arrays with impossible sizes.
+
+use ntg_splines::{KnotError, Knots};
+use ntg_structure::{Spline, Unit};
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, doc_text};
+use super::problem::Output;
+use super::scope::{Allow, Context, ScopeId};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::ast::{self, ItemKind, OutputName};
+
+/// One declared output.
+struct Declared {
+    output: Output,
+    dimension: Dimension,
+    has_unit: bool,
+}
+
+impl<'a> Elaborator<'a> {
+    /// The outputs of every phase.
+    pub(super) fn outputs(&mut self) {
+        for phase in 0..self.phases.len() {
+            let (scope, agent) = (self.phases[phase].scope, self.phases[phase].agent);
+            let common = self.agents[agent].scope;
+            let mut all = self.outputs_of(common);
+            if scope != common {
+                for own in self.outputs_of(scope) {
+                    match all.iter_mut().find(|known| known.output.name == own.output.name) {
+                        Some(known) => self.replace(known, own),
+                        None => all.push(own),
+                    }
+                }
+            }
+            if all.is_empty() {
+                let span = self.phases[phase].span;
+                let finding = Diagnostic::new(Code::NoOutput, span, "there is no output here: nothing can move");
+                self.report(finding.help("declare one: `output x: spline(order = 5, intervals = 8);`"));
+            }
+            self.output_dimensions.push(all.iter().map(|declared| declared.dimension).collect());
+            self.problem.phases[phase].outputs = all.into_iter().map(|declared| declared.output).collect();
+        }
+    }
+
+    /// A common output gets the spline of a phase; its unit and size stay what they are.
+    fn replace(&mut self, known: &mut Declared, own: Declared) {
+        let name = &own.output.name;
+        if own.has_unit && own.dimension != known.dimension {
+            let (this, that) = (own.dimension.describe(), known.dimension.describe());
+            let finding =
+                Diagnostic::new(Code::DimensionMismatch, own.output.span, format!("`{name}` is {that}, not {this}"))
+                    .label(own.output.span, format!("this is {this}"))
+                    .label(known.output.span, format!("this is {that}"))
+                    .help("leave the unit out: the phase only replaces the spline");
+            self.report(finding);
+        }
+        if own.output.family != known.output.family {
+            let message = format!("`{name}` has another size outside the phase");
+            let finding = Diagnostic::new(Code::WrongCount, own.output.span, message)
+                .label(known.output.span, "declared here")
+                .help("write the same size: the phase only replaces the spline");
+            self.report(finding);
+        }
+        known.output.spline = own.output.spline;
+        if own.has_unit {
+            known.output.unit = own.output.unit;
+        }
+    }
+
+    fn outputs_of(&mut self, scope: ScopeId) -> Vec<Declared> {
+        let mut all: Vec<Declared> = Vec::new();
+        for item in self.items[scope] {
+            let ItemKind::Output(output) = &item.kind else { continue };
+            let spline = self.spline(scope, &output.spline);
+            for name in &output.names {
+                if all.iter().any(|known| known.output.name == name.name.text) {
+                    continue; // Told of when it was declared.
+                }
+                let doc = doc_text(&item.doc);
+                all.push(self.output_declaration(scope, name, doc, &spline));
+            }
+        }
+        all
+    }
+
+    fn output_declaration(&mut self, scope: ScopeId, name: &'a OutputName, doc: String, spline: &Spline) -> Declared {
+        let cx = Context::of(scope, Allow::Constants);
+        let family = name.size.as_ref().map(|size| {
+            let first = self.whole(&cx, &size.first, "the first index of an array");
+            let last = self.whole(&cx, &size.last, "the last index of an array");
+            (first.unwrap_or(1), last.unwrap_or(0))
+        });
+        let unit = name.unit.as_ref().and_then(|unit| self.unit(unit));
+        let has_unit = name.unit.is_some();
+        let (dimension, unit) = match unit {
+            Some((quantity, shown)) => (quantity.dimension, shown),
+            None => (Dimension::NONE, Unit::default()),
+        };
+        let output =
+            Output { name: name.name.text.clone(), doc, unit, family, spline: spline.clone(), span: name.name.span };
+        Declared { output, dimension, has_unit }
+    }
+
+    /// The spline as written; a stand-in where it is wrong.
+    fn spline(&mut self, scope: ScopeId, spline: &'a ast::Spline) -> Spline {
+        // High enough that no derivative is refused because of the stand-in.
+        let stand_in = Spline { order: 40, smoothness: 39, breakpoints: vec![0.0, 1.0] };
+        self.spline_as_written(scope, spline).unwrap_or(stand_in)
+    }
+
+    fn spline_as_written(&mut self, scope: ScopeId, spline: &'a ast::Spline) -> Option<Spline> {
+        let cx = Context::of(scope, Allow::Constants);
+        let Some(order) = &spline.order else {
+            let finding = Diagnostic::new(Code::WrongSpline, spline.span, "a spline needs an order");
+            self.report(finding.help("write `spline(order = 5, intervals = 8)`; order 5 is degree 4"));
+            return None;
+        };
+        let k = self.natural(&cx, order, "the order of a spline")?;
+        let m = match &spline.smoothness {
+            Some(smoothness) => self.natural(&cx, smoothness, "the smoothness of a spline")?,
+            None => k.saturating_sub(1),
+        };
+        let knots = match (&spline.knots, &spline.intervals) {
+            (Some(knots), None) => {
+                let points: Vec<Option<f64>> =
+                    knots.elements.iter().map(|e| self.pure_constant(&cx, e, "a breakpoint of a spline")).collect();
+                Knots::new(k, points.into_iter().collect::<Option<_>>()?, m)
+            }
+            (None, Some(intervals)) => {
+                let intervals = self.natural(&cx, intervals, "the number of intervals of a spline")?;
+                Knots::uniform(k, intervals, m)
+            }
+            (Some(knots), Some(_)) => {
+                let finding = Diagnostic::new(Code::WrongSpline, knots.span, "both `knots` and `intervals` are given");
+                self.report(finding.help("keep one of them: `intervals` are equal, `knots` are as you write them"));
+                return None;
+            }
+            (None, None) => {
+                let finding = Diagnostic::new(Code::WrongSpline, spline.span, "a spline needs a number of intervals");
+                self.report(finding.help("write `spline(order = 5, intervals = 8)`"));
+                return None;
+            }
+        };
+        match knots {
+            Ok(knots) => {
+                let breakpoints = knots.breakpoints().to_vec();
+                Some(Spline { order: knots.order(), smoothness: knots.smoothness(), breakpoints })
+            }
+            Err(error) => {
+                self.wrong_spline(spline, error);
+                None
+            }
+        }
+    }
+
+    fn wrong_spline(&mut self, spline: &ast::Spline, error: KnotError) {
+        let part = |expr: &Option<ast::Expr>| expr.as_ref().map(|expr| expr.span);
+        let knot = |index: usize| spline.knots.as_ref().and_then(|knots| knots.elements.get(index)).map(|e| e.span);
+        let (span, help) = match error {
+            KnotError::Order { .. } => (part(&spline.order), "write an order such as 5, which is degree 4"),
+            KnotError::Smoothness { .. } => (part(&spline.smoothness), "lower `smoothness`, or raise `order`"),
+            KnotError::Intervals { .. } => (part(&spline.intervals), "write a number of intervals such as 8"),
+            KnotError::NotFinite { index } | KnotError::NotIncreasing { index } => {
+                (knot(index), "breakpoints increase from 0 to 1: `knots = (0, 0.2, 0.6, 1)`")
+            }
+            _ => (
+                spline.knots.as_ref().map(|knots| knots.span),
+                "breakpoints are in scaled time, from 0 to 1: `knots = (0, 0.2, 0.6, 1)`",
+            ),
+        };
+        let finding = Diagnostic::new(Code::WrongSpline, span.unwrap_or(spline.span), error.to_string());
+        self.report(finding.help(help));
+    }
+
+    /// A whole number that is not negative.
+    pub(super) fn natural(&mut self, cx: &Context<'a>, expr: &'a ast::Expr, what: &str) -> Option<usize> {
+        let value = self.whole(cx, expr, what)?;
+        if let Ok(value) = usize::try_from(value) {
+            return Some(value);
+        }
+        let message = format!("{what} is not negative, this is {value}");
+        self.report(Diagnostic::new(Code::NotWhole, expr.span, message).help("write a whole number, 0 or more"));
+        None
+    }
+
+    /// A constant that is a pure number.
+    pub(super) fn pure_constant(&mut self, cx: &Context<'a>, expr: &'a ast::Expr, what: &str) -> Option<f64> {
+        let constant = self.constant(cx, expr, what)?;
+        let Some(dimension) = constant.dimension.filter(|d| !d.is_none()) else { return Some(constant.value) };
+        let message = format!("{what} is a pure number, this is {}", dimension.describe());
+        self.report(Diagnostic::new(Code::NotPure, expr.span, message).help("write it without a unit"));
+        None
+    }
+}

@@ -1,0 +1,253 @@
+//! Parameters and variables: their defaults, bounds and units.
+//!
+//! Takes the items of the problem's own scope, fills `Problem::parameters`, `variables` and
+//! `continuations`.
+//! Finds: defaults that are no constants, arrays with too few or too many values, bounds that
+//! depend on what is solved for, bounds that cross.
+
+use std::rc::Rc;
+
+use ntg_structure::{Parameter, Unit};
+
+use super::dimension::Dimension;
+use super::elaborator::{Elaborator, Steps, doc_text};
+use super::problem::{Bounds, Continuation, Variable};
+use super::scope::{Allow, Context, Entity, PROBLEM};
+use super::settle::Use;
+use super::units;
+use super::value::Value;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::NodeId;
+use crate::source::Span;
+use crate::syntax::ast::{self, Expr, ItemKind, Values};
+
+/// A list of constants of one dimension.
+struct Numbers {
+    values: Vec<f64>,
+    dimension: Option<Dimension>,
+    unit: Option<Rc<Unit>>,
+}
+
+impl<'a> Elaborator<'a> {
+    /// All parameters; nothing but constants is needed for them.
+    pub(super) fn parameters(&mut self) {
+        let blank =
+            Parameter { name: String::new(), doc: String::new(), unit: Unit::default(), array: false, value: vec![] };
+        self.problem.parameters = vec![blank; self.parameters.len()];
+        let mut done = vec![false; self.parameters.len()];
+        for item in self.items[PROBLEM] {
+            let doc = doc_text(&item.doc);
+            match &item.kind {
+                ItemKind::Param(param) => {
+                    let Some(k) = self.parameter_of(&param.name) else { continue };
+                    // The second of two that have one name was told of already.
+                    if !std::mem::replace(&mut done[k], true) {
+                        self.parameter_default(k, param, doc);
+                    }
+                }
+                ItemKind::Continuation(continuation) => {
+                    let Some(k) = self.parameter_of(&continuation.name) else {
+                        self.no_parameter(&continuation.name);
+                        continue;
+                    };
+                    let declares = self.parameters[k].0.span == continuation.name.span;
+                    self.continuation(k, continuation, declares.then_some(doc));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn parameter_of(&self, name: &ast::Ident) -> Option<usize> {
+        match self.scopes[PROBLEM].names.get(name.text.as_str())?.entity {
+            Entity::Parameter(k) => Some(k),
+            _ => None,
+        }
+    }
+
+    fn no_parameter(&mut self, name: &ast::Ident) {
+        let Some(declared) = self.scopes[PROBLEM].names.get(name.text.as_str()).copied() else { return };
+        if declared.span == name.span {
+            return;
+        }
+        let message = format!("`{}` is {}, not a parameter", name.text, declared.entity.describe());
+        self.report(
+            Diagnostic::new(Code::WrongContinuation, name.span, message)
+                .label(declared.span, "declared here")
+                .help(format!("only a parameter can be solved for in turn: declare `param {} = ...;`", name.text)),
+        );
+    }
+
+    fn parameter_default(&mut self, k: usize, param: &'a ast::Param, doc: String) {
+        let cx = Context::of(PROBLEM, Allow::Constants);
+        let name = &param.name.text;
+        let what = format!("the default of `{name}`");
+        let size = param.size.as_ref().map(|size| (self.whole(&cx, size, "the size of an array"), size.span));
+        let Some(numbers) = self.numbers(&cx, &param.default, &what) else { return };
+        let mut values = numbers.values;
+        match size {
+            None if param.default.is_tuple && values.len() != 1 => {
+                let message = format!("`{name}` is one number, but its default has {}", values.len());
+                let finding = Diagnostic::new(Code::WrongCount, param.default.span, message);
+                self.report(finding.help(format!("declare an array: `param {name}[{}] = ...;`", values.len())));
+            }
+            Some((Some(size), span)) => {
+                // One value stands for all members.
+                if !param.default.is_tuple && values.len() == 1 && (0..=MAX_MEMBERS).contains(&size) {
+                    values = vec![values[0]; size as usize];
+                } else if values.len() as i64 != size {
+                    let message = format!("`{name}` has {size} members, but its default has {}", values.len());
+                    let finding = Diagnostic::new(Code::WrongCount, param.default.span, message)
+                        .label(param.default.span, format!("{} values", values.len()))
+                        .label(span, format!("{size} members"));
+                    self.report(finding.help("write one value for each member, or a single one for all"));
+                }
+            }
+            _ => {}
+        }
+        let dimension = numbers.dimension.unwrap_or(Dimension::NONE);
+        let unit = numbers.unit.map_or_else(|| units::si(&dimension), |unit| (*unit).clone());
+        self.parameters[k].1 = Some(dimension);
+        self.problem.parameters[k] =
+            Parameter { name: name.clone(), doc, unit, array: param.size.is_some(), value: values };
+    }
+
+    /// Constants of one dimension, in SI units.
+    fn numbers(&mut self, cx: &Context<'a>, values: &'a Values, what: &str) -> Option<Numbers> {
+        let mut all: Vec<f64> = Vec::new();
+        let mut joined: Option<Value> = None;
+        let mut sound = true;
+        for element in &values.elements {
+            let Some(constant) = self.constant(cx, element, what) else {
+                sound = false;
+                continue;
+            };
+            all.push(constant.value);
+            let node = self.problem.dag.constant(constant.value);
+            let (dimension, unit) = (constant.dimension, constant.unit);
+            let value = Value { node, dimension, unit, span: element.span, flaw: None };
+            joined = Some(match joined {
+                Some(first) => self.alike("(..., ...)", first, &value, node),
+                None => value,
+            });
+        }
+        let joined = joined.filter(|joined| sound && joined.is_sound())?;
+        Some(Numbers { values: all, dimension: joined.dimension, unit: joined.unit })
+    }
+
+    fn continuation(&mut self, k: usize, continuation: &'a ast::Continuation, declares: Option<String>) {
+        let cx = Context::of(PROBLEM, Allow::Constants);
+        let name = &continuation.name.text;
+        let Some(numbers) = self.numbers(&cx, &continuation.values, &format!("a step of `{name}`")) else { return };
+        let dimension = numbers.dimension.unwrap_or(Dimension::NONE);
+        if let Some(doc) = declares {
+            let unit = numbers.unit.map_or_else(|| units::si(&dimension), |unit| (*unit).clone());
+            self.parameters[k].1 = Some(dimension);
+            self.problem.parameters[k] = Parameter { name: name.clone(), doc, unit, array: false, value: vec![0.0] };
+        }
+        let (place, name) = (continuation.values.span, continuation.name.span);
+        self.pending.push(Steps { parameter: k, values: numbers.values, dimension, place, name });
+    }
+
+    /// Joins continuations to their parameters once all defaults are known.
+    pub(super) fn continuations(&mut self) {
+        for Steps { parameter: k, values: steps, dimension, place, name: name_span } in
+            std::mem::take(&mut self.pending)
+        {
+            let (ident, declared) = (self.parameters[k].0, self.parameters[k].1);
+            let name = &ident.text;
+            if let Some(wanted) = declared.filter(|wanted| *wanted != dimension && steps.iter().any(|s| *s != 0.0)) {
+                let message = format!("`{name}` is {}, but its steps are {}", wanted.describe(), dimension.describe());
+                self.report(
+                    Diagnostic::new(Code::DimensionMismatch, place, message)
+                        .label(place, format!("this is {}", dimension.describe()))
+                        .label(ident.span, format!("this is {}", wanted.describe()))
+                        .help("write the unit of the parameter after the steps"),
+                );
+                continue;
+            }
+            if self.problem.parameters[k].array {
+                let message = format!("`{name}` is an array: only single numbers can be solved for in turn");
+                let finding = Diagnostic::new(Code::WrongContinuation, name_span, message);
+                self.report(
+                    finding.help("declare a parameter of one number, and use it in place of the array's members"),
+                );
+                continue;
+            }
+            if self.problem.continuations.iter().any(|c| c.parameter == k) {
+                let message = format!("`{name}` has two continuations");
+                let finding = Diagnostic::new(Code::WrongContinuation, name_span, message);
+                self.report(finding.help("write all steps in one"));
+                continue;
+            }
+            if let Some(last) = steps.last() {
+                self.problem.parameters[k].value = vec![*last];
+            }
+            self.problem.continuations.push(Continuation { parameter: k, steps });
+        }
+    }
+
+    /// All variables; their bounds may depend on parameters.
+    pub(super) fn variables(&mut self) {
+        let cx = Context::of(PROBLEM, Allow::Parameters);
+        let mut seen = 0;
+        for item in self.items[PROBLEM] {
+            let ItemKind::Variable(variable) = &item.kind else { continue };
+            let k = seen;
+            seen += 1;
+            let name = &variable.name.text;
+            let what = format!("a bound of `{name}`");
+            let (bounds, joined) = match &variable.bounds {
+                Some(bounds) => self.bounds(&cx, bounds, &what),
+                None => (Bounds::default(), None),
+            };
+            let declared = variable.unit.as_ref().and_then(|unit| self.unit(unit));
+            let mut dimension = joined.as_ref().and_then(|value| value.dimension);
+            let mut unit = joined.and_then(|value| value.unit).map(|unit| (*unit).clone());
+            if let Some((quantity, shown)) = declared {
+                dimension = dimension.or(Some(quantity.dimension));
+                unit = Some(shown);
+            }
+            let dimension = dimension.unwrap_or(Dimension::NONE);
+            self.variables[k].1 = Some(dimension);
+            let unit = unit.unwrap_or_else(|| units::si(&dimension));
+            let doc = doc_text(&item.doc);
+            self.problem.variables.push(Variable { name: name.clone(), doc, unit, bounds, span: variable.name.span });
+        }
+    }
+
+    /// Bounds made of parameters, and their common dimension.
+    pub(super) fn bounds(&mut self, cx: &Context<'a>, bounds: &'a ast::Bounds, what: &str) -> (Bounds, Option<Value>) {
+        let lower = bounds.lower.as_ref().and_then(|end| self.bound(cx, end, what));
+        let upper = bounds.upper.as_ref().and_then(|end| self.bound(cx, end, what));
+        let nodes = Bounds { lower: lower.as_ref().map(|v| v.node), upper: upper.as_ref().map(|v| v.node) };
+        self.crossing(&nodes, bounds.span);
+        let joined = match (lower, upper) {
+            (Some(lower), Some(upper)) => {
+                let node = upper.node;
+                Some(self.alike("..", lower, &upper, node))
+            }
+            (one, other) => one.or(other),
+        };
+        (nodes, joined)
+    }
+
+    /// One expression of parameters.
+    pub(super) fn bound(&mut self, cx: &Context<'a>, expr: &'a Expr, what: &str) -> Option<Value> {
+        let value = self.value(&cx.allowing(Allow::Parameters), expr);
+        self.settle(value, Use::Bound(what))
+    }
+
+    /// Tells when constants make a lower bound larger than the upper one.
+    pub(super) fn crossing(&mut self, bounds: &Bounds, span: Span) {
+        let known = |node: Option<NodeId>| node.and_then(|node| self.problem.dag.is_constant(node));
+        let (Some(lower), Some(upper)) = (known(bounds.lower), known(bounds.upper)) else { return };
+        if lower > upper {
+            let message = "the lower bound is larger than the upper one";
+            self.report(Diagnostic::new(Code::BoundsCross, span, message).help("exchange the two bounds"));
+        }
+    }
+}
+
+/// The largest number of members that one default may stand for.
+const MAX_MEMBERS: i64 = 1_000_000;

@@ -1,0 +1,236 @@
+//! Scopes and the names in them; contexts in which expressions are given a meaning.
+//!
+//! The problem, each agent and each phase is a scope. A problem without agents is its one agent, an
+//! agent without phases is its one phase: one scope then plays several roles. What is written in an
+//! agent outside its phases is resolved in each phase (docs/language.md, section 4), so names
+//! are looked up from the phase of the [`Context`] outwards, wherever the text stands.
+
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
+
+use super::problem::{Form, Loop, PhaseAt};
+use super::value::Value;
+use crate::source::Span;
+use crate::syntax::ast;
+
+/// Addresses a [`Scope`].
+pub(super) type ScopeId = usize;
+
+/// The problem's own scope.
+pub(super) const PROBLEM: ScopeId = 0;
+
+/// The problem, an agent or a phase.
+pub(super) struct Scope<'a> {
+    /// The scope around it.
+    pub(super) parent: Option<ScopeId>,
+    /// The agent it is or belongs to.
+    pub(super) agent: Option<usize>,
+    /// The phase it is.
+    pub(super) phase: Option<usize>,
+    /// The name of its family's index.
+    pub(super) index: Option<&'a ast::Ident>,
+    /// Its own names.
+    pub(super) names: HashMap<&'a str, Declared>, // Looked up, never iterated.
+    /// Its own names in the order of declaration.
+    pub(super) order: Vec<&'a str>,
+}
+
+/// A name's first declaration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Declared {
+    /// What it names.
+    pub(super) entity: Entity,
+    /// Where.
+    pub(super) span: Span,
+}
+
+/// What a name can name; the numbers address the lists of the elaborator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Entity {
+    /// A `const` or `let`.
+    Definition(usize),
+    /// A `fn`.
+    Function(usize),
+    /// A `param`.
+    Parameter(usize),
+    /// A `variable`.
+    Variable(usize),
+    /// A `table`.
+    Table(usize),
+    /// A flat output; which one depends on the phase.
+    Output,
+    /// The duration of this scope.
+    Duration(ScopeId),
+    /// A phase.
+    Phase(usize),
+    /// An agent.
+    Agent(usize),
+}
+
+impl Entity {
+    /// What a person calls it.
+    pub(super) fn describe(self) -> &'static str {
+        match self {
+            Self::Definition(_) => "a definition",
+            Self::Function(_) => "a function",
+            Self::Parameter(_) => "a parameter",
+            Self::Variable(_) => "a variable",
+            Self::Table(_) => "a table",
+            Self::Output => "an output",
+            Self::Duration(_) => "a duration",
+            Self::Phase(_) => "a phase",
+            Self::Agent(_) => "an agent",
+        }
+    }
+}
+
+/// At which point outputs and time are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Point {
+    /// At none: the expression is a number of the whole mission.
+    Nowhere,
+    /// All along the phase.
+    Path,
+    /// At the phase's start, where the expression itself lives.
+    Start,
+    /// At the phase's end, where the expression itself lives.
+    End,
+    /// At the phase's start, seen from the mission.
+    MissionStart,
+    /// At the phase's end, seen from the mission.
+    MissionEnd,
+}
+
+/// What an expression may depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) enum Allow {
+    /// Constants alone.
+    Constants,
+    /// Constants, parameters and indices.
+    Parameters,
+    /// The same, and time, scaled time and durations as they are guessed.
+    Guess,
+    /// Everything that has a value at the point.
+    All,
+}
+
+/// A name that an expression brings along.
+pub(super) struct Local<'a> {
+    pub(super) name: &'a str,
+    pub(super) meaning: Meaning,
+    pub(super) next: Option<Rc<Local<'a>>>,
+}
+
+/// What a local name stands for.
+#[derive(Clone)]
+pub(super) enum Meaning {
+    /// An index.
+    Index(Form),
+    /// A function's argument.
+    Argument(Value),
+}
+
+/// Where and as what an expression is given a meaning.
+#[derive(Clone)]
+pub(super) struct Context<'a> {
+    /// Where names are looked up.
+    pub(super) scope: ScopeId,
+    /// Where the text stands: what `integral(e)` without a path is about.
+    pub(super) lexical: ScopeId,
+    /// The member of the scope's agent.
+    pub(super) agent: Option<Form>,
+    /// The member of the scope's phase.
+    pub(super) phase: Option<Form>,
+    /// Where outputs and time are taken.
+    pub(super) point: Point,
+    /// What may occur.
+    pub(super) allow: Allow,
+    /// The loops around the expression.
+    pub(super) loops: Rc<Vec<Loop>>,
+    /// Indices and arguments in sight, the innermost first.
+    pub(super) locals: Option<Rc<Local<'a>>>,
+}
+
+impl<'a> Context<'a> {
+    /// A context of a scope for numbers, without indices.
+    pub(super) fn of(scope: ScopeId, allow: Allow) -> Self {
+        Self {
+            scope,
+            lexical: scope,
+            agent: None,
+            phase: None,
+            point: Point::Nowhere,
+            allow,
+            loops: Rc::default(),
+            locals: None,
+        }
+    }
+
+    /// The same context with another point.
+    pub(super) fn at(&self, point: Point) -> Self {
+        Self { point, ..self.clone() }
+    }
+
+    /// The same context with other permissions.
+    pub(super) fn allowing(&self, allow: Allow) -> Self {
+        Self { allow, ..self.clone() }
+    }
+
+    /// The same context with one more name.
+    pub(super) fn with(&self, name: &'a str, meaning: Meaning) -> Self {
+        let next = self.locals.clone();
+        Self { locals: Some(Rc::new(Local { name, meaning, next })), ..self.clone() }
+    }
+
+    /// The same context inside one more loop.
+    pub(super) fn inside(&self, over: Loop) -> Self {
+        let mut loops = (*self.loops).clone();
+        loops.push(over);
+        Self { loops: Rc::new(loops), ..self.clone() }
+    }
+
+    /// The local name, if there is one.
+    pub(super) fn local(&self, name: &str) -> Option<&Meaning> {
+        let mut next = self.locals.as_deref();
+        while let Some(local) = next {
+            if local.name == name {
+                return Some(&local.meaning);
+            }
+            next = local.next.as_deref();
+        }
+        None
+    }
+
+    /// The phase `phase` with the members of this context.
+    pub(super) fn phase_at(&self, phase: usize) -> PhaseAt {
+        PhaseAt { phase, agent: self.agent.clone(), index: self.phase.clone() }
+    }
+}
+
+/// The names that may be meant at a place: of the scope and of those around it, without repetition.
+pub(super) fn visible<'s, 'a: 's>(scopes: &'s [Scope<'a>], scope: ScopeId) -> Vec<(&'a str, Entity)> {
+    let mut names: Vec<(&str, Entity)> = Vec::new();
+    let mut known: HashSet<&str> = HashSet::new();
+    let mut next = Some(scope);
+    while let Some(id) = next {
+        for name in &scopes[id].order {
+            if known.insert(name) {
+                names.push((name, scopes[id].names[name].entity));
+            }
+        }
+        next = scopes[id].parent;
+    }
+    names
+}
+
+/// What a name means in a scope, and in which scope it was found.
+pub(super) fn look_up(scopes: &[Scope<'_>], scope: ScopeId, name: &str) -> Option<(ScopeId, Declared)> {
+    let mut next = Some(scope);
+    while let Some(id) = next {
+        if let Some(declared) = scopes[id].names.get(name) {
+            return Some((id, *declared));
+        }
+        next = scopes[id].parent;
+    }
+    None
+}

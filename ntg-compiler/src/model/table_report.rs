@@ -1,0 +1,121 @@
+//! Builds a table's interpolant once, and says what it does to the data.
+//!
+//! Takes a table in SI units.
+//! Finds: tables that have no interpolant; notes how well a fit meets its data, and where a
+//! gradient jumps because a table keeps an end value that it reaches with a slope.
+
+use ntg_splines::{Axis, Extrapolation, Method, Symmetry, TableError};
+use ntg_structure::{Table, TableExtrapolation, TableMethod, TableSymmetry};
+
+use super::elaborator::Elaborator;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::ast;
+
+impl Elaborator<'_> {
+    /// Builds the interpolant once, to see that it exists and how well it follows its data.
+    pub(super) fn try_out(&mut self, declared: &ast::Table, table: &Table) {
+        let axes = table.axes.iter().map(|axis| Axis {
+            nodes: axis.nodes.clone(),
+            symmetry: match axis.symmetry {
+                TableSymmetry::Plain => Symmetry::Plain,
+                TableSymmetry::Even => Symmetry::Even,
+                TableSymmetry::Periodic => Symmetry::Periodic,
+            },
+        });
+        let method = match &table.method {
+            TableMethod::Monotone => Method::Monotone,
+            TableMethod::Bspline { order } => Method::Bspline { order: *order },
+            TableMethod::Fit { order, intervals } => Method::Fit { order: *order, intervals: intervals.clone() },
+            TableMethod::Linear => Method::Linear,
+        };
+        let outside = match table.extrapolation {
+            TableExtrapolation::Clamp => Extrapolation::Clamp,
+            TableExtrapolation::Linear => Extrapolation::Linear,
+        };
+        match ntg_splines::Table::new(axes.collect(), table.values.clone(), method, outside) {
+            Ok(made) => {
+                self.fit_note(declared, table, &made);
+                self.end_slopes(declared, table, &made);
+            }
+            Err(error) => self.wrong_table(declared, &error),
+        }
+    }
+
+    fn wrong_table(&mut self, declared: &ast::Table, error: &TableError) {
+        let axis = |k: usize| declared.axes.get(k).map(|axis| axis.span);
+        let order = declared.method.order.as_ref().map(|order| order.span);
+        let (span, help) = match *error {
+            TableError::TooFewNodes { axis: k, .. } => (axis(k), "write two nodes at least"),
+            TableError::EvenNegative { axis: k, .. } => {
+                (axis(k), "leave the negative nodes out: `even` mirrors the others")
+            }
+            TableError::PeriodicNotClosed { axis: k, .. } => (axis(k), "repeat the first values at the last node"),
+            TableError::Order { .. } => (order, "write an order such as 4, which is cubic"),
+            TableError::MonotoneArguments { .. } => {
+                (Some(declared.method.span), "write `bspline(order = 4)` or `linear`")
+            }
+            _ => (Some(declared.method.span), "choose another method, or other nodes"),
+        };
+        let message = format!("`{}`: {error}", declared.name.text);
+        let finding = Diagnostic::new(Code::WrongTable, span.unwrap_or(declared.name.span), message);
+        self.report(finding.help(help));
+    }
+
+    fn fit_note(&mut self, declared: &ast::Table, table: &Table, made: &ntg_splines::Table) {
+        if !matches!(table.method, TableMethod::Fit { .. } | TableMethod::Bspline { .. }) {
+            return;
+        }
+        let report = made.fit_report();
+        let unit = if table.unit.symbol.is_empty() { String::new() } else { format!(" [{}]", table.unit.symbol) };
+        let shown = |value: f64| format!("{:.3e}{unit}", value / table.unit.factor);
+        let (error, overshoot) = (shown(report.largest_error), shown(report.largest_overshoot));
+        let message =
+            format!("`{}` misses its values by at most {error} and overshoots them by at most {overshoot}", table.name);
+        let finding = Diagnostic::new(Code::FitReport, declared.method.span, message);
+        self.report(finding.help("`monotone` meets every value and never overshoots"));
+    }
+
+    /// Notes where a table that keeps its end value has a slope there.
+    fn end_slopes(&mut self, declared: &ast::Table, table: &Table, made: &ntg_splines::Table) {
+        if table.extrapolation == TableExtrapolation::Linear || table.method == TableMethod::Linear {
+            return;
+        }
+        let (low, high) = table.values.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+        for (k, axis) in table.axes.iter().enumerate() {
+            let ends: &[usize] = match axis.symmetry {
+                TableSymmetry::Plain => &[0, axis.nodes.len() - 1],
+                TableSymmetry::Even => &[axis.nodes.len() - 1],
+                TableSymmetry::Periodic => &[],
+            };
+            let width = axis.nodes[axis.nodes.len() - 1] - axis.nodes[0];
+            // A slope that would change the value by a millionth of its range across the nodes.
+            let least = 1e-6 * (high - low) / width;
+            let steep = ends.iter().any(|end| steepest(table, made, k, axis.nodes[*end]) > least);
+            if steep {
+                let message = format!("the gradient of `{}` jumps where `{}` leaves its nodes", table.name, axis.name);
+                let finding = Diagnostic::new(Code::GradientJumps, declared.axes[k].span, message);
+                self.report(
+                    finding
+                        .help("the table keeps its end value there; `extrapolate = linear` goes on with the end slope"),
+                );
+            }
+        }
+    }
+}
+
+/// The largest slope in argument `k` at the node `end`, over the nodes of the other arguments.
+fn steepest(table: &Table, made: &ntg_splines::Table, k: usize, end: f64) -> f64 {
+    let mut derivative = vec![0_u8; table.axes.len()];
+    derivative[k] = 1;
+    let mut most: f64 = 0.0;
+    let mut index = vec![0_usize; table.axes.len()];
+    loop {
+        let mut args: Vec<f64> = index.iter().zip(&table.axes).map(|(i, axis)| axis.nodes[*i]).collect();
+        args[k] = end;
+        most = most.max(made.eval(&args, &derivative).abs());
+        let next = (0..index.len()).filter(|a| *a != k).find(|a| index[*a] + 1 < table.axes[*a].nodes.len());
+        let Some(next) = next else { return most };
+        index[next] += 1;
+        index.iter_mut().take(next).for_each(|i| *i = 0);
+    }
+}

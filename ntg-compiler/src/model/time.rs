@@ -1,0 +1,263 @@
+//! Times, paths to phases and agents, values at their ends, and integrals along them.
+//!
+//! Takes the expressions of docs/language.md, section 4, gives values.
+//! Finds: paths that lead nowhere, integrals and event times where an expression belongs to one
+//! point.
+//! An expression that stands in an agent and names no path is about the whole agent: `integral`
+//! adds up its phases, `initial` is at the start of the first, `final` at the end of the last.
+
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
+use super::problem::{Form, Leaf, Loop, PhaseAt};
+use super::scope::{Allow, Context, Point, ScopeId};
+use super::value::{Value, What};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{Fold, NodeId};
+use crate::source::Span;
+use crate::syntax::ast::{Boundary, Event, Expr, Path};
+
+/// A phase with the members that are meant.
+#[derive(Clone)]
+pub(super) struct Stretch {
+    /// Which phase.
+    pub(super) phase: usize,
+    /// The member of its agent.
+    pub(super) agent: Option<Form>,
+    /// The member of the phase.
+    pub(super) index: Option<Form>,
+}
+
+impl Stretch {
+    /// As the model names it.
+    pub(super) fn at(&self) -> PhaseAt {
+        PhaseAt { phase: self.phase, agent: self.agent.clone(), index: self.index.clone() }
+    }
+}
+
+impl<'a> Elaborator<'a> {
+    /// `t`.
+    pub(super) fn mission_time(&mut self, cx: &Context<'a>, span: Span) -> Value {
+        let dimension = self.time;
+        let phase = self.scopes[cx.scope].phase.map(|phase| cx.phase_at(phase));
+        let node = match (cx.allow, cx.point, phase) {
+            (Allow::Guess, Point::Nowhere, None) => self.guessed_time(cx),
+            (Allow::Guess, _, Some(phase)) => Some(self.leaf(Leaf::Time(phase))),
+            (Allow::All, Point::Path | Point::Start | Point::End, Some(phase)) => Some(self.leaf(Leaf::Time(phase))),
+            (Allow::All, Point::MissionStart, Some(phase)) => Some(self.leaf(Leaf::Start(phase))),
+            (Allow::All, Point::MissionEnd, Some(phase)) => {
+                let start = self.leaf(Leaf::Start(phase.clone()));
+                let duration = self.leaf(Leaf::Duration(phase));
+                Some(self.problem.dag.add(start, duration))
+            }
+            _ => None,
+        };
+        match node {
+            Some(node) => Value::new(node, dimension, span),
+            None => self.misplaced_value(What::Time, span, "t", Some(dimension)),
+        }
+    }
+
+    /// `t` in a guess over several phases: the start, and a part of the whole duration.
+    fn guessed_time(&mut self, cx: &Context<'a>) -> Option<NodeId> {
+        let agent = self.scopes[cx.scope].agent?;
+        let first = self.stretches(agent, cx.agent.clone()).into_iter().next()?;
+        let start = self.leaf(Leaf::Start(self.first_member(&first).at()));
+        let whole = self.total_duration(agent, cx.agent.clone());
+        let tau = self.leaf(Leaf::Tau);
+        let gone = self.problem.dag.mul(tau, whole);
+        Some(self.problem.dag.add(start, gone))
+    }
+
+    /// `tau`.
+    pub(super) fn scaled_time(&mut self, cx: &Context<'a>, span: Span) -> Value {
+        let node = match (cx.allow, cx.point) {
+            (Allow::Guess, _) | (Allow::All, Point::Path) => self.leaf(Leaf::Tau),
+            (Allow::All, Point::Start | Point::MissionStart) => self.problem.dag.constant(0.0),
+            (Allow::All, Point::End | Point::MissionEnd) => self.problem.dag.constant(1.0),
+            _ => return self.misplaced_value(What::ScaledTime, span, "tau", Some(Dimension::NONE)),
+        };
+        Value::new(node, Dimension::NONE, span)
+    }
+
+    /// The phases of an agent; a family of phases is one stretch, its member left open.
+    pub(super) fn stretches(&self, agent: usize, member: Option<Form>) -> Vec<Stretch> {
+        let stretch = |phase: &usize| Stretch { phase: *phase, agent: member.clone(), index: None };
+        self.agents[agent].phases.iter().map(stretch).collect()
+    }
+
+    /// The first member of a stretch that is a family, else the stretch itself.
+    pub(super) fn first_member(&self, stretch: &Stretch) -> Stretch {
+        let family = self.problem.phases[stretch.phase].family.as_ref();
+        Stretch { index: family.map(|over| over.first.clone()), ..stretch.clone() }
+    }
+
+    /// The last member of a stretch that is a family, else the stretch itself.
+    pub(super) fn last_member(&self, stretch: &Stretch) -> Stretch {
+        let family = self.problem.phases[stretch.phase].family.as_ref();
+        Stretch { index: family.map(|over| over.last.clone()), ..stretch.clone() }
+    }
+
+    /// The sum of a function of each stretch of an agent, members of families included.
+    fn total(&mut self, stretches: &[Stretch], mut part: impl FnMut(&mut Self, &Stretch) -> NodeId) -> NodeId {
+        let mut parts = Vec::new();
+        for stretch in stretches {
+            let node = match self.problem.phases[stretch.phase].family.clone() {
+                Some(family) if stretch.index.is_none() => {
+                    let (over, range) = self.total_index(stretch.phase, &family);
+                    let member = Stretch { index: Some(Form::index(over.index)), ..stretch.clone() };
+                    let body = part(self, &member);
+                    self.problem.dag.reduce(Fold::Sum, over.index.0, range, body)
+                }
+                _ => part(self, stretch),
+            };
+            parts.push(node);
+        }
+        self.problem.dag.sum(&parts)
+    }
+
+    /// The index that totals over a family of phases use: one for all, since they do not nest.
+    fn total_index(&mut self, phase: usize, family: &Loop) -> (Loop, u32) {
+        if let Some(range) = self.total_indices.get(&phase) {
+            return (self.problem.ranges[*range as usize].clone(), *range);
+        }
+        let over = self.new_index(family.first.clone(), family.last.clone());
+        let range = self.new_range(&over);
+        self.total_indices.insert(phase, range);
+        (over, range)
+    }
+
+    /// The number of a new range of a reduction.
+    pub(super) fn new_range(&mut self, over: &Loop) -> u32 {
+        self.problem.ranges.push(over.clone());
+        u32::try_from(self.problem.ranges.len() - 1).expect("fewer than 2^32 ranges fit in memory")
+    }
+
+    /// The duration of all phases of an agent.
+    pub(super) fn total_duration(&mut self, agent: usize, member: Option<Form>) -> NodeId {
+        let stretches = self.stretches(agent, member);
+        self.total(&stretches, |this, stretch| this.leaf(Leaf::Duration(stretch.at())))
+    }
+
+    /// The name of a duration.
+    pub(super) fn named_duration(&mut self, cx: &Context<'a>, scope: ScopeId, name: &str, span: Span) -> Value {
+        if cx.allow < Allow::Guess {
+            return self.misplaced_value(What::Mission, span, name, Some(self.time));
+        }
+        let Some(agent) = self.scopes[scope].agent else { return self.poison(span) };
+        let node = match self.scopes[scope].phase {
+            Some(phase) => self.leaf(Leaf::Duration(cx.phase_at(phase))),
+            None => self.total_duration(agent, cx.agent.clone()),
+        };
+        Value::new(node, self.time, span)
+    }
+
+    /// The context of an expression that is taken along, or at an end of, a stretch.
+    fn on(&self, cx: &Context<'a>, stretch: &Stretch, point: Point) -> Context<'a> {
+        Context {
+            scope: self.phases[stretch.phase].scope,
+            agent: stretch.agent.clone(),
+            phase: stretch.index.clone(),
+            point,
+            ..cx.clone()
+        }
+    }
+
+    /// `integral(e)`, `integral(path, e)`.
+    pub(super) fn integral(&mut self, cx: &Context<'a>, path: Option<&'a Path>, of: &'a Expr, span: Span) -> Value {
+        if cx.allow < Allow::All {
+            let text = self.text(span);
+            return self.misplaced_value(What::Mission, span, &text, None);
+        }
+        let Some(stretches) = self.stretches_of(cx, path, span) else { return self.poison(span) };
+        let outer_event = self.event.take();
+        let mut sample: Option<Value> = None;
+        let node = self.total(&stretches, |this, stretch| {
+            let inner = this.on(cx, stretch, Point::Path);
+            let value = this.value(&inner, of);
+            this.no_event(of.span, "the integrand is taken at every point");
+            let node = this.leaf(Leaf::Integral { phase: stretch.at(), integrand: value.node });
+            sample = match sample.take() {
+                Some(first) => Some(this.alike("add", first, &value, value.node)),
+                None => Some(value),
+            };
+            node
+        });
+        self.event = outer_event.or_else(|| Some((span, self.text(span))));
+        let Some(sample) = sample else { return self.poison(span) };
+        let time = self.time;
+        let dimension = sample.dimension.map(|d| d.times(&time));
+        sample.map(node, dimension, span)
+    }
+
+    /// `initial(e)`, `final(path, e)`.
+    pub(super) fn boundary(
+        &mut self,
+        cx: &Context<'a>,
+        boundary: Boundary,
+        path: Option<&'a Path>,
+        of: &'a Expr,
+        span: Span,
+    ) -> Value {
+        if cx.allow < Allow::All {
+            let text = self.text(span);
+            return self.misplaced_value(What::Mission, span, &text, None);
+        }
+        let Some(stretches) = self.stretches_of(cx, path, span) else { return self.poison(span) };
+        let open = |s: &Stretch| s.index.is_none();
+        let (stretch, point) = match (boundary, stretches.as_slice()) {
+            (Boundary::Initial, [first, ..]) => {
+                (if open(first) { self.first_member(first) } else { first.clone() }, Point::MissionStart)
+            }
+            (Boundary::Final, [.., last]) => {
+                (if open(last) { self.last_member(last) } else { last.clone() }, Point::MissionEnd)
+            }
+            (_, []) => return self.poison(span),
+        };
+        let inner = self.on(cx, &stretch, point);
+        let value = self.value(&inner, of);
+        if self.event.is_none() {
+            self.event = Some((span, self.text(span)));
+        }
+        value.map(value.node, value.dimension, span).shown_in(value.unit.clone())
+    }
+
+    /// `start(path)`, `end(path)`, `duration(path)`.
+    pub(super) fn event_time(&mut self, cx: &Context<'a>, event: Event, path: &'a Path, span: Span) -> Value {
+        let text = self.text(span);
+        if cx.allow < Allow::Guess {
+            return self.misplaced_value(What::Mission, span, &text, Some(self.time));
+        }
+        let Some(stretches) = self.stretches_of(cx, Some(path), span) else { return self.poison(span) };
+        let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return self.poison(span) };
+        let node = match event {
+            Event::Start => {
+                let first = if first.index.is_none() { self.first_member(first) } else { first.clone() };
+                self.leaf(Leaf::Start(first.at()))
+            }
+            Event::End => {
+                let last = if last.index.is_none() { self.last_member(last) } else { last.clone() };
+                let start = self.leaf(Leaf::Start(last.at()));
+                let duration = self.leaf(Leaf::Duration(last.at()));
+                self.problem.dag.add(start, duration)
+            }
+            Event::Duration => self.total(&stretches, |this, stretch| this.leaf(Leaf::Duration(stretch.at()))),
+        };
+        if self.event.is_none() {
+            self.event = Some((span, text));
+        }
+        Value::new(node, self.time, span)
+    }
+
+    /// Tells of an event time, boundary value or integral where an expression belongs to a point.
+    pub(super) fn no_event(&mut self, around: Span, why: &str) {
+        let Some((span, text)) = self.event.take() else { return };
+        let message = format!("`{text}` belongs to no single point, but {why}");
+        let mut finding = Diagnostic::new(Code::EventAlong, span, message);
+        if span != around {
+            finding = finding.label(around, "this is taken at every point");
+        }
+        self.report(
+            finding.help(format!("declare `variable v;`, write `v == {text};` in `temporal`, and use `v` here")),
+        );
+    }
+}
