@@ -7,6 +7,9 @@ use ntg_compiler::syntax::ast::*;
 use ntg_compiler::syntax::{MAX_DEPTH, comments, parse, parse_expression, parse_quantity};
 use proptest::prelude::*;
 
+/// Seconds. A linear pass takes one or two, ten without optimisation; a quadratic one would take hours.
+const PATIENCE: f64 = 120.0;
+
 const EVERYTHING: &str = include_str!("syntax_specs/everything.ntg");
 
 /// Runs on a stack of the size that Rust gives its threads.
@@ -27,7 +30,7 @@ fn sums_and_products_of_200_000_terms_take_a_linear_time_and_no_stack() {
         (terms.len(), equal && terms[1].0 == Sign::Minus, begin.elapsed().as_secs_f64())
     });
     assert_eq!((sum, sign), (200_000, true));
-    assert!(seconds < 20.0, "{seconds} s"); // Quadratic time would be hours.
+    assert!(seconds < PATIENCE, "{seconds} s");
 }
 
 #[test]
@@ -36,7 +39,7 @@ fn long_specs_take_a_linear_time() {
     let begin = Instant::now();
     let spec = parse(&Source::new("long", format!("problem P {{\n{statements}}}"))).expect("it is a spec");
     assert_eq!(spec.problem.items.len(), 20_000);
-    assert!(begin.elapsed().as_secs_f64() < 20.0);
+    assert!(begin.elapsed().as_secs_f64() < PATIENCE);
 }
 
 /// Each way of nesting, `depth` deep in brackets, signs or powers.
@@ -96,7 +99,7 @@ fn a_long_text_of_mistakes_is_reported_in_good_time() {
         let shown: usize = found.iter().take(3).map(|finding| finding.render(&source).len()).sum();
         assert!(found.iter().count() <= 300 && shown < 10_000, "{piece}: {} {shown}", found.iter().count());
     }
-    assert!(begin.elapsed().as_secs_f64() < 30.0, "{:?}", begin.elapsed());
+    assert!(begin.elapsed().as_secs_f64() < PATIENCE, "{:?}", begin.elapsed());
 }
 
 /// Reads and renders; the spans of all findings must lie in the text.
