@@ -108,7 +108,8 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
 
 /// The settings with what is left of the time limit.
 fn remaining(settings: &Settings, began: Instant) -> Settings {
-    let time_limit = settings.time_limit.map(|limit| limit.saturating_sub(began.elapsed()).max(Duration::from_nanos(1)));
+    let time_limit =
+        settings.time_limit.map(|limit| limit.saturating_sub(began.elapsed()).max(Duration::from_nanos(1)));
     Settings { time_limit, ..settings.clone() }
 }
 

@@ -1,6 +1,7 @@
 //! What nobody guesses (docs/maths.md, section 8.1).
 
 use crate::transcribe::Transcription;
+use crate::transcribe::layout::Time;
 use crate::transcribe::slots::AffineMap;
 use ntg_splines::Side;
 use ntg_structure::{Degree, Domain};
@@ -12,21 +13,21 @@ const DECADE: f64 = 10.0;
 pub(super) fn times(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
     for phase in &layout.phases {
-        let bounds = |v: usize| (nlp.limits.lower[v], nlp.limits.upper[v]);
-        if let crate::transcribe::layout::Time::Free(v) = phase.duration {
-            let (lower, upper) = bounds(v as usize);
-            // The smallest duration of all is a guard, not a bound that anyone wrote.
-            x[v as usize] = duration(lower, upper);
+        if let Time::Free(variable) = phase.duration {
+            let variable = variable as usize;
+            x[variable] = duration(nlp.limits.lower[variable], nlp.limits.upper[variable]);
         }
     }
-    let firsts = layout.phases.iter().filter(|p| p.duration.fixed().is_none()).count();
-    for variable in layout.coefficients + firsts..layout.variables {
-        x[variable] = middle(nlp.limits.lower[variable], nlp.limits.upper[variable]);
+    let durations = layout.phases.iter().filter(|p| p.duration.fixed().is_none()).count();
+    let first = layout.coefficients + durations;
+    let bounds = nlp.limits.lower.iter().zip(&nlp.limits.upper);
+    for (value, (lower, upper)) in x.iter_mut().zip(bounds).skip(first) {
+        *value = middle(*lower, *upper);
     }
 }
 
 fn duration(lower: f64, upper: f64) -> f64 {
-    /// A bound this much below the other, or below a second, says nothing.
+    /// The smallest duration of all is a guard of this size, not a bound that anyone wrote.
     const NOTHING: f64 = 1e-5;
     match (lower > NOTHING * if upper.is_finite() { upper } else { 1.0 }, upper.is_finite()) {
         (true, true) => middle(lower, upper),
@@ -41,8 +42,20 @@ pub(super) fn middle(lower: f64, upper: f64) -> f64 {
     match (lower.is_finite(), upper.is_finite()) {
         (true, true) if lower > 0.0 && upper >= DECADE * lower => (lower * upper).sqrt(),
         (true, true) => 0.5 * (lower + upper),
-        (true, false) => if lower > 0.0 { 2.0 * lower } else { lower + 1.0 },
-        (false, true) => if upper < 0.0 { 2.0 * upper } else { upper - 1.0 },
+        (true, false) => {
+            if lower > 0.0 {
+                2.0 * lower
+            } else {
+                lower + 1.0
+            }
+        }
+        (false, true) => {
+            if upper < 0.0 {
+                2.0 * upper
+            } else {
+                upper - 1.0
+            }
+        }
         (false, false) => 0.0,
     }
 }
@@ -121,9 +134,8 @@ fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)
             let active = || variables.iter().zip(map).filter(|(_, c)| **c != 0.0);
             let total: f64 = active().map(|(_, c)| c).sum();
             let own = active().all(|(v, c)| coefficients.contains(v) && *c > 0.0);
-            let Some((slope, offset)) = (own && (total - 1.0).abs() < 1e-9)
-                .then(|| nlp.frame().line(group, element, row, slot))
-                .flatten()
+            let Some((slope, offset)) =
+                (own && (total - 1.0).abs() < 1e-9).then(|| nlp.frame().line(group, element, row, slot)).flatten()
             else {
                 continue;
             };

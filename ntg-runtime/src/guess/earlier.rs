@@ -13,7 +13,9 @@ pub(super) fn same(nlp: &Transcription, solution: &Solution) -> Option<Vec<f64>>
     let (old, new) = (&solution.inner.model, &nlp.model);
     let described = |model: &crate::transcribe::Model| {
         let phases = 0..model.layout.phases.len();
-        let phases = phases.map(|p| (names::phase(&model.structure, &model.layout, p), model.layout.phases[p].duration.fixed().is_some()));
+        let phases = phases.map(|p| {
+            (names::phase(&model.structure, &model.layout, p), model.layout.phases[p].duration.fixed().is_some())
+        });
         phases.collect::<Vec<_>>()
     };
     let knots = || {
@@ -63,9 +65,7 @@ pub(super) fn curves<'a>(nlp: &Transcription, solution: &'a Solution) -> Vec<Cur
             let name = &structure.phases[member.phase].outputs[found.output].name;
             let Some(trajectory) = solution.one(agent, name, found.index) else { continue };
             let (start, length) = match same {
-                Some(old) => {
-                    (old_layout.start(old, &solution.inner.x), old_layout.duration(old, &solution.inner.x))
-                }
+                Some(old) => (old_layout.start(old, &solution.inner.x), old_layout.duration(old, &solution.inner.x)),
                 None => (trajectory.start(), trajectory.end() - trajectory.start()),
             };
             let function: Function = Rc::new(move |tau| Ok(trajectory.si(start + tau * length, 0)));

@@ -63,7 +63,8 @@ impl<'a> Statements<'a> {
                         let (phases, whole) = self.scope(&guess.scope, &indices)?;
                         let index = index_at(index.as_ref(), &indices);
                         let clock = Clock::at(&nlp.model.layout, x);
-                        let function: Function = Rc::new(move |tau| numbers(nlp, &clock, value, &indices, tau, 1).map(|n| n[0]));
+                        let function: Function =
+                            Rc::new(move |tau| numbers(nlp, &clock, value, &indices, tau, 1).map(|n| n[0]));
                         self.add(&phases, whole, (output, index), &function, &mut curves);
                     }
                     GuessKind::Route { outputs, points, values } => {

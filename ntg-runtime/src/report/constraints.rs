@@ -5,7 +5,7 @@ use super::{ConstraintReport, Worst, multipliers};
 use crate::nlp::Nlp;
 use crate::sqp::Outcome;
 use crate::transcribe::points::Point;
-use crate::transcribe::rows::{RowKind, constraint_name};
+use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
 use crate::transcribe::{Transcription, names};
 
 /// One entry for each constraint of the spec.
@@ -64,6 +64,6 @@ fn keep(
 
 /// The larger finite bound, or the unit where both are zero or missing (equation 9.3).
 fn scale(lower: f64, upper: f64, unit: f64) -> f64 {
-    let largest = [lower, upper].iter().filter(|b| b.is_finite()).fold(0.0, |most: f64, b| most.max(b.abs()));
+    let largest = bound_size((lower, upper));
     if largest > 0.0 { largest } else { unit }
 }

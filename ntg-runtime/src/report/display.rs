@@ -16,7 +16,11 @@ impl fmt::Display for Report {
             writeln!(f, "  try: {}", self.advice)?;
         }
         let unit = symbol(&self.objective_unit);
-        writeln!(f, "  objective   {:.9}{unit}  (finely integrated: {:.9}{unit})", self.objective, self.objective_fine)?;
+        writeln!(
+            f,
+            "  objective   {:.9}{unit}  (finely integrated: {:.9}{unit})",
+            self.objective, self.objective_fine
+        )?;
         if self.terms.len() > 1 {
             for term in &self.terms {
                 writeln!(f, "    {:<24} {}{}", term.name, brief(term.value), symbol(&term.unit))?;
@@ -42,7 +46,7 @@ impl fmt::Display for Report {
 /// A line for a constraint that is violated noticeably.
 fn violated(f: &mut fmt::Formatter<'_>, constraint: &ConstraintReport) -> fmt::Result {
     for (worst, where_) in [(&constraint.points, "at a point"), (&constraint.between, "between points")] {
-        let Some(worst) = worst.as_ref().filter(|w| !(w.relative <= NEGLIGIBLE)) else { continue };
+        let Some(worst) = worst.as_ref().filter(|w| w.relative > NEGLIGIBLE || w.relative.is_nan()) else { continue };
         let unit = symbol(&constraint.unit);
         write!(f, "\n  `{}` is missed by {}{unit} {where_}", constraint.name, brief(worst.violation))?;
         if let Some(time) = worst.time {

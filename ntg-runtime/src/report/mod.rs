@@ -167,8 +167,7 @@ impl Report {
         let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };
-        let violation =
-            Violations { points: largest(|c| c.points.as_ref()), between: largest(|c| c.between.as_ref()) };
+        let violation = Violations { points: largest(|c| c.points.as_ref()), between: largest(|c| c.between.as_ref()) };
         let solution = Solution {
             inner: Arc::new(Inner {
                 model: nlp.model.clone(),

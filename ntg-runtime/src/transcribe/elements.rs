@@ -263,3 +263,20 @@ fn map_block(block: &mut Block, maps: &[Vec<AffineMap>]) {
         block.map_start.push(block.map.len());
     }
 }
+
+impl Frame<'_> {
+    /// A linear row of one slot as `slope * slot + offset`, from its values at 0 and 1.
+    pub(crate) fn line(&self, group: &GroupBatch, element: usize, row: usize, slot: usize) -> Option<(f64, f64)> {
+        let elements = group.batch.sites.len();
+        let mut work = group.batch.work();
+        let mut value = |at: f64| {
+            work.u.fill(0.0);
+            work.u[slot * elements..][..elements].fill(at);
+            group.batch.node.values(self.problem, self.tables, &work.u, &mut work.node);
+            work.node.values[row * elements + element]
+        };
+        let (offset, one) = (value(0.0), value(1.0));
+        let slope = one - offset;
+        (slope.is_finite() && slope != 0.0 && offset.is_finite()).then_some((slope, offset))
+    }
+}

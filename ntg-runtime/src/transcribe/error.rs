@@ -100,8 +100,8 @@ impl SetupError {
     /// The code under which the language's documentation explains the same mistake, if it does.
     pub fn code(&self) -> Option<&'static str> {
         match self {
-            Self::CrossingBounds { .. } => Some("CrossedBounds"),
-            Self::Contradiction { .. } => Some("ContradictedBoundary"),
+            Self::CrossingBounds { .. } => Some("E056"),
+            Self::Contradiction { .. } => Some("E057"),
             _ => None,
         }
     }
@@ -162,7 +162,7 @@ impl fmt::Display for SetupError {
 impl std::error::Error for SetupError {}
 
 /// A value in its declared unit, with the unit's symbol.
-pub(crate) fn show(value: f64, unit: &Unit) -> String {
+fn show(value: f64, unit: &Unit) -> String {
     let number = value / unit.factor;
     if unit.symbol.is_empty() { format!("{number}") } else { format!("{number} {}", unit.symbol) }
 }

@@ -85,7 +85,7 @@ impl LinearSystem {
 
     /// The value of a combination, if the equations determine it.
     pub(crate) fn known(&self, row: &Combination) -> Option<Combination> {
-        if row.terms.len() > 0 && self.equations.is_empty() {
+        if !row.terms.is_empty() && self.equations.is_empty() {
             return None;
         }
         let reduced = self.reduce(row);

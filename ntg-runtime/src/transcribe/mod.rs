@@ -33,7 +33,6 @@ mod tables;
 pub(crate) mod times;
 
 pub use error::SetupError;
-pub(crate) use error::show;
 pub use evaluate::Workspace;
 
 use crate::nlp::Limits;

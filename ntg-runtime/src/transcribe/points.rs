@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(taus, THIRDS);
         assert_eq!(set[1].side, Side::Right);
         assert_eq!(set[3].side, Side::Left);
-        assert_eq!(set.iter().map(|p| p.weight).sum::<f64>(), 1.0);
+        assert!((set.iter().map(|p| p.weight).sum::<f64>() - 1.0).abs() < 1e-15);
     }
 
     #[test]

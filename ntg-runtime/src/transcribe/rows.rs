@@ -103,6 +103,11 @@ pub(crate) fn constraint_words(constraint: &Constraint, indices: &[i64]) -> Stri
     }
 }
 
+/// The larger finite bound by size; 0 where none is finite.
+pub(crate) fn bound_size((lower, upper): Pair) -> f64 {
+    [lower, upper].iter().filter(|b| b.is_finite()).fold(0.0, |most: f64, b| most.max(b.abs()))
+}
+
 const UNBOUNDED: Pair = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// No duration becomes shorter than this part of its upper bound (or of a second), so that no

@@ -4,11 +4,21 @@
 //! one agent share one size, so that scaling commutes with the spline.
 
 use super::error::SetupError;
+use super::instances::{family_len, family_members};
 use super::layout::Time;
-use super::rows::RowKind;
+use super::rows::{RowInfo, RowKind, bound_size};
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
 use ntg_structure::Unit;
+use std::ops::Range;
+
+/// An output in all phases of an agent.
+struct WholeOutput<'a> {
+    name: &'a str,
+    index: Option<i64>,
+    unit: &'a Unit,
+    coefficients: Vec<u32>,
+}
 
 impl Transcription<'_> {
     /// Sets all sizes from a guess; `Settings::scales` takes precedence.
@@ -33,47 +43,41 @@ impl Transcription<'_> {
     fn automatic(&self, guess: &[f64], scale: &mut [f64]) {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         for agent in &layout.agents {
-            let phases = agent.phases.clone();
-            for (name, index, unit, coefficients) in self.outputs_of(phases) {
-                let _ = (name, index);
-                let largest = coefficients.iter().fold(0.0, |most: f64, v| most.max(guess[*v as usize].abs()));
-                let size = usable(largest, unit);
-                coefficients.iter().for_each(|v| scale[*v as usize] = size);
+            for output in self.outputs_of(agent.phases.clone()) {
+                let guessed = output.coefficients.iter().map(|v| guess[*v as usize].abs());
+                let size = usable(guessed.fold(0.0, f64::max), output.unit);
+                output.coefficients.iter().for_each(|v| scale[*v as usize] = size);
             }
         }
-        let seconds = Unit::default();
-        for variable in layout.coefficients..layout.variables {
-            let (lower, upper) = (self.limits.lower[variable], self.limits.upper[variable]);
-            let size = guess[variable].abs();
-            let bound = [lower, upper].iter().filter(|b| b.is_finite()).fold(0.0, |most: f64, b| most.max(b.abs()));
-            scale[variable] = usable(if size > 0.0 { size } else { bound }, &seconds);
+        let size = |variable: usize, unit: &Unit| match guess[variable].abs() {
+            0.0 => usable(bound_size((self.limits.lower[variable], self.limits.upper[variable])), unit),
+            size => usable(size, unit),
+        };
+        for (variable, scale) in scale.iter_mut().enumerate().skip(layout.coefficients) {
+            *scale = size(variable, &Unit::default());
         }
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
-            let count = super::instances::family_len(declared.family);
-            for variable in *first as usize..*first as usize + count {
-                if guess[variable] == 0.0 {
-                    let bounds = [self.limits.lower[variable], self.limits.upper[variable]];
-                    let bound = bounds.iter().filter(|b| b.is_finite()).fold(0.0, |most: f64, b| most.max(b.abs()));
-                    scale[variable] = usable(bound, &declared.unit);
-                }
+            for variable in (*first as usize..).take(family_len(declared.family)) {
+                scale[variable] = size(variable, &declared.unit);
             }
         }
     }
 
     /// Every output of some phases once, with the coefficients of all of them.
-    fn outputs_of(&self, phases: std::ops::Range<usize>) -> Vec<(String, Option<i64>, &Unit, Vec<u32>)> {
-        let mut found: Vec<(String, Option<i64>, &Unit, Vec<u32>)> = vec![];
+    fn outputs_of(&self, phases: Range<usize>) -> Vec<WholeOutput<'_>> {
+        let mut found: Vec<WholeOutput> = vec![];
         for phase in phases {
             let member = &self.model.layout.phases[phase];
             for output in &member.outputs {
                 let declared = &self.model.structure.phases[member.phase].outputs[output.output];
-                let known = found.iter_mut().find(|f| f.0 == declared.name && f.1 == output.index);
-                match known {
-                    Some(known) => known.3.extend(&output.coefficients),
-                    None => {
-                        let coefficients = output.coefficients.clone();
-                        found.push((declared.name.clone(), output.index, &declared.unit, coefficients));
-                    }
+                match found.iter_mut().find(|f| f.name == declared.name && f.index == output.index) {
+                    Some(known) => known.coefficients.extend(&output.coefficients),
+                    None => found.push(WholeOutput {
+                        name: &declared.name,
+                        index: output.index,
+                        unit: &declared.unit,
+                        coefficients: output.coefficients.clone(),
+                    }),
                 }
             }
         }
@@ -84,8 +88,8 @@ impl Transcription<'_> {
     fn row_scales(&self) -> Vec<f64> {
         let limits = &self.limits;
         let bounds = limits.row_lower.iter().zip(&limits.row_upper);
-        let size = |((lower, upper), info): ((&f64, &f64), &super::rows::RowInfo)| {
-            let bound = [lower, upper].iter().filter(|b| b.is_finite()).fold(0.0, |most: f64, b| most.max(b.abs()));
+        let size = |((lower, upper), info): ((&f64, &f64), &RowInfo)| {
+            let bound = bound_size((*lower, *upper));
             match info.kind {
                 RowKind::Constraint(c) => usable(bound, &self.model.structure.constraints[c].unit),
                 RowKind::Integral(_) => {
@@ -104,10 +108,10 @@ impl Transcription<'_> {
         let mut found = false;
         for (agent, member) in layout.agents.iter().enumerate() {
             let path = names::agent(structure, layout, agent);
-            for (output, index, unit, coefficients) in self.outputs_of(member.phases.clone()) {
-                if names::means(name, &path, &output, index) {
+            for output in self.outputs_of(member.phases.clone()) {
+                if names::means(name, &path, output.name, output.index) {
                     found = true;
-                    coefficients.iter().for_each(|v| scale[*v as usize] = size * unit.factor);
+                    output.coefficients.iter().for_each(|v| scale[*v as usize] = size * output.unit.factor);
                 }
             }
             if let Time::Free(variable) = member.start
@@ -126,7 +130,7 @@ impl Transcription<'_> {
             }
         }
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
-            for (member, index) in super::instances::family_members(declared.family).into_iter().enumerate() {
+            for (member, index) in family_members(declared.family).into_iter().enumerate() {
                 if names::means(name, "", &declared.name, index) {
                     found = true;
                     scale[*first as usize + member] = size * declared.unit.factor;
