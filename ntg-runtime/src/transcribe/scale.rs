@@ -39,7 +39,7 @@ impl Transcription<'_> {
         Ok(())
     }
 
-    /// Equation 5.2: the largest guessed coefficient, guess or bound; else the unit.
+    /// Equation 5.5: the largest guessed coefficient, guess or bound; else the unit.
     fn automatic(&self, guess: &[f64], scale: &mut [f64]) {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         for agent in &layout.agents {
@@ -84,7 +84,7 @@ impl Transcription<'_> {
         found
     }
 
-    /// Equation 5.3: the larger bound; else the unit.
+    /// Equation 5.6: the larger bound; else the unit.
     fn row_scales(&self) -> Vec<f64> {
         let limits = &self.limits;
         let bounds = limits.row_lower.iter().zip(&limits.row_upper);
