@@ -29,6 +29,8 @@ const CLIPPED_SHARES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 const RESTORATIONS: usize = 3;
 /// A step cut to this fraction was a bad proposal.
 const SHORT: f64 = 1.0 / 64.0;
+/// An elastic step cut to this fraction calls for shorter proposals.
+const LONG_ENOUGH: f64 = 0.25;
 /// A full step halved this often has no effect any more.
 const HALVINGS: usize = 40;
 /// Most history records for which room is made at once.
@@ -294,6 +296,10 @@ impl<'a, N: Nlp> Run<'a, N> {
         self.iterations += 1;
         if alpha <= SHORT {
             self.stretch();
+        }
+        if alpha <= LONG_ENOUGH && self.price.is_some() {
+            // The elastic model promises too much far away: keep its next step shorter.
+            self.proximal = (PROXIMAL_STEP * self.proximal).max(FIRST_PROXIMAL);
         }
         if alpha >= 1.0 {
             self.proximal = (self.proximal / PROXIMAL_STEP).max(LEAST_PROXIMAL);
