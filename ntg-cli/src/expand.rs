@@ -27,3 +27,41 @@ fn rust(program: &Program) -> Exit {
         }
     }
 }
+
+fn structure(program: &Program) -> Exit {
+    let problem = Interpreted::new(program);
+    match ntg_runtime::transcribe::Transcription::new(&problem) {
+        Ok(transcription) => {
+            print!("{}", picture(program, &transcription));
+            Exit::Done
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            Exit::Bad
+        }
+    }
+}
+
+/// Kernels, elements, and the shape of the optimisation problem.
+fn picture(program: &Program, transcription: &ntg_runtime::transcribe::Transcription<'_>) -> String {
+    use ntg_runtime::nlp::{Assembly, Nlp, Pattern};
+    use std::fmt::Write;
+
+    let mut out = String::new();
+    let mut line = |text: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{text}");
+    };
+    line(format!("{:<16} {:>6} {:>6} {:>6} {:>9} {:>9}", "kernel", "slots", "data", "rows", "jacobian", "hessian"));
+    for kernel in &program.structure.kernels {
+        let (jacobian, hessian) = (kernel.jacobian.len(), kernel.hessian.len());
+        let (name, slots, data, rows) = (&kernel.name, kernel.slots, kernel.data, kernel.rows);
+        line(format!("{name:<16} {slots:>6} {data:>6} {rows:>6} {jacobian:>9} {hessian:>9}"));
+    }
+    line(String::new());
+    line(format!("spline coefficients in order of time: {}", transcription.coefficients()));
+    line(format!("elements: {}", transcription.blocks().iter().map(|b| b.elements).sum::<usize>()));
+    let assembly = Assembly::new(transcription.variables(), transcription.rows(), transcription.blocks());
+    line(Pattern::of(&assembly).to_string());
+    out
+}

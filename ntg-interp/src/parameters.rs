@@ -56,7 +56,8 @@ impl Interpreted {
     /// # Errors
     /// Unknown name, an index outside the array, a value that is not finite.
     pub fn set_member(&mut self, name: &str, index: i64, value: f64) -> Result<(), SetError> {
-        let parameter = &mut self.structure.parameters[self.find(name)?];
+        let parameter = self.find(name)?;
+        let parameter = &mut self.structure.parameters[parameter];
         if !value.is_finite() {
             return Err(SetError::NotFinite(name.to_owned()));
         }

@@ -1,0 +1,73 @@
+//! `--guess FILE`: starts from a saved solution.
+
+use std::path::Path;
+
+use ntg_interp::Interpreted;
+use ntg_runtime::guess::Guess;
+use ntg_runtime::problem::Problem;
+use serde_json::Value;
+
+use crate::save::{FORMAT, VERSION, layout};
+
+/// Reads a saved solution as a guess for a problem: its unknowns where the splines are the same,
+/// its sampled outputs, durations and variables otherwise.
+pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("cannot read `{}`: {e}", path.display()))?;
+    let saved: Value = serde_json::from_str(&text).map_err(|e| format!("`{}` is not JSON: {e}", path.display()))?;
+    if saved["format"] != FORMAT {
+        return Err(format!("`{}` is no saved solution (its \"format\" is not \"{FORMAT}\")", path.display()));
+    }
+    if saved["version"] != VERSION {
+        let version = &saved["version"];
+        return Err(format!("`{}` has version {version}; this program reads version {VERSION}", path.display()));
+    }
+    let structure = problem.structure();
+    if saved["layout"] == layout(&structure)
+        && let Some(unknowns) = numbers(&saved["unknowns"])
+    {
+        return Ok(Guess::raw(unknowns));
+    }
+    let mut guess = Guess::new();
+    let known: Vec<&str> = structure.phases.iter().flat_map(|p| &p.outputs).map(|o| o.name.as_str()).collect();
+    for (name, output) in saved["outputs"].as_object().into_iter().flatten() {
+        let last = name.rsplit('.').next().unwrap_or(name);
+        let base = last.split('[').next().unwrap_or(last);
+        let samples = (numbers(&output["t"]), numbers(&output["value"]));
+        if let ((Some(t), Some(value)), true) = (samples, known.contains(&base)) {
+            guess = guess.output(name, move |tau| interpolate(&t, &value, tau));
+        }
+    }
+    for phase in &structure.phases {
+        let name = phase.duration_name.iter().chain(&phase.name);
+        let free = matches!(phase.duration, ntg_runtime::structure::Duration::Free(_));
+        for name in name.take(usize::from(free)) {
+            if let Some(seconds) =
+                saved["times"][name].as_f64().or(saved["times"][format!("duration({name})")].as_f64())
+            {
+                guess = guess.duration(name, seconds);
+            }
+        }
+    }
+    for variable in &structure.variables {
+        if let Some(value) = saved["variables"][&variable.name]["value"].as_f64() {
+            guess = guess.variable(&variable.name, value);
+        }
+    }
+    Ok(guess)
+}
+
+fn numbers(list: &Value) -> Option<Vec<f64>> {
+    list.as_array()?.iter().map(Value::as_f64).collect()
+}
+
+/// The value at a fraction of the samples' time, linear between samples.
+fn interpolate(t: &[f64], value: &[f64], tau: f64) -> f64 {
+    let (Some(first), Some(last)) = (t.first(), t.last()) else { return 0.0 };
+    let at = first + tau * (last - first);
+    let right = t.partition_point(|x| *x < at).clamp(1, t.len().max(2) - 1);
+    match (t.get(right - 1), t.get(right), value.get(right - 1), value.get(right)) {
+        (Some(a), Some(b), Some(x), Some(y)) if b > a => x + (y - x) * ((at - a) / (b - a)).clamp(0.0, 1.0),
+        (_, _, Some(x), _) => *x,
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,81 @@
+//! `ntg solve`: from a spec to a printed solution.
+
+mod json;
+mod text;
+
+use std::time::{Duration, Instant};
+
+use ntg_interp::Interpreted;
+use ntg_runtime::report::Report;
+use ntg_runtime::settings::Settings;
+
+use crate::arguments::{self, Format};
+use crate::{Exit, files, guess, save, values};
+
+pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
+    match solve(arguments) {
+        Ok(exit) => exit,
+        Err(message) => {
+            if !message.is_empty() {
+                eprintln!("error: {message}");
+            }
+            Exit::Bad
+        }
+    }
+}
+
+/// What is printed beside the report.
+struct Solved<'a> {
+    problem: &'a Interpreted,
+    report: &'a Report,
+    samples: usize,
+    compile_seconds: f64,
+}
+
+/// The error is what to say; empty where all has been said.
+fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
+    let began = Instant::now();
+    let settings = settings(arguments)?;
+    if let Some(path) = &arguments.save {
+        save::may_write(path, arguments.force)?;
+    }
+    let Some((_, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
+    let mut problem = Interpreted::new(&compiled.program);
+    for assignment in &arguments.set {
+        values::set(&mut problem, assignment)?;
+    }
+    let guess = arguments.guess.as_deref().map(|path| guess::read(path, &problem)).transpose()?;
+    let compile_seconds = began.elapsed().as_secs_f64();
+
+    let report = match &guess {
+        Some(guess) => ntg_runtime::solve_from(&problem, guess, &settings),
+        None => ntg_runtime::solve(&problem, &settings),
+    }
+    .map_err(|error| format!("{}: {error}", arguments.spec.display()))?;
+
+    let solved = Solved { problem: &problem, report: &report, samples: arguments.samples as usize, compile_seconds };
+    match arguments.format {
+        Format::Text => text::print(&solved),
+        Format::Json => json::print(&solved),
+    }
+    if let Some(path) = &arguments.save {
+        save::write(path, arguments.force, &problem, &report)?;
+    }
+    Ok(if report.is_solved() { Exit::Done } else { Exit::NotSolved })
+}
+
+fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
+    let mut settings = Settings::default();
+    if let Some(seconds) = arguments.time_limit {
+        let limit = Duration::try_from_secs_f64(seconds);
+        settings.time_limit = Some(limit.map_err(|_| format!("--time-limit {seconds}: a positive number of seconds"))?);
+    }
+    if let Some(most) = arguments.max_iterations {
+        settings.max_iterations = most;
+    }
+    if let Some(tolerance) = arguments.tolerance {
+        settings.tolerance = tolerance;
+    }
+    settings.validate().map_err(|invalid| invalid.to_string())?;
+    Ok(settings)
+}

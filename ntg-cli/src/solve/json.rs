@@ -1,0 +1,114 @@
+//! The solution for programs. Numbers that are not finite are null.
+
+use ntg_runtime::problem::Problem;
+use ntg_runtime::report::{ConstraintReport, Report, Worst};
+use ntg_runtime::structure::Parameter;
+use serde_json::{Map, Value, json};
+
+use super::Solved;
+
+pub(super) fn print(solved: &Solved<'_>) {
+    println!("{:#}", document(solved));
+}
+
+fn document(solved: &Solved<'_>) -> Value {
+    let report = solved.report;
+    let solution = &report.solution;
+    json!({
+        "problem": report.problem,
+        "status": if report.is_solved() { "solved".to_owned() } else { report.status.to_string() },
+        "advice": report.advice,
+        "objective": report.objective,
+        "objective_unit": report.objective_unit.symbol,
+        "objective_fine": report.objective_fine,
+        "terms": report.terms.iter().map(|t| json!({
+            "name": t.name, "value": t.value, "fine": t.fine, "unit": t.unit.symbol,
+        })).collect::<Vec<_>>(),
+        "iterations": report.iterations,
+        "seconds": { "compile": solved.compile_seconds, "solve": report.seconds },
+        "violation": { "points": report.violation.points, "between": report.violation.between },
+        "times": solution.event_times().into_iter().map(|(name, t)| (name, json!(t))).collect::<Map<_, _>>(),
+        "phases": solution.phases().into_iter().map(|p| json!({ "name": p.name, "start": p.start, "end": p.end })).collect::<Vec<_>>(),
+        "variables": solution.variables().into_iter().map(|v| {
+            (v.name, json!({ "unit": v.unit.symbol, "value": v.value }))
+        }).collect::<Map<_, _>>(),
+        "parameters": solution.structure().parameters.iter().map(parameter).collect::<Map<_, _>>(),
+        "outputs": outputs(solved),
+        "lets": lets(solved),
+        "constraints": report.constraints.iter().map(constraint).collect::<Vec<_>>(),
+        "history": history(report),
+    })
+}
+
+fn parameter(parameter: &Parameter) -> (String, Value) {
+    let shown: Vec<f64> = parameter.value.iter().map(|v| v / parameter.unit.factor).collect();
+    let value = if parameter.array { json!(shown) } else { json!(shown.first()) };
+    (parameter.name.clone(), json!({ "unit": parameter.unit.symbol, "value": value }))
+}
+
+fn outputs(solved: &Solved<'_>) -> Map<String, Value> {
+    let trajectories = solved.report.solution.trajectories().into_iter();
+    trajectories
+        .map(|trajectory| {
+            let (t, value): (Vec<f64>, Vec<f64>) = trajectory.sample(solved.samples).into_iter().unzip();
+            let unit = &trajectory.unit().symbol;
+            (trajectory.name().to_owned(), json!({ "unit": unit, "t": t, "value": value }))
+        })
+        .collect()
+}
+
+fn lets(solved: &Solved<'_>) -> Map<String, Value> {
+    let times = solved.report.solution.times(solved.samples);
+    let problem: &dyn Problem = solved.problem;
+    let signals = solved.report.solution.signals(problem).into_iter();
+    signals
+        .map(|signal| {
+            let unit = &signal.unit().symbol;
+            let shown = if signal.is_constant() {
+                json!({ "unit": unit, "value": signal.at(0.0) })
+            } else {
+                let value: Vec<f64> = times.iter().map(|t| signal.at(*t)).collect();
+                json!({ "unit": unit, "t": times, "value": value })
+            };
+            (signal.name().to_owned(), shown)
+        })
+        .collect()
+}
+
+fn constraint(constraint: &ConstraintReport) -> Value {
+    let worst = |worst: &Option<Worst>| {
+        worst.as_ref().map(|w| {
+            json!({
+                "violation": w.violation, "relative": w.relative, "value": w.value, "t": w.time, "phase": w.phase,
+            })
+        })
+    };
+    json!({
+        "name": constraint.name,
+        "line": constraint.place.line,
+        "column": constraint.place.column,
+        "unit": constraint.unit.symbol,
+        "points": worst(&constraint.points),
+        "between": worst(&constraint.between),
+        "multiplier": constraint.multiplier.as_ref().map(|m| {
+            json!({ "value": m.value, "density": m.density, "t": m.time })
+        }),
+        "sensitivity": constraint.sensitivity,
+    })
+}
+
+fn history(report: &Report) -> Vec<Value> {
+    let steps = report.history.iter();
+    steps
+        .map(|step| {
+            let parameters = step.parameters.iter();
+            json!({
+                "parameters": parameters.map(|p| (p.name.clone(), json!(p.value))).collect::<Map<_, _>>(),
+                "status": step.status.to_string(),
+                "objective": step.objective,
+                "iterations": step.iterations,
+                "seconds": step.seconds,
+            })
+        })
+        .collect()
+}

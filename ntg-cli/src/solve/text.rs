@@ -1,0 +1,61 @@
+//! The solution for people: the report, then a table of outputs and named expressions over time.
+
+use ntg_runtime::problem::Problem;
+use ntg_runtime::structure::Unit;
+
+use super::Solved;
+
+/// How many rows of the table are printed at most.
+const MOST_ROWS: usize = 21;
+/// How wide a column is at least.
+const LEAST_WIDTH: usize = 11;
+
+pub(super) fn print(solved: &Solved<'_>) {
+    println!("{}", solved.report);
+    println!();
+    let problem: &dyn Problem = solved.problem;
+    let solution = &solved.report.solution;
+    let trajectories = solution.trajectories();
+    let signals = solution.signals(problem);
+    for signal in signals.iter().filter(|s| s.is_constant()) {
+        println!("  {} = {}{}", signal.name(), number(signal.at(0.0)), spaced(signal.unit()));
+    }
+
+    let mut heads = vec!["t [s]".to_owned()];
+    heads.extend(trajectories.iter().map(|t| head(t.name(), t.unit())));
+    heads.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| head(s.name(), s.unit())));
+    println!("{}", heads.iter().map(|h| format!("{h:>w$}", w = width(h))).collect::<Vec<_>>().join(" "));
+    for t in solution.times(solved.samples.min(MOST_ROWS)) {
+        let mut row = vec![t];
+        row.extend(trajectories.iter().map(|trajectory| trajectory.at(t)));
+        row.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| s.at(t)));
+        let cells = row.iter().zip(&heads).map(|(value, head)| format!("{:>w$}", number(*value), w = width(head)));
+        println!("{}", cells.collect::<Vec<_>>().join(" "));
+    }
+    if solved.samples > MOST_ROWS {
+        println!("(all {} samples: --format json)", solved.samples);
+    }
+}
+
+fn head(name: &str, unit: &Unit) -> String {
+    if unit.symbol.is_empty() { name.to_owned() } else { format!("{name} [{}]", unit.symbol) }
+}
+
+fn width(head: &str) -> usize {
+    head.chars().count().max(LEAST_WIDTH)
+}
+
+fn spaced(unit: &Unit) -> String {
+    if unit.symbol.is_empty() { String::new() } else { format!(" {}", unit.symbol) }
+}
+
+/// Six significant digits, without an exponent where that is readable.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        let digits = if value == 0.0 { 1.0 } else { value.abs().log10().floor() + 1.0 };
+        let decimals = (6.0 - digits).clamp(0.0, 9.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.5e}")
+    }
+}
