@@ -161,9 +161,10 @@ fn slot_map(block: &Block, element: usize, slot: usize) -> AffineMap {
 fn check(frame: &Frame, elements: &Elements, row: usize, value: f64, rounding: f64) -> Result<(), SetupError> {
     let (lower, upper) = (elements.lower[row], elements.upper[row]);
     let RowKind::Constraint(constraint) = elements.rows[row].kind else { return Ok(()) };
+    // Where the bound is 0 rounding has no size of its own; a smaller miss is left to the solver.
     let smallest = ROUNDING * frame.structure.constraints[constraint].unit.factor;
     for (bound, miss) in [(lower, lower - value), (upper, value - upper)] {
-        if miss > rounding + ROUNDING * bound.abs() + smallest * ROUNDING {
+        if miss > rounding + ROUNDING * bound.abs() + smallest {
             return Err(contradiction(frame, elements, row, value, bound));
         }
     }
