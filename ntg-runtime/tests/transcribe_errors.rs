@@ -47,6 +47,22 @@ fn a_boundary_condition_exactly_on_its_bound_is_accepted() {
 }
 
 #[test]
+fn conditions_on_every_end_are_no_contradiction_by_rounding() {
+    // Position, speed and acceleration at both ends of 40 units of way, as in a lane change.
+    let mut problem = problems::double_integrator(40.0, 5.0, false);
+    problem.structure.phases[0].outputs = vec![output("x", 5, 2, 3)];
+    let kernel = problem.kernel((1, 0), 1, Degree::Linear, |u| vec![u[0].clone() * 0.04]);
+    let bounds = problem.constants(&[0.0]);
+    for (at, domain) in [(At::Start, Domain::Start(phase(false, 0))), (At::End, Domain::End(phase(false, 0)))] {
+        let constraint = problem.constraint("acceleration", Block::Final);
+        let call = Call { kernel, slots: vec![flat(phase(false, 0), at, 0, 2)], ..Call::default() };
+        let one = group(domain, call, vec![equal(constraint, 0)]);
+        problem.structure.groups.push(Group { bounds: Some(bounds.clone()), ..one });
+    }
+    assert!(Transcription::new(&problem).is_ok());
+}
+
+#[test]
 fn two_boundary_conditions_that_differ() {
     let mut problem = problems::double_integrator(3.0, 2.0, false);
     let last = problem.structure.groups.last().expect("the final conditions").clone();

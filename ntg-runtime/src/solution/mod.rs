@@ -133,7 +133,14 @@ impl Solution {
             }
         }
         durations.extend(found);
-        durations
+        // The one phase of an agent may share its duration's name with the agent.
+        let mut times: Vec<(String, f64)> = vec![];
+        for (name, seconds) in durations {
+            if times.iter().all(|known| known.0 != name) {
+                times.push((name, seconds));
+            }
+        }
+        times
     }
 
     /// All declared variables, members of arrays one by one.

@@ -49,7 +49,7 @@ impl Combination {
     pub(crate) fn add_scaled(&mut self, times: f64, other: &Self) {
         other.terms.iter().for_each(|(variable, c)| self.add(*variable, times * c));
         self.constant += times * other.constant;
-        self.size += (times * other.constant).abs();
+        self.size += times.abs() * other.size;
     }
 
     fn largest(&self) -> Option<(u32, f64)> {
@@ -137,5 +137,16 @@ mod tests {
         assert!(system.add(&row(&[(0, 0.3), (3, 2.1)], -0.9)).is_ok());
         let residual = system.add(&row(&[(0, 0.1), (3, 0.7)], -0.4)).expect_err("the constants differ");
         assert!((residual + 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rounding_of_large_numbers_is_no_contradiction() {
+        // Three equations for two unknowns, the last the sum of the others up to rounding.
+        let mut system = LinearSystem::default();
+        let (a, b) = (row(&[(0, 0.1), (1, 1e5)], -4e7 / 3.0), row(&[(0, 0.3), (1, 1e5)], -4e7 / 7.0));
+        let mut sum = a.clone();
+        sum.add_scaled(1.0, &b);
+        sum.constant += 1e-9;
+        assert!([a, b, sum].iter().all(|row| system.add(row).is_ok()));
     }
 }
