@@ -35,6 +35,11 @@ impl Elaborator<'_> {
             }
             self.check_rows(phase);
         }
+        for k in 0..self.problem.constraints.len() {
+            if self.problem.constraints[k].domain == Domain::Mission {
+                self.check_against(&Fixed::new(), k);
+            }
+        }
         self.check_objective();
     }
 
@@ -59,6 +64,13 @@ impl Elaborator<'_> {
         let along = (0..self.problem.constraints.len())
             .filter(|k| matches!(&self.problem.constraints[*k].domain, Domain::Path(at) if at.phase == phase));
         let along: Vec<usize> = along.collect();
+        let told = |this: &Self, k: usize| {
+            let constraint = &this.problem.constraints[k];
+            let bare = matches!(this.problem.dag.node(constraint.body), Node::Input(_));
+            bare && constraint.bounds.lower.is_some() && constraint.bounds.lower == constraint.bounds.upper
+        };
+        // Two equalities of one thing were compared when they were collected.
+        let rows: Vec<usize> = rows.into_iter().filter(|k| !told(self, *k)).collect();
         for k in rows.into_iter().chain(along) {
             self.check_against(&fixed, k);
         }
@@ -97,30 +109,45 @@ impl Elaborator<'_> {
     fn check_against(&mut self, fixed: &Fixed, k: usize) {
         let constraint = self.problem.constraints[k].clone();
         let inputs = self.problem.dag.inputs_of(&[constraint.body]);
-        if inputs.is_empty() || inputs.iter().any(|input| !fixed.contains_key(input)) {
-            return;
-        }
         let mut values: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.
+        let mut by: Option<Span> = None;
         for input in &inputs {
-            values.insert(*input, self.problem.dag.constant(fixed[input].0));
+            let Some((value, span)) = fixed.get(input).copied().or_else(|| self.fixed_duration(*input)) else { return };
+            values.insert(*input, self.problem.dag.constant(value));
+            by = by.or(Some(span).filter(|span| *span != constraint.span));
         }
+        let Some(by) = by else { return };
         let body = self.problem.dag.substitute(&[constraint.body], |input| values.get(&input).copied())[0];
         let known = |node: Option<NodeId>| node.and_then(|node| self.problem.dag.is_constant(node));
         let Some(value) = known(Some(body)) else { return };
         let below = known(constraint.bounds.lower).is_some_and(|lower| value < lower && !close(value, lower));
         let above = known(constraint.bounds.upper).is_some_and(|upper| value > upper && !close(value, upper));
-        let Some(by) = inputs.iter().map(|input| fixed[input].1).find(|span| *span != constraint.span) else { return };
         if !below && !above {
             return;
         }
         let shown = (value / constraint.unit.factor * 1e6).round() / 1e6;
-        let unit =
-            if constraint.unit.symbol.is_empty() { String::new() } else { format!(" [{}]", constraint.unit.symbol) };
-        let message = "a boundary condition contradicts a bound";
+        let unit = match constraint.unit.symbol.as_str() {
+            "" => String::new(),
+            symbol => format!(" [{symbol}]"),
+        };
+        let (message, here) = match constraint.domain {
+            Domain::Mission => ("a fixed duration contradicts a constraint", ""),
+            _ => ("a boundary condition contradicts a bound", " at that end"),
+        };
         let finding = Diagnostic::new(Code::Contradiction, constraint.span, message)
-            .label(constraint.span, format!("it is {shown}{unit} at that end"))
-            .label(by, "this boundary condition fixes it");
-        self.report(finding.help("loosen the bound, or change the boundary condition"));
+            .label(constraint.span, format!("what is bounded is {shown}{unit}{here}"))
+            .label(by, "fixed here");
+        self.report(finding.help("loosen the bound, or change what is fixed"));
+    }
+
+    /// The value of a duration that a constant fixes, and its place.
+    fn fixed_duration(&mut self, input: InputId) -> Option<(f64, Span)> {
+        let Leaf::Duration(at) = self.problem.leaves.leaf(input) else { return None };
+        let phase = at.phase;
+        let Duration::Fixed(node) = self.problem.phases[phase].duration else { return None };
+        let value = self.problem.dag.is_constant(node)?;
+        let (_, span) = self.own_duration(self.phases[phase].scope)?;
+        Some((value, span))
     }
 
     /// Tells when one output has more boundary conditions than it can meet.

@@ -11,6 +11,7 @@ use ntg_structure::Unit;
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
+use super::mention::mentioned;
 use super::problem::{Form, IndexId, Loop};
 use super::scope::{Allow, Context, Meaning};
 use super::value::{Value, What};
@@ -78,17 +79,22 @@ impl<'a> Elaborator<'a> {
     pub(super) fn constant(&mut self, cx: &Context<'a>, expr: &'a Expr, what: &str) -> Option<Constant> {
         let value = self.value(&cx.allowing(Allow::Constants), expr);
         let value = self.settle_constant(value, what)?;
-        match self.problem.dag.is_constant(value.node) {
-            Some(number) => Some(Constant { value: number, dimension: value.dimension, unit: value.unit }),
-            None => {
-                let message = "this has no finite value";
-                self.report(
-                    Diagnostic::new(Code::NotFinite, expr.span, message)
-                        .help("check it for a division by zero, or a logarithm or root of a negative number"),
-                );
-                None
-            }
+        let value = self.finite(value)?;
+        let number = self.problem.dag.is_constant(value.node)?;
+        Some(Constant { value: number, dimension: value.dimension, unit: value.unit })
+    }
+
+    /// A value that the compiler could compute; what is not finite is told.
+    pub(super) fn finite(&mut self, value: Value) -> Option<Value> {
+        if self.problem.dag.is_constant(value.node).is_some() {
+            return Some(value);
         }
+        let message = "the compiler finds no finite value for this constant";
+        self.report(
+            Diagnostic::new(Code::NotFinite, value.span, message)
+                .help("check it for a division by zero, a logarithm or root of a negative number, or a table"),
+        );
+        None
     }
 
     /// A whole number that depends on nothing but constants and indices in sight.
@@ -163,6 +169,8 @@ impl<'a> Elaborator<'a> {
                 }
                 Some(total)
             }
+            // What is not affine in an index is no form; without an index it may be a constant.
+            _ if mentioned(expr).iter().any(|name| self.index_in_sight(cx, name).is_some()) => None,
             _ => self.whole_leaf(cx, expr),
         }
     }
@@ -185,7 +193,9 @@ impl<'a> Elaborator<'a> {
                 return None;
             }
             if scope.index.is_some_and(|index| index.text == name) {
-                return if scope.phase.is_some() { cx.phase.clone() } else { cx.agent.clone() };
+                // An agent that is its own one phase has an agent's index.
+                let of_phase = scope.phase.is_some_and(|phase| self.phases[phase].item.is_some());
+                return if of_phase { cx.phase.clone() } else { cx.agent.clone() };
             }
             next = scope.parent;
         }

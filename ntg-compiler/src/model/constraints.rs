@@ -116,7 +116,7 @@ impl<'a> Elaborator<'a> {
                 self.no_event(constraint.span, "this constraint holds at every point of the trajectory");
             }
             // A boundary value or integral beside values at the end itself: a constraint of the mission.
-            Block::Initial | Block::Final if event.is_some() => {
+            Block::Initial | Block::Final if event.as_ref().is_some_and(|mark| !mark.is_time) => {
                 let mission = if cx.point == Point::Start { Point::MissionStart } else { Point::MissionEnd };
                 let moved = cx.at(mission);
                 let bodies = self.relation(&moved, &constraint.relation, site);

@@ -32,7 +32,7 @@ pub(super) struct MemoKey {
 pub(super) enum Memo {
     /// It is being elaborated.
     InProgress,
-    /// Its value, and whether it is an event time, boundary value or integral.
+    /// Its value, and whether it holds a boundary value or an integral.
     Done(Value, bool),
 }
 
@@ -95,12 +95,13 @@ impl<'a> Elaborator<'a> {
                 return self.used(definition, value, event, span);
             }
             Some(Memo::InProgress) => return self.cycle(cx, definition, span),
-            None => self.warm(cx, definition),
+            None => {}
         }
         self.memo.insert(key.clone(), Memo::InProgress);
+        self.warm(cx, definition);
         let outer_event = self.event.take();
         let value = self.elaborate_definition(cx, definition, argument, allow);
-        let event = std::mem::replace(&mut self.event, outer_event).is_some();
+        let event = std::mem::replace(&mut self.event, outer_event).is_some_and(|mark| !mark.is_time);
         self.memo.insert(key, Memo::Done(value.clone(), event));
         self.used(definition, value, event, span)
     }
@@ -119,11 +120,12 @@ impl<'a> Elaborator<'a> {
             inner = inner.with(&range.index.text, Meaning::Index(form));
         }
         let mut value = self.value(&inner, expr);
-        if is_const && let Some(settled) = self.settle_constant(value.clone(), &format!("the constant `{}`", name.text))
-        {
-            value = settled;
-        } else if is_const {
-            return self.poison(expr.span);
+        if is_const {
+            let what = format!("the constant `{}`", name.text);
+            match self.settle_constant(value, &what).and_then(|value| self.finite(value)) {
+                Some(settled) => value = settled,
+                None => return self.poison(expr.span),
+            }
         }
         match unit {
             Some(unit) => self.declared_unit(value, unit, &format!("`{}`", name.text)),
@@ -163,8 +165,9 @@ impl<'a> Elaborator<'a> {
             let misplaced = Misplaced { span, what: inner.what, text: name.clone(), because: Some(because) };
             value.flaw = Some(Flaw::Misplaced(Rc::new(misplaced)));
         }
-        if event && self.event.is_none() {
-            self.event = Some((span, name.clone()));
+        if event {
+            let text = name.clone();
+            self.mark_event(span, text, false);
         }
         value.at(span)
     }

@@ -35,8 +35,8 @@ impl<'a> Elaborator<'a> {
         }
         let mut node = value.node;
         let mut dimension = value.dimension;
-        for _ in 0..times {
-            let Some(rate) = self.rate(cx, node, span) else { return self.poison(span) };
+        for remaining in (0..times).rev() {
+            let Some(rate) = self.rate(cx, node, span, remaining == 0) else { return self.poison(span) };
             node = rate;
             dimension = dimension.map(|d| d.over(&self.time));
         }
@@ -53,8 +53,8 @@ impl<'a> Elaborator<'a> {
         None
     }
 
-    /// The derivative of a node with respect to real time.
-    fn rate(&mut self, cx: &Context<'a>, node: NodeId, span: Span) -> Option<NodeId> {
+    /// The derivative of a node with respect to real time; whether it jumps is told of the last only.
+    fn rate(&mut self, cx: &Context<'a>, node: NodeId, span: Span, is_last: bool) -> Option<NodeId> {
         let mut rates: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.
         let mut sound = true;
         for input in self.problem.dag.inputs_of(&[node]) {
@@ -63,6 +63,9 @@ impl<'a> Elaborator<'a> {
                 Leaf::Flat { phase, at, output, index, order } => {
                     let order = order + 1;
                     sound &= self.has_derivative(&phase, output, order, span);
+                    if sound && is_last {
+                        self.note_jump(&phase, output, order, span);
+                    }
                     Some(self.leaf(Leaf::Flat { phase, at, output, index, order }))
                 }
                 Leaf::Time(_) => Some(self.problem.dag.constant(1.0)),
@@ -102,11 +105,11 @@ impl<'a> Elaborator<'a> {
         Some(self.problem.dag.div(one, duration))
     }
 
-    /// Tells of a derivative that a spline has not, notes one that jumps at its knots.
+    /// Tells of a derivative that a spline does not have.
     fn has_derivative(&mut self, phase: &PhaseAt, output: usize, order: usize, span: Span) -> bool {
         let output = &self.problem.phases[phase.phase].outputs[output];
         let (name, spline, declared) = (output.name.clone(), &output.spline, output.span);
-        let (k, m, knots) = (spline.order, spline.smoothness, spline.breakpoints.len());
+        let k = spline.order;
         if order >= k {
             let message = format!("`{name}` has no derivative of order {order}: its spline is of order {k}");
             let finding = Diagnostic::new(Code::NoDerivative, span, message)
@@ -116,24 +119,29 @@ impl<'a> Elaborator<'a> {
             self.report(finding);
             return false;
         }
-        if order >= m && knots > 2 {
-            let message = format!("the derivative of order {order} of `{name}` jumps at the knots of its spline");
-            let finding = Diagnostic::new(Code::DerivativeJumps, span, message).label(
-                declared,
-                format!("`smoothness = {m}`: derivatives up to {} are continuous", m.saturating_sub(1)),
-            );
-            let finding = if m == 0 {
-                finding
-            } else {
-                finding.help(format!(
-                    "for a continuous one, declare `order = {}, smoothness = {}` or more",
-                    (order + 2).max(k),
-                    order + 1
-                ))
-            };
-            self.report(finding);
-        }
         true
+    }
+
+    /// Notes a derivative that jumps at the knots.
+    fn note_jump(&mut self, phase: &PhaseAt, output: usize, order: usize, span: Span) {
+        let output = &self.problem.phases[phase.phase].outputs[output];
+        let (name, spline, declared) = (output.name.clone(), &output.spline, output.span);
+        let (k, m) = (spline.order, spline.smoothness);
+        if order < m || spline.breakpoints.len() <= 2 {
+            return;
+        }
+        let message = format!("the derivative of order {order} of `{name}` jumps at the knots of its spline");
+        let continuous = match m {
+            0 => "not even its values are continuous".to_owned(),
+            _ => format!("derivatives up to {} are continuous", m - 1),
+        };
+        let finding = Diagnostic::new(Code::DerivativeJumps, span, message)
+            .label(declared, format!("`smoothness = {m}`: {continuous}"));
+        let order_needed = (order + 2).max(k);
+        self.report(finding.help(format!(
+            "for a continuous one, declare `order = {order_needed}, smoothness = {}` or more",
+            order + 1
+        )));
     }
 
     /// `partial(f(s, w), s)`.

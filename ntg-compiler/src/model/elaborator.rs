@@ -14,7 +14,7 @@ use super::definitions::{Memo, MemoKey};
 use super::dimension::Dimension;
 use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
-use super::scope::{Declared, Scope, ScopeId};
+use super::scope::{Declared, Entity, Scope, ScopeId};
 use super::units::{self, Quantity};
 use super::value::{Flaw, Value};
 use crate::diagnostic::{Code, Diagnostic};
@@ -76,6 +76,15 @@ pub(super) struct Steps {
     pub(super) name: Span,
 }
 
+/// Something in an expression that belongs to no single point.
+#[derive(Clone)]
+pub(super) struct EventMark {
+    pub(super) span: Span,
+    pub(super) text: String,
+    /// Whether it is only a time, not a boundary value or an integral.
+    pub(super) is_time: bool,
+}
+
 /// The items of one scope.
 pub(super) type Items<'a> = &'a [ast::Item];
 
@@ -104,7 +113,7 @@ pub(super) struct Elaborator<'a> {
     /// The index over a family of phases that totals use.
     pub(super) total_indices: HashMap<usize, u32>,
     /// The first event time, boundary value or integral in the expression at hand.
-    pub(super) event: Option<(Span, String)>,
+    pub(super) event: Option<EventMark>,
     /// The dimension of time: none in a spec without units.
     pub(super) time: Dimension,
     /// The functions being inlined.
@@ -119,9 +128,9 @@ pub(super) struct Elaborator<'a> {
     depth: usize,
 }
 
-/// How many expressions may be elaborated, inlined functions counted each time. Far above
-/// what people write, reached within a second or two by functions that double one another.
-const MAX_STEPS: usize = 3_000_000;
+/// How many expressions inside functions may be elaborated, each use of a function counted. Far
+/// above what people write, reached within a second by functions that double one another.
+const MAX_STEPS: usize = 1_000_000;
 
 /// How deeply expressions, definitions and functions may nest in one another.
 const MAX_DEPTH: usize = 700;
@@ -182,8 +191,9 @@ impl<'a> Elaborator<'a> {
 
     /// Counts one step of elaboration; refuses when there were too many or they nest too deeply.
     pub(super) fn enter(&mut self, span: Span) -> bool {
-        self.steps += 1;
         self.depth += 1;
+        // Only functions inside functions can make more of a spec than its text.
+        self.steps += usize::from(!self.inlining.is_empty());
         if self.steps > MAX_STEPS {
             if self.steps == MAX_STEPS + 1 {
                 let message = "this problem is too large to be given a meaning";
@@ -207,6 +217,13 @@ impl<'a> Elaborator<'a> {
     /// Ends what `enter` began.
     pub(super) fn leave(&mut self) {
         self.depth -= 1;
+    }
+
+    /// Notes an event time, boundary value or integral in the expression at hand; the latter two matter more.
+    pub(super) fn mark_event(&mut self, span: Span, text: String, is_time: bool) {
+        if self.event.as_ref().is_none_or(|mark| mark.is_time && !is_time) {
+            self.event = Some(EventMark { span, text, is_time });
+        }
     }
 
     /// Notes where a node was first written.
@@ -246,7 +263,11 @@ impl<'a> Elaborator<'a> {
 
     /// Declares a name in a scope; tells where that is the second time.
     pub(super) fn declare(&mut self, scope: ScopeId, ident: &'a ast::Ident, declared: Declared) {
-        if let Some(builtin) = super::functions::builtin(&ident.text) {
+        // `min` and `max` make good names for quantities, and calls are told apart by their parentheses.
+        let callable = matches!(declared.entity, Entity::Function(_) | Entity::Table(_));
+        let taken = super::functions::builtin(&ident.text)
+            .filter(|builtin| callable || !matches!(builtin.name(), "min" | "max"));
+        if let Some(builtin) = taken {
             let message = format!("`{}` is a function of the language", builtin.name());
             self.report(
                 Diagnostic::new(Code::ShadowsFunction, ident.span, message)
@@ -272,6 +293,14 @@ impl<'a> Elaborator<'a> {
     /// The text of a place, for messages.
     pub(super) fn text(&self, span: Span) -> String {
         self.source.snippet(span)
+    }
+
+    /// The same, in parentheses where it may be a sum.
+    pub(super) fn grouped(&self, span: Span) -> String {
+        let text = self.text(span);
+        let whole = text.starts_with('(') && text.ends_with(')') && text.matches('(').count() == 1;
+        let sum = text.char_indices().any(|(k, c)| k > 0 && matches!(c, '+' | '-'));
+        if sum && !whole { format!("({text})") } else { text }
     }
 
     /// Whether an error was found.

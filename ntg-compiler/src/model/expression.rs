@@ -121,7 +121,11 @@ impl<'a> Elaborator<'a> {
             "compare" => format!("{this} cannot be compared with {that}"),
             _ => format!("{this} and {that} cannot be joined by `{verb}`"),
         };
-        let finding = Diagnostic::new(Code::DimensionMismatch, a.span.to(b.span), message)
+        // Two statements are no expression to underline as a whole.
+        let between = Span { start: a.span.end.min(b.span.end), end: a.span.start.max(b.span.start) };
+        let apart = self.source.slice(between).contains([';', '}']);
+        let whole = if apart { b.span } else { a.span.to(b.span) };
+        let finding = Diagnostic::new(Code::DimensionMismatch, whole, message)
             .label(a.span, format!("this is {this}"))
             .label(b.span, format!("this is {that}"));
         let finding = finding.help(self.mend(a, b));
@@ -144,8 +148,8 @@ impl<'a> Elaborator<'a> {
         }
         for (number, other) in [(a, b), (b, a)] {
             if number.dimension == Some(Dimension::NONE) {
-                let text = self.text(number.span);
-                return format!("multiply the pure number by a unit: `({text}) * 1 [{}]`", unit_of(other));
+                let text = self.grouped(number.span);
+                return format!("multiply the pure number by a unit: `{text} * 1 [{}]`", unit_of(other));
             }
         }
         "bring both to the same dimension: check units, powers and missing factors".to_owned()
@@ -210,7 +214,7 @@ impl<'a> Elaborator<'a> {
         {
             let message = format!("an exponent must be a pure number, this is {}", dimension.describe());
             let finding = Diagnostic::new(Code::NotPure, exponent.span, message)
-                .help(format!("divide it by a unit: `({}) / 1 [{dimension}]`", self.text(exponent.span)));
+                .help(format!("divide it by a unit: `{} / 1 [{dimension}]`", self.grouped(exponent.span)));
             return self.refuse(finding, span);
         }
         let dimension = match base.dimension {
@@ -237,7 +241,7 @@ impl<'a> Elaborator<'a> {
         let finding = Diagnostic::new(Code::WildExponent, exponent.span, message)
             .label(base.span, format!("this is {}", dimension.describe()))
             .label(exponent.span, "the dimension of the power depends on this")
-            .help(format!("make the base a pure number: `({} / 1 [{unit}]) ^ ...`", self.text(base.span)));
+            .help(format!("make the base a pure number: `({} / 1 [{unit}]) ^ ...`", self.grouped(base.span)));
         self.refuse(finding, span)
     }
 }

@@ -267,7 +267,7 @@ impl<'a> Elaborator<'a> {
         let unit = value.unit.as_ref().map_or_else(|| dimension.to_string(), |unit| unit.symbol.clone());
         let message = format!("`{name}` takes a pure number, this is {}", dimension.describe());
         let finding = Diagnostic::new(Code::NotPure, value.span, message)
-            .help(format!("divide it by a unit or a scale: `{name}({} / 1 [{unit}])`", self.text(value.span)));
+            .help(format!("divide it by a unit or a scale: `{name}({} / 1 [{unit}])`", self.grouped(value.span)));
         self.report(finding);
         false
     }

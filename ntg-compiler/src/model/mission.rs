@@ -33,11 +33,14 @@ impl<'a> Elaborator<'a> {
             let family = item.and_then(|item| item.family.as_ref()).and_then(|family| self.family(PROBLEM, family));
             let scope = self.agents[k].scope;
             let span = item.map_or(Span::default(), |item| item.name.span);
+            // An agent without phases has one, and a duration's name is then that phase's.
+            let has_phases = self.agents[k].phases.iter().any(|phase| self.phases[*phase].item.is_some());
+            let duration_name = self.duration_name(scope).filter(|_| has_phases);
             self.problem.agents.push(Agent {
                 name: item.map(|item| item.name.text.clone()),
                 family,
                 start: Start::Fixed(None),
-                duration_name: self.duration_name(scope),
+                duration_name,
                 phases: self.agents[k].phases.clone(),
                 span,
             });
@@ -221,7 +224,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The duration that stands in a scope; tells of a second one.
-    fn own_duration(&mut self, scope: ScopeId) -> Option<(&'a ast::Duration, Span)> {
+    pub(super) fn own_duration(&mut self, scope: ScopeId) -> Option<(&'a ast::Duration, Span)> {
         let mut found = self.items[scope].iter().filter_map(|item| match &item.kind {
             ItemKind::Duration(duration) => Some((duration, item.span)),
             _ => None,

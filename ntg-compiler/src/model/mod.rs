@@ -16,6 +16,7 @@ mod dimension;
 mod elaborator;
 mod expression;
 mod functions;
+mod given;
 mod guess;
 mod kinds;
 mod mention;
@@ -44,6 +45,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::Source;
 use crate::syntax::ast;
 use elaborator::{Elaborator, doc_text};
+pub use given::given;
 use problem::Problem;
 
 /// Gets the text of the files that a spec names; the compiler reads none itself.

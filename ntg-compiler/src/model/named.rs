@@ -56,8 +56,8 @@ impl<'a> Elaborator<'a> {
                 && value.is_sound()
             {
                 self.push_named(definition, &cx, over, &value);
+                return;
             }
-            return;
         }
         for (cx, over, value) in along {
             if value.is_sound() {

@@ -51,6 +51,9 @@ impl<'a> Elaborator<'a> {
                         continue;
                     };
                     let declares = self.parameters[k].0.span == continuation.name.span;
+                    if !declares && !self.is_param(&continuation.name) {
+                        continue; // Told of as declared twice.
+                    }
                     self.continuation(k, continuation, declares.then_some(doc));
                 }
                 _ => {}
@@ -63,6 +66,12 @@ impl<'a> Elaborator<'a> {
             Entity::Parameter(k) => Some(k),
             _ => None,
         }
+    }
+
+    /// Whether a `param` has that name.
+    fn is_param(&self, name: &ast::Ident) -> bool {
+        let mut items = self.items[PROBLEM].iter();
+        items.any(|item| matches!(&item.kind, ItemKind::Param(param) if param.name.text == name.text))
     }
 
     fn no_parameter(&mut self, name: &ast::Ident) {

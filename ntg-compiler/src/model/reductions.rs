@@ -33,7 +33,7 @@ impl<'a> Elaborator<'a> {
             let message =
                 format!("the factors of a product over an index are pure numbers, this is {}", dimension.describe());
             let finding = Diagnostic::new(Code::NotPure, reduction.body.span, message)
-                .help(format!("divide it by a unit: `({}) / 1 [{dimension}]`", self.text(reduction.body.span)));
+                .help(format!("divide it by a unit: `{} / 1 [{dimension}]`", self.grouped(reduction.body.span)));
             return self.refuse(finding, span);
         }
         if matches!(fold, Fold::Min | Fold::Max) && body.is_sound() {

@@ -11,6 +11,14 @@ use super::elaborator::Elaborator;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast;
 
+/// The part of the range of a table's values that is not worth a note: rounding, mostly.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// The least and the largest value of a table.
+fn range(table: &Table) -> (f64, f64) {
+    table.values.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)))
+}
+
 impl Elaborator<'_> {
     /// Builds the interpolant once, to see that it exists and how well it follows its data.
     pub(super) fn try_out(&mut self, declared: &ast::Table, table: &Table) {
@@ -66,8 +74,12 @@ impl Elaborator<'_> {
             return;
         }
         let report = made.fit_report();
+        let (low, high) = range(table);
+        if report.largest_error.max(report.largest_overshoot) <= NEGLIGIBLE * (high - low) {
+            return;
+        }
         let unit = if table.unit.symbol.is_empty() { String::new() } else { format!(" [{}]", table.unit.symbol) };
-        let shown = |value: f64| format!("{:.3e}{unit}", value / table.unit.factor);
+        let shown = |value: f64| format!("{}{unit}", significant(value / table.unit.factor));
         let (error, overshoot) = (shown(report.largest_error), shown(report.largest_overshoot));
         let message =
             format!("`{}` misses its values by at most {error} and overshoots them by at most {overshoot}", table.name);
@@ -80,7 +92,7 @@ impl Elaborator<'_> {
         if table.extrapolation == TableExtrapolation::Linear || table.method == TableMethod::Linear {
             return;
         }
-        let (low, high) = table.values.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+        let (low, high) = range(table);
         for (k, axis) in table.axes.iter().enumerate() {
             let ends: &[usize] = match axis.symmetry {
                 TableSymmetry::Plain => &[0, axis.nodes.len() - 1],
@@ -88,8 +100,7 @@ impl Elaborator<'_> {
                 TableSymmetry::Periodic => &[],
             };
             let width = axis.nodes[axis.nodes.len() - 1] - axis.nodes[0];
-            // A slope that would change the value by a millionth of its range across the nodes.
-            let least = 1e-6 * (high - low) / width;
+            let least = NEGLIGIBLE * (high - low) / width;
             let steep = ends.iter().any(|end| steepest(table, made, k, axis.nodes[*end]) > least);
             if steep {
                 let message = format!("the gradient of `{}` jumps where `{}` leaves its nodes", table.name, axis.name);
@@ -118,4 +129,10 @@ fn steepest(table: &Table, made: &ntg_splines::Table, k: usize, end: f64) -> f64
         index[next] += 1;
         index.iter_mut().take(next).for_each(|i| *i = 0);
     }
+}
+
+/// A number with three significant digits.
+fn significant(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
 }

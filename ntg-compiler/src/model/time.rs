@@ -7,7 +7,7 @@
 //! adds up its phases, `initial` is at the start of the first, `final` at the end of the last.
 
 use super::dimension::Dimension;
-use super::elaborator::Elaborator;
+use super::elaborator::{Elaborator, EventMark};
 use super::problem::{Form, Leaf, Loop, PhaseAt};
 use super::scope::{Allow, Context, Point, ScopeId};
 use super::value::{Value, What};
@@ -182,7 +182,8 @@ impl<'a> Elaborator<'a> {
             };
             node
         });
-        self.event = outer_event.or_else(|| Some((span, self.text(span))));
+        self.event = outer_event;
+        self.mark_event(span, self.text(span), false);
         let Some(sample) = sample else { return self.poison(span) };
         let time = self.time;
         let dimension = sample.dimension.map(|d| d.times(&time));
@@ -215,9 +216,7 @@ impl<'a> Elaborator<'a> {
         };
         let inner = self.on(cx, &stretch, point);
         let value = self.value(&inner, of);
-        if self.event.is_none() {
-            self.event = Some((span, self.text(span)));
-        }
+        self.mark_event(span, self.text(span), false);
         value.map(value.node, value.dimension, span).shown_in(value.unit.clone())
     }
 
@@ -242,22 +241,23 @@ impl<'a> Elaborator<'a> {
             }
             Event::Duration => self.total(&stretches, |this, stretch| this.leaf(Leaf::Duration(stretch.at()))),
         };
-        if self.event.is_none() {
-            self.event = Some((span, text));
-        }
+        self.mark_event(span, text, true);
         Value::new(node, self.time, span)
     }
 
     /// Tells of an event time, boundary value or integral where an expression belongs to a point.
     pub(super) fn no_event(&mut self, around: Span, why: &str) {
-        let Some((span, text)) = self.event.take() else { return };
+        let Some(EventMark { span, text, is_time }) = self.event.take() else { return };
         let message = format!("`{text}` belongs to no single point, but {why}");
         let mut finding = Diagnostic::new(Code::EventAlong, span, message);
         if span != around {
             finding = finding.label(around, "this is taken at every point");
         }
-        self.report(
-            finding.help(format!("declare `variable v;`, write `v == {text};` in `temporal`, and use `v` here")),
-        );
+        let help = if is_time {
+            format!("give the time a name, `let event = {text};`, and use the name here")
+        } else {
+            format!("declare `variable v;`, write `v == {text};` in `temporal`, and use `v` here")
+        };
+        self.report(finding.help(help));
     }
 }
