@@ -379,3 +379,30 @@ fn a_continuation_refines_a_parameter_and_leaves_its_unit() {
     assert_eq!((p.parameters.len(), p.parameters[0].unit.symbol.as_str()), (1, "km"));
     assert_eq!((p.parameters[0].value.clone(), p.continuations[0].steps.clone()), (vec![0.1], vec![0.2, 0.1]));
 }
+
+#[test]
+fn every_node_has_a_place_in_the_text() {
+    let p = good(include_str!("../../specs/low_observable.ntg"));
+    let roots: Vec<_> =
+        p.named.iter().map(|named| named.body).chain(p.objective.iter().map(|term| term.body)).collect();
+    for id in p.dag.schedule(&roots) {
+        assert!(p.origin.contains_key(&id), "{:?} has no place", p.dag.node(id));
+    }
+}
+
+#[test]
+fn a_value_on_its_bound_is_no_contradiction() {
+    good(
+        "problem P {
+        duration T = 5 [s];
+        output x, y [km]: spline(order = 5, intervals = 4, smoothness = 3);
+        minimize integral(der(x, 2)^2);
+        initial { der(x) == 0.1 [km/s];  der(y) == 0.2 [km/s]; }
+        trajectory {
+            hypot(der(x), der(y)) >= 0.223606797749979 [km/s];
+            der(x)^2 + der(y)^2 - 0.05 [km^2/s^2] >= 0;
+            3 * der(x) - 0.3 [km/s] in 0 .. 0 [km/s];
+        }
+    }",
+    );
+}

@@ -162,7 +162,7 @@ fn a_family_of_phases_stays_one() {
     let family = p.phases[0].family.clone().expect("a family");
     assert_eq!((family.first.constant, family.last.constant), (1, 4));
     let gate = p.constraints.iter().find(|c| c.block == Block::Final && !c.loops.is_empty()).expect("a gate");
-    assert_eq!(gate.loops, [family.clone()]);
+    assert_eq!(gate.loops, std::slice::from_ref(&family));
     let index = Some(Form { constant: 0, terms: vec![(family.index, 1)] });
     assert_eq!(gate.domain, Domain::End(PhaseAt { phase: 0, agent: None, index }));
     let bound = gate.bounds.lower.expect("an equality");
@@ -217,7 +217,7 @@ fn a_family_of_agents_stays_one_and_meets_in_temporal() {
     let family = p.agents[0].family.clone().expect("a family");
     assert!(matches!(p.agents[0].start, Start::Free(_)) && matches!(p.agents[1].start, Start::Fixed(None)));
     let fast = p.constraints.iter().find(|c| c.name.as_deref() == Some("uav.fast")).expect("it has a path");
-    assert_eq!(fast.loops, [family.clone()]);
+    assert_eq!(fast.loops, std::slice::from_ref(&family));
     let bound = fast.bounds.upper.expect("a bound");
     close(value_at(&p, bound, WORLD, &HashMap::from([(family.index.0, 2)])), 320.0);
     let term = p.objective.iter().find(|term| term.loops == [family.clone()]).expect("each pays its share");

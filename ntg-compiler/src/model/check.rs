@@ -13,7 +13,7 @@ use super::constants::extremes;
 use super::elaborator::Elaborator;
 use super::problem::{Constraint, Domain, Duration, Form, Leaf, Loop};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{InputId, Node, NodeId};
+use crate::expr::{Binary, InputId, Node, NodeId, Unary};
 use crate::source::Span;
 
 /// Values that boundary conditions fix at one point: leaf, value, place of the condition.
@@ -91,7 +91,7 @@ impl Elaborator<'_> {
         }
         let span = constraint.span;
         match fixed.get(&input).copied() {
-            Some((other, _)) if close(value, other) => {}
+            Some((other, _)) if close(value, other, 0.0) => {}
             Some((_, first)) => {
                 let message = "two boundary conditions contradict each other";
                 let finding = Diagnostic::new(Code::Contradiction, span, message)
@@ -118,10 +118,12 @@ impl Elaborator<'_> {
         }
         let Some(by) = by else { return };
         let body = self.problem.dag.substitute(&[constraint.body], |input| values.get(&input).copied())[0];
+        let scale = self.scale(constraint.body, &values);
         let known = |node: Option<NodeId>| node.and_then(|node| self.problem.dag.is_constant(node));
         let Some(value) = known(Some(body)) else { return };
-        let below = known(constraint.bounds.lower).is_some_and(|lower| value < lower && !close(value, lower));
-        let above = known(constraint.bounds.upper).is_some_and(|upper| value > upper && !close(value, upper));
+        let (lower, upper) = (known(constraint.bounds.lower), known(constraint.bounds.upper));
+        let below = lower.is_some_and(|lower| value < lower && !close(value, lower, scale));
+        let above = upper.is_some_and(|upper| value > upper && !close(value, upper, scale));
         if !below && !above {
             return;
         }
@@ -138,6 +140,23 @@ impl Elaborator<'_> {
             .label(constraint.span, format!("what is bounded is {shown}{unit}{here}"))
             .label(by, "fixed here");
         self.report(finding.help("loosen the bound, or change what is fixed"));
+    }
+
+    /// The size of the largest summand of a body: what its rounding errors are relative to.
+    fn scale(&mut self, body: NodeId, values: &HashMap<InputId, NodeId>) -> f64 {
+        let mut scale: f64 = 0.0;
+        let mut open = vec![body];
+        while let Some(node) = open.pop() {
+            match *self.problem.dag.node(node) {
+                Node::Binary(Binary::Add | Binary::Sub, a, b) => open.extend([a, b]),
+                Node::Unary(Unary::Neg, a) => open.push(a),
+                _ => {
+                    let known = self.problem.dag.substitute(&[node], |input| values.get(&input).copied())[0];
+                    scale = scale.max(self.problem.dag.is_constant(known).map_or(0.0, f64::abs));
+                }
+            }
+        }
+        scale
     }
 
     /// The value of a duration that a constant fixes, and its place.
@@ -248,8 +267,8 @@ impl Elaborator<'_> {
     }
 }
 
-fn close(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SLACK * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+fn close(a: f64, b: f64, scale: f64) -> bool {
+    (a - b).abs() <= SLACK * a.abs().max(b.abs()).max(scale)
 }
 
 fn add_row(rows: &mut Vec<(usize, Option<Form>, Vec<Span>)>, output: usize, index: &Option<Form>, span: Span) {

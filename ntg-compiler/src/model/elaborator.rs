@@ -5,6 +5,7 @@
 //! pass. A template that several phases share is elaborated once for each, so findings
 //! are kept without repetition.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 use ntg_structure::Unit;
@@ -226,9 +227,16 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Notes where a node was first written.
+    /// Notes where a node was first written, and the nodes made on the way to it.
     pub(super) fn origin(&mut self, node: NodeId, span: Span) {
-        self.problem.origin.entry(node).or_insert(span);
+        let mut open = vec![node];
+        while let Some(node) = open.pop() {
+            // What has a place already has parts with places.
+            if let Entry::Vacant(entry) = self.problem.origin.entry(node) {
+                entry.insert(span);
+                self.problem.dag.node(node).for_each_operand(|operand| open.push(operand));
+            }
+        }
     }
 
     /// The node of a leaf.

@@ -4,7 +4,8 @@
 
 use std::collections::HashMap;
 
-use ntg_compiler::expr::{Environment, NodeId, eval_in};
+use ntg_compiler::diagnostic::{Diagnostic, Severity};
+use ntg_compiler::expr::{Environment, Node, NodeId, eval_in};
 use ntg_compiler::model::problem::{At, Form, Leaf, Problem};
 use ntg_compiler::model::{Loader, build};
 use ntg_compiler::source::Source;
@@ -32,14 +33,35 @@ pub(crate) fn good(text: &str) -> Problem {
     problem.unwrap_or_else(|| panic!("{}", rendered.join("\n\n")))
 }
 
+/// Holds a problem against what the model promises: without errors there is one, and nothing in it
+/// came from something that was refused.
+#[track_caller]
+pub(crate) fn assert_consistent(text: &str, problem: Option<&Problem>, found: &[Diagnostic]) {
+    let failed = found.iter().any(|finding| finding.severity == Severity::Error);
+    assert_eq!(problem.is_none(), failed, "{text}");
+    let Some(problem) = problem else { return };
+    let bounds = problem.constraints.iter().flat_map(|c| [c.bounds.lower, c.bounds.upper]).flatten();
+    let bodies = problem.constraints.iter().map(|c| c.body);
+    let rest = problem.objective.iter().map(|t| t.body).chain(problem.named.iter().map(|n| n.body));
+    let roots: Vec<NodeId> = bounds.chain(bodies).chain(rest).collect();
+    for id in problem.dag.schedule(&roots) {
+        assert!(!problem.dag.is_constant(id).is_some_and(f64::is_nan), "a refused value is left in {text}");
+        if let Node::Input(input) = problem.dag.node(id) {
+            assert!(!matches!(problem.leaves.leaf(*input), Leaf::Symbol(_)), "a placeholder is left in {text}");
+        }
+    }
+}
+
 /// All findings of a spec, as a person sees them.
+#[track_caller]
 pub(crate) fn findings_with(text: &str, files: &dyn Loader) -> String {
     let source = Source::new("spec.ntg", text);
     let spec = match parse(&source) {
         Ok(spec) => spec,
         Err(found) => return format!("not even parsed:\n{}", found.render(&source)),
     };
-    let (_, found) = build(&spec, &source, files);
+    let (problem, found) = build(&spec, &source, files);
+    assert_consistent(text, problem.as_ref(), &found);
     let rendered: Vec<String> = found.iter().map(|finding| finding.render(&source)).collect();
     rendered.join("\n\n")
 }
@@ -49,11 +71,14 @@ pub(crate) fn findings(text: &str) -> String {
     findings_with(text, &Files(vec![]))
 }
 
+/// A value for a name, a member, an order of derivative and a point.
+pub(crate) type Flat = dyn Fn(&str, Option<i64>, usize, At) -> f64;
+
 /// What leaves are worth.
 #[derive(Clone, Copy)]
 pub(crate) struct World<'w> {
-    /// Outputs: name, member, order of derivative, point.
-    pub(crate) flat: &'w dyn Fn(&str, Option<i64>, usize, At) -> f64,
+    /// Outputs and their derivatives.
+    pub(crate) flat: &'w Flat,
     /// Everything else, by a word such as `T`, `tau`, `v_max`, `v_max[2]`.
     pub(crate) other: &'w dyn Fn(&str) -> f64,
 }
