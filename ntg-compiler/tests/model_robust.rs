@@ -26,13 +26,13 @@ const SPECS: &[&str] = &[
             let all = sum(i in 1 .. n, a[i] * x[i] / 1 [km]^2) + smooth_max(i in 1 .. n, x[i], 1 [km]) / 1 [km];
             let slope = partial(h(y, z), z) / 1 [km^2] + der(z, 2) * 1 [s^2];
             phase up { duration up_time in 5 .. 60 [s]; let mass = m; }
-            phase leg[j in 1 .. 2] after leg[j - 1] { duration in 1 .. 2 [s]; let mass = 2 * m; }
-            phase down after up { duration = 5 [s]; let mass = 2 [kg]; jump y; continuous x[2] up to 1; }
+            phase leg[j in 1 .. 2] after up { duration in 1 .. 2 [s]; let mass = 2 * m; }
+            phase down after leg[2] { duration = 5 [s]; let mass = 2 [kg]; jump y; continuous x[2] up to 1; }
             initial { for i in 1 .. n { x[i] == a[i]; } }
             trajectory { named: mass * der(y, 2) <= f(y, z); -1 <= z <= tau; for i in 1 .. n - 1 { d[i] in 0 .. 9 [km]; } }
             final { y == initial(y); }
             minimize cost [s]: integral(z^2 + all^2);
-            guess { (x[1], y) through (0, 0), (1, 2) [km]; up_time = 7 [s]; z = t / 1 [s]; }
+            guess { (x[1], y) through (0, 0), (1, 2) [km]; duration(up) = 7 [s]; z = t / 1 [s]; }
         }
         temporal { end(one[1].up) <= 7 [s]; integral(one[2], y) >= 0; }
         guess { m = 3 [kg]; start(one[2]) = 1 [s]; one[1].z = 1 - tau; }
@@ -78,5 +78,13 @@ proptest! {
             }
         }
         findings(&words.concat());
+    }
+}
+
+#[test]
+fn the_specs_to_be_mutated_are_good_ones() {
+    for spec in SPECS {
+        let found = findings(spec);
+        assert!(!found.contains("error["), "{found}");
     }
 }

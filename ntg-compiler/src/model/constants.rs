@@ -205,6 +205,7 @@ impl<'a> Elaborator<'a> {
     /// A loop and the context inside it.
     pub(super) fn range(&mut self, cx: &Context<'a>, range: &'a IndexRange) -> Option<(Loop, Context<'a>)> {
         let name = range.index.text.as_str();
+        self.index_names.entry(name).or_insert(range.index.span);
         let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
         let declared = super::scope::look_up(&self.scopes, cx.lexical, name).map(|(_, declared)| declared);
         if hidden || declared.is_some() {

@@ -109,8 +109,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) pending: Vec<Steps>,
     /// Dimensions of the outputs of each phase, as in `Problem::phases`.
     pub(super) output_dimensions: Vec<Vec<Dimension>>,
-    /// The range of every index ever made.
-    pub(super) ranges: HashMap<IndexId, Loop>,
+    /// Names of indices met so far and where they are bound.
+    pub(super) index_names: HashMap<&'a str, Span>, // Looked up, never iterated.
     /// The index over a family of phases that totals use.
     pub(super) total_indices: HashMap<usize, u32>,
     /// The first event time, boundary value or integral in the expression at hand.
@@ -154,7 +154,7 @@ impl<'a> Elaborator<'a> {
             agents: Vec::new(),
             pending: Vec::new(),
             output_dimensions: Vec::new(),
-            ranges: HashMap::new(),
+            index_names: HashMap::new(),
             total_indices: HashMap::new(),
             event: None,
             time: Dimension::TIME,
@@ -254,7 +254,6 @@ impl<'a> Elaborator<'a> {
     pub(super) fn new_index(&mut self, first: Form, last: Form) -> Loop {
         let over = Loop { index: IndexId(self.next_index), first, last };
         self.next_index += 1;
-        self.ranges.insert(over.index, over.clone());
         over
     }
 

@@ -62,6 +62,10 @@ impl<'a> Elaborator<'a> {
             self.scopes[scope].order.clone()
         };
         let finding = Diagnostic::new(Code::UnknownName, segment.name.span, format!("unknown name `{text}`"));
+        if let Some(bound) = self.index_names.get(text.as_str()) {
+            let help = format!("`{text}` is an index: it has a value only inside its `for`, its sum or its family");
+            return self.refuse(finding.label(*bound, "bound here").help(help), segment.span);
+        }
         let finding = match nearest(text, names.iter().copied()) {
             Some(near) => finding.help(format!("did you mean `{near}`?")),
             None if names.is_empty() => finding.help("nothing is declared here"),
