@@ -75,6 +75,9 @@ fn derivatives_are_those_of_the_values_by_central_differences() {
     for spec in specs::all() {
         let structure = spec.generated.structure();
         for (number, kernel) in structure.kernels.iter().enumerate() {
+            if kernel.jacobian.is_empty() {
+                continue; // A kernel that is only shown, or of parameters alone.
+            }
             let sample = Sample::new(&structure, number, LANES, 2);
             let at = |s: &Sample| evaluate(spec.generated.as_ref(), number, kernel, s, &spec.tables);
             let middle = at(&sample);

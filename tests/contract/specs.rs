@@ -63,7 +63,7 @@ fn spec(name: &'static str, generated: Box<dyn Problem>) -> Spec {
         panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n"))
     });
     let interpreted = Interpreted::new(&compiled.program);
-    let tables = ntg::runtime::transcribe::tables(&interpreted.structure()).expect("the tables of shipped specs");
+    let tables = ntg::runtime::transcribe::interpolants(&interpreted.structure().tables).expect("the tables of shipped specs");
     Spec { name, generated, program: compiled.program, interpreted, tables }
 }
 

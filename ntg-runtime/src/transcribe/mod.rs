@@ -34,6 +34,7 @@ pub(crate) mod times;
 
 pub use error::SetupError;
 pub use evaluate::Workspace;
+pub use tables::interpolants;
 
 use crate::nlp::Limits;
 use crate::problem::Problem;

@@ -7,8 +7,11 @@ use super::error::SetupError;
 use ntg_splines::{Axis, Extrapolation, Method, Symmetry, Table};
 use ntg_structure::{TableAxis, TableExtrapolation, TableMethod, TableSymmetry};
 
-/// One interpolant for each table, in order.
-pub(crate) fn interpolants(tables: &[ntg_structure::Table]) -> Result<Vec<Table>, SetupError> {
+/// One interpolant for each table, in order: what kernels evaluate.
+///
+/// # Errors
+/// [`SetupError`] for nodes or values that a program has set and that make no table.
+pub fn interpolants(tables: &[ntg_structure::Table]) -> Result<Vec<Table>, SetupError> {
     tables.iter().map(interpolant).collect()
 }
 

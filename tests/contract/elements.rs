@@ -1,0 +1,78 @@
+//! The optimisation problem of every spec, assembled from its elements, against a dense oracle of
+//! central differences.
+
+use ntg::runtime::nlp::{Assembly, Evaluation, Nlp};
+use ntg::runtime::transcribe::Transcription;
+use ntg::prelude::{Settings, solve};
+
+use crate::inputs::close;
+use crate::specs;
+
+/// Relative step of the differences, as in `main.rs`.
+const STEP: f64 = 6e-6;
+/// What differences can be trusted to, relative to the largest entry of the column.
+const TRUST: f64 = 1e-5;
+
+#[test]
+fn gradient_jacobian_and_hessian_assemble_from_the_elements() {
+    for spec in specs::all() {
+        let nlp = Transcription::new(spec.generated.as_ref()).expect("shipped specs can be set up");
+        let x = near_the_solution(&spec);
+        let multipliers: Vec<f64> = (0..nlp.rows()).map(|i| (1.0 + i as f64).sin()).collect();
+        let (mut work, mut at) = nlp.workspace();
+        let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
+        let mut first_derivatives = |x: &[f64], assembly: &mut Assembly, at: &mut Evaluation| {
+            nlp.derivatives(x, 1.0, &multipliers, &mut work, at).expect("finite near the solution");
+            assembly.first(nlp.blocks(), at);
+            // The gradient of the Lagrangian, whose derivative is the Hessian.
+            let mut slope = assembly.gradient.clone();
+            assembly.jacobian.add_transposed_product(1.0, &multipliers, &mut slope);
+            slope
+        };
+        first_derivatives(&x, &mut assembly, &mut at);
+        assembly.hessian(nlp.blocks(), &at, |_, _, _| {});
+        let middle = (at.clone(), assembly.clone());
+
+        for j in 0..nlp.variables() {
+            let h = STEP * x[j].abs().max(1.0);
+            let shifted = |sign: f64| {
+                let mut x = x.clone();
+                x[j] += sign * h;
+                x
+            };
+            let (low, high) = (shifted(-1.0), shifted(1.0));
+            let slope_low = first_derivatives(&low, &mut assembly, &mut at);
+            let values_low = at.clone();
+            let slope_high = first_derivatives(&high, &mut assembly, &mut at);
+            let step = high[j] - low[j];
+
+            let found = (at.objective - values_low.objective) / step;
+            let noise = middle.0.objective.abs() / step * 1e-13;
+            close(middle.1.gradient[j], found, TRUST, noise, &format!("{}: gradient {j}", spec.name));
+
+            let mut column = vec![0.0; nlp.rows()];
+            middle.1.jacobian.column(j).for_each(|(row, value)| column[row] = value);
+            for (row, wanted) in column.iter().enumerate() {
+                let found = (at.rows[row] - values_low.rows[row]) / step;
+                let noise = middle.0.rows[row].abs() / step * 1e-13;
+                let what = format!("{}: {} by {}", spec.name, nlp.row_name(row), nlp.variable_name(j));
+                close(*wanted, found, TRUST, noise + 1e-9, &what);
+            }
+
+            let found: Vec<f64> = slope_high.iter().zip(&slope_low).map(|(h, l)| (h - l) / step).collect();
+            let largest = found.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            for (i, found) in found.iter().enumerate().take(j + 1) {
+                let wanted = middle.1.hessian.position(i, j).map_or(0.0, |k| middle.1.hessian.value[k]);
+                let what = format!("{}: Hessian {i}, {j}", spec.name);
+                close(wanted, *found, 1e-4, 1e-4 * largest + 1e-12, &what);
+            }
+        }
+    }
+}
+
+/// A point at which everything is defined and nothing is special.
+fn near_the_solution(spec: &specs::Spec) -> Vec<f64> {
+    let report = solve(spec.generated.as_ref(), &Settings::default()).expect("shipped specs can be set up");
+    let x = report.solution.coefficients().iter().enumerate();
+    x.map(|(i, x)| x * (1.0 + 1e-3 * (3.0 * i as f64).sin())).collect()
+}
