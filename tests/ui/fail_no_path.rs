@@ -1,0 +1,4 @@
+//! Something other than a path.
+ntg::ntg_file!(specs / van_der_pol);
+
+fn main() {}

@@ -1,0 +1,4 @@
+//! A file that is not there: the path that was tried.
+ntg::ntg_file!("/nowhere/absent.ntg");
+
+fn main() {}
