@@ -47,15 +47,19 @@ macro_rules! structs {
     )*};
 }
 
-/// Structs with a `Default`, of which only the other fields are written.
+/// Structs with a `Default`, of which the fields before the `;` and those that differ are written.
 macro_rules! structs_with_default {
-    ($($name:ident { $($field:ident),* })*) => {$(
+    ($($name:ident { $($always:ident)? ; $($field:ident),* })*) => {$(
         impl ToRust for $name {
             fn to_rust(&self) -> TokenStream {
                 let default = Self::default();
-                let Self { $($field),* } = self;
-                let mut written = vec![];
+                let Self { $($always,)? $($field),* } = self;
+                let mut written: Vec<TokenStream> = vec![];
                 let mut left_out = false;
+                $(
+                    let value = $always.to_rust();
+                    written.push(quote! { $always: #value });
+                )?
                 $(if $field.same(&default.$field) {
                     left_out = true;
                 } else {
@@ -118,12 +122,12 @@ structs! {
 }
 
 structs_with_default! {
-    Bounds { call, lower, upper }
-    Call { kernel, slots, reductions, data }
-    Kernel { name, slots, data, rows, jacobian, hessian, degree, probes }
-    PhaseRef { phase, agent, index }
-    Place { line, column, text }
-    Unit { symbol, factor }
+    Bounds {; call, lower, upper }
+    Call { kernel; slots, reductions, data }
+    Kernel {; name, slots, data, rows, jacobian, hessian, degree, probes }
+    PhaseRef {; phase, agent, index }
+    Place {; line, column, text }
+    Unit {; symbol, factor }
 }
 
 enums! {

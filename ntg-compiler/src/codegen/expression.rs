@@ -90,7 +90,7 @@ impl Expression {
     /// enough.
     fn at_least(self, level: Level, right: bool) -> TokenStream {
         // A negation on the right would be legal, but `a - -b` is misread.
-        let bare = if right { self.level > level.max(Level::Negation) } else { self.level >= level };
+        let bare = if right { self.level > level && self.level != Level::Negation } else { self.level >= level };
         let tokens = self.tokens;
         if bare {
             tokens

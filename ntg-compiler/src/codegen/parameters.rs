@@ -9,7 +9,7 @@
 //! in every back end.
 
 use ntg_structure::{Parameter, Structure, Table, Unit};
-use proc_macro2::{Literal, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use super::data::float;
@@ -69,60 +69,77 @@ fn number(i: usize, parameter: &Parameter, place_of: &dyn Fn(&str) -> Span) -> F
     }
 }
 
-/// A table whose nodes and values a program may replace: a struct with a field for each axis would
-/// let axis names collide with ours, so nodes are a tuple in the order of the arguments.
+/// A table whose nodes and values a program may replace. Nodes are a tuple in the order of the
+/// arguments (one array for one argument): fields named after axes could meet names of ours.
 fn table(i: usize, table: &Table, place_of: &dyn Fn(&str) -> Span) -> Field {
     let ident = ident_at(&table.name, place_of(&table.name));
     let kind = format_ident!("{}Table", camel(&table.name));
-    let lengths: Vec<Literal> = table.axes.iter().map(|axis| Literal::usize_unsuffixed(axis.nodes.len())).collect();
+    let sizes: Vec<usize> = table.axes.iter().map(|axis| axis.nodes.len()).collect();
+    let lengths = || sizes.iter().map(|size| Literal::usize_unsuffixed(*size));
+    let in_tuple = |each: Vec<TokenStream>| match each.as_slice() {
+        [one] => one.clone(),
+        all => quote! { (#(#all),*) },
+    };
     let nodes = table.axes.iter().map(|axis| {
         let nodes = axis.nodes.iter().map(|si| float(in_unit(*si, &axis.unit)));
         quote! { [#(#nodes),*] }
     });
+    let nodes = in_tuple(nodes.collect());
     let values: Vec<f64> = table.values.iter().map(|si| in_unit(*si, &table.unit)).collect();
-    let sizes: Vec<usize> = table.axes.iter().map(|axis| axis.nodes.len()).collect();
     let values = nested(&values, &sizes);
-    let value_type = lengths.iter().rev().fold(quote! { f64 }, |inner, length| quote! { [#inner; #length] });
+    let nodes_type = in_tuple(lengths().map(|length| quote! { [f64; #length] }).collect());
+    let values_type = lengths().rev().fold(quote! { f64 }, |inner, length| quote! { [#inner; #length] });
 
-    let index = Literal::usize_unsuffixed(i);
-    let set_nodes = table.axes.iter().enumerate().map(|(k, axis)| {
-        let (k, factor) = (Literal::usize_unsuffixed(k), float(axis.unit.factor));
-        quote! { structure.tables[#index].axes[#k].nodes = self.#ident.nodes.#k.map(|node| node * #factor).to_vec(); }
-    });
-    let flatten = lengths.iter().skip(1).map(|_| quote! { .as_flattened() });
-    let factor = float(table.unit.factor);
-    let axes: Vec<String> = table
+    let axes = table
         .axes
         .iter()
-        .map(|axis| format!(" - `{}`: {}, {} nodes", axis.name, in_unit_words(&axis.unit), axis.nodes.len()))
-        .collect();
-    let doc = doc_lines(
-        &table.doc,
-        &format!("{}; a table whose nodes and values may be replaced.", unit_in_words(&table.unit)),
-    );
+        .map(|axis| format!(" - `{}`: {}, {} nodes", axis.name, in_unit_words(&axis.unit), axis.nodes.len()));
+    let axes: Vec<String> = axes.collect();
+    let sentence = format!("{}; a table whose nodes and values may be replaced.", unit_in_words(&table.unit));
+    let doc = doc_lines(&table.doc, &sentence);
     let title = format!(" Nodes and values of the table `{}`.", table.name);
-    let nodes_doc = " Nodes of each argument, increasing, in the argument's unit:";
     let values_doc = format!(" Values at the nodes, the last argument fastest; {}.", in_unit_words(&table.unit));
     Field {
         declaration: quote! { #(#[doc = #doc])* pub #ident: #kind },
-        default: quote! { #ident: #kind { nodes: (#(#nodes,)*), values: #values } },
-        hand_over: quote! {
-            #(#set_nodes)*
-            structure.tables[#index].values =
-                self.#ident.values #(#flatten)* .iter().map(|value| value * #factor).collect();
-        },
+        default: quote! { #ident: #kind { nodes: #nodes, values: #values } },
+        hand_over: hand_over_table(i, table, &ident),
         items: quote! {
             #[doc = #title]
             #[derive(Clone, Debug, PartialEq)]
             pub struct #kind {
-                #[doc = #nodes_doc]
-                #[doc = ""]
+                /// Nodes of each argument, increasing, in the argument's unit:
+                ///
                 #(#[doc = #axes])*
-                pub nodes: (#([f64; #lengths],)*),
+                pub nodes: #nodes_type,
                 #[doc = #values_doc]
-                pub values: #value_type,
+                pub values: #values_type,
             }
         },
+    }
+}
+
+/// The statements that hand a table's nodes and values to the runtime, in SI units.
+fn hand_over_table(i: usize, table: &Table, ident: &Ident) -> TokenStream {
+    let in_si = |unit: &Unit| (unit.factor != 1.0).then(|| float(unit.factor));
+    let index = Literal::usize_unsuffixed(i);
+    let nodes = table.axes.iter().enumerate().map(|(k, axis)| {
+        let k = Literal::usize_unsuffixed(k);
+        let place = if table.axes.len() > 1 {
+            quote! { .#k }
+        } else {
+            quote! {}
+        };
+        let converted = in_si(&axis.unit).map(|factor| quote! { .map(|node| node * #factor) });
+        quote! { structure.tables[#index].axes[#k].nodes = self.#ident.nodes #place #converted .to_vec(); }
+    });
+    let flatten = table.axes.iter().skip(1).map(|_| quote! { .as_flattened() });
+    let values = match in_si(&table.unit) {
+        Some(factor) => quote! { .iter().map(|value| value * #factor).collect() },
+        None => quote! { .to_vec() },
+    };
+    quote! {
+        #(#nodes)*
+        structure.tables[#index].values = self.#ident.values #(#flatten)* #values;
     }
 }
 
@@ -180,5 +197,26 @@ fn in_words(values: &[f64], array: bool) -> String {
         (false, _) => words.join(""),
         (true, false) => format!("({})", words.join(", ")),
         (true, true) => format!("({}, ...)", words.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_default_converts_back_to_its_si_value_bit_for_bit() {
+        let factors = [1.0, 1000.0, std::f64::consts::PI / 180.0, 0.3048, 1e-3, 1852.0 / 3600.0, 1e-9];
+        for factor in factors {
+            let unit = Unit { symbol: "u".into(), factor };
+            for i in 1..2000 {
+                for declared in [f64::from(i) * 0.01, -f64::from(i) / 7.0, f64::from(i) * 1e-12] {
+                    let si = declared * factor;
+                    let shown = in_unit(si, &unit);
+                    assert_eq!((shown * factor).to_bits(), si.to_bits(), "{declared} * {factor}");
+                    assert!(shown.to_string().len() <= declared.to_string().len(), "{shown} for {declared}");
+                }
+            }
+        }
     }
 }
