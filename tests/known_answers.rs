@@ -3,22 +3,22 @@
 use ntg::prelude::*;
 
 mod specs {
-    pub mod car {
+    pub(crate) mod car {
         ntg::ntg_file!("specs/kinematic_car.ntg");
     }
-    pub mod car_gauss {
+    pub(crate) mod car_gauss {
         ntg::ntg_file!("specs/kinematic_car_gauss.ntg");
     }
-    pub mod flight {
+    pub(crate) mod flight {
         ntg::ntg_file!("specs/low_observable.ntg");
     }
-    pub mod flight_gauss {
+    pub(crate) mod flight_gauss {
         ntg::ntg_file!("specs/low_observable_gauss.ntg");
     }
-    pub mod oscillator {
+    pub(crate) mod oscillator {
         ntg::ntg_file!("specs/van_der_pol.ntg");
     }
-    pub mod oscillator_gauss {
+    pub(crate) mod oscillator_gauss {
         ntg::ntg_file!("specs/van_der_pol_gauss.ntg");
     }
 }

@@ -33,7 +33,13 @@ impl Scalar for Hyper {
             Unary::Sinh => x.sinh(),
             Unary::Cosh => x.cosh(),
             Unary::Tanh => x.tanh(),
-            Unary::Abs => if x.re < 0.0 { -x } else { x },
+            Unary::Abs => {
+                if x.re < 0.0 {
+                    -x
+                } else {
+                    x
+                }
+            }
             Unary::Sign => HyperDual64::from(f64::unary(Unary::Sign, &x.re)),
             // The stable forms, so that no infinity comes between.
             Unary::Logistic if x.re >= 0.0 => one / (one + (-x).exp()),
@@ -53,8 +59,20 @@ impl Scalar for Hyper {
             Binary::Pow => (b * a.ln()).exp(),
             Binary::Atan2 => a.atan2(b),
             Binary::Hypot => (a * a + b * b).sqrt(),
-            Binary::Min => if a.re <= b.re { a } else { b },
-            Binary::Max => if a.re >= b.re { a } else { b },
+            Binary::Min => {
+                if a.re <= b.re {
+                    a
+                } else {
+                    b
+                }
+            }
+            Binary::Max => {
+                if a.re >= b.re {
+                    a
+                } else {
+                    b
+                }
+            }
             Binary::LessEq => HyperDual64::from(f64::from(u8::from(a.re <= b.re))),
         })
     }
@@ -118,7 +136,7 @@ impl Environment<Hyper> for At<'_> {
 
 /// Compares all first and second derivatives of a kernel in one lane; entries outside the patterns
 /// must be zero.
-pub fn compare(
+pub(crate) fn compare(
     body: &KernelBody,
     kernel: &Kernel,
     sample: &Sample,

@@ -1,9 +1,9 @@
 //! The optimisation problem of every spec, assembled from its elements, against a dense oracle of
 //! central differences.
 
+use ntg::prelude::{Settings, solve};
 use ntg::runtime::nlp::{Assembly, Evaluation, Nlp};
 use ntg::runtime::transcribe::Transcription;
-use ntg::prelude::{Settings, solve};
 
 use crate::inputs::close;
 use crate::specs;

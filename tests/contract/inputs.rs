@@ -4,10 +4,10 @@ use ntg::runtime::structure::{Call, Data, Kernel, Slot, Structure};
 
 /// Inputs and weights for several lanes.
 #[derive(Clone)]
-pub struct Sample {
-    pub lanes: usize,
-    pub inputs: Vec<f64>,
-    pub weights: Vec<f64>,
+pub(crate) struct Sample {
+    pub(crate) lanes: usize,
+    pub(crate) inputs: Vec<f64>,
+    pub(crate) weights: Vec<f64>,
 }
 
 /// A small generator of reproducible numbers in -1 .. 1 (xorshift64*, Vigna 2016).
@@ -26,7 +26,7 @@ impl Random {
 impl Sample {
     /// Inputs for one kernel: parameters have their values, flat outputs the size of some dozens
     /// of their units, times hundreds of seconds.
-    pub fn new(structure: &Structure, kernel: usize, lanes: usize, seed: u64) -> Self {
+    pub(crate) fn new(structure: &Structure, kernel: usize, lanes: usize, seed: u64) -> Self {
         let mut random = Random(0x9E37_79B9_7F4A_7C15 ^ (seed << 32) ^ kernel as u64);
         random.next();
         let shape = &structure.kernels[kernel];
@@ -65,7 +65,7 @@ impl Sample {
     }
 
     /// The inputs with one slot lowered and raised, and the distance between the two, lane by lane.
-    pub fn around(&self, slot: usize, step: f64) -> (Self, Self, Vec<f64>) {
+    pub(crate) fn around(&self, slot: usize, step: f64) -> (Self, Self, Vec<f64>) {
         let (mut low, mut high) = (self.clone(), self.clone());
         let mut distance = Vec::new();
         for lane in 0..self.lanes {
@@ -111,7 +111,7 @@ fn find(structure: &Structure, kernel: usize) -> Option<&Call> {
 }
 
 /// The derivative of the weighted sum of a kernel's rows with respect to one slot.
-pub fn weighted(kernel: &Kernel, jacobian: &[f64], sample: &Sample, slot: usize, lane: usize) -> f64 {
+pub(crate) fn weighted(kernel: &Kernel, jacobian: &[f64], sample: &Sample, slot: usize, lane: usize) -> f64 {
     let entries = kernel.jacobian.iter().enumerate().filter(|(_, (_, of))| *of == slot);
     entries
         .map(|(entry, (row, _))| sample.weights[row * sample.lanes + lane] * jacobian[entry * sample.lanes + lane])
@@ -121,7 +121,7 @@ pub fn weighted(kernel: &Kernel, jacobian: &[f64], sample: &Sample, slot: usize,
 /// Asserts that two numbers agree, relative to their size or absolutely. Points at which either is
 /// not finite are points outside the functions' domain.
 #[track_caller]
-pub fn close(wanted: f64, found: f64, relative: f64, absolute: f64, what: &str) {
+pub(crate) fn close(wanted: f64, found: f64, relative: f64, absolute: f64, what: &str) {
     if wanted.is_finite() && found.is_finite() {
         let error = (wanted - found).abs();
         let allowed = relative * wanted.abs().max(found.abs()) + absolute;

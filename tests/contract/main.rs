@@ -32,11 +32,8 @@ fn evaluate(problem: &dyn Problem, number: usize, kernel: &Kernel, sample: &Samp
         probes: column(kernel.probes.len()),
     };
     let point = Lanes { lanes: sample.lanes, inputs: &sample.inputs, weights: &sample.weights };
-    let out = Derivatives {
-        values: &mut results.values,
-        jacobian: &mut results.jacobian,
-        hessian: &mut results.hessian,
-    };
+    let out =
+        Derivatives { values: &mut results.values, jacobian: &mut results.jacobian, hessian: &mut results.hessian };
     problem.derivatives(number, point, tables, out);
     let mut values = column(kernel.rows);
     problem.values(number, sample.lanes, &sample.inputs, tables, &mut values);
@@ -88,7 +85,7 @@ fn derivatives_are_those_of_the_values_by_central_differences() {
                     let index = k * LANES + lane;
                     (high[index] - low[index]) / steps[lane]
                 };
-                for lane in 0..LANES {
+                for (lane, step) in steps.iter().enumerate() {
                     let mut wanted = vec![0.0; kernel.rows];
                     for (entry, (row, of)) in kernel.jacobian.iter().enumerate() {
                         if *of == slot {
@@ -97,7 +94,7 @@ fn derivatives_are_those_of_the_values_by_central_differences() {
                     }
                     for (row, wanted) in wanted.iter().enumerate() {
                         let found = slope(&low.values, &high.values, row, lane);
-                        let size = middle.values[row * LANES + lane].abs() / steps[lane].abs() * 1e-10;
+                        let size = middle.values[row * LANES + lane].abs() / step.abs() * 1e-10;
                         inputs::close(*wanted, found, 1e-5, size * 1e2, &format!("{}: d{row}/d{slot}", spec.name));
                     }
                     let gradient = |r: &Results, of: usize| inputs::weighted(kernel, &r.jacobian, &sample, of, lane);
@@ -105,8 +102,8 @@ fn derivatives_are_those_of_the_values_by_central_differences() {
                         if *i != slot {
                             continue;
                         }
-                        let found = (gradient(&high, *j) - gradient(&low, *j)) / steps[lane];
-                        let size = gradient(&middle, *j).abs() / steps[lane].abs() * 1e-8;
+                        let found = (gradient(&high, *j) - gradient(&low, *j)) / step;
+                        let size = gradient(&middle, *j).abs() / step.abs() * 1e-8;
                         let what = format!("{}: {} d2/d{i} d{j}", spec.name, kernel.name);
                         inputs::close(middle.hessian[entry * LANES + lane], found, 1e-5, size, &what);
                     }

@@ -9,12 +9,12 @@ use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 
 /// One spec, compiled both ways.
-pub struct Spec {
-    pub name: &'static str,
-    pub generated: Box<dyn Problem>,
-    pub program: Program,
-    pub interpreted: Interpreted,
-    pub tables: Vec<Table>,
+pub(crate) struct Spec {
+    pub(crate) name: &'static str,
+    pub(crate) generated: Box<dyn Problem>,
+    pub(crate) program: Program,
+    pub(crate) interpreted: Interpreted,
+    pub(crate) tables: Vec<Table>,
 }
 
 /// Declares a module of generated code for each spec, and the list of them all.
@@ -26,7 +26,7 @@ macro_rules! specs {
         )+
         const NAMES: &[&str] = &[$(stringify!($module)),+];
         /// All specs of the folder `specs/`.
-        pub fn all() -> Vec<Spec> {
+        pub(crate) fn all() -> Vec<Spec> {
             vec![$(spec(stringify!($module), Box::new($module::$problem::default()))),+]
         }
     };
@@ -42,7 +42,7 @@ specs! {
 }
 
 /// The text of a shipped spec.
-pub fn source(name: &str) -> Source {
+pub(crate) fn source(name: &str) -> Source {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs").join(name).with_extension("ntg");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     Source::new(format!("specs/{name}.ntg"), text)
@@ -59,11 +59,11 @@ impl ntg_compiler::model::Loader for BesideSpecs {
 
 fn spec(name: &'static str, generated: Box<dyn Problem>) -> Spec {
     let source = source(name);
-    let compiled = ntg_compiler::compile(&source, &BesideSpecs).unwrap_or_else(|found| {
-        panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n"))
-    });
+    let compiled = ntg_compiler::compile(&source, &BesideSpecs)
+        .unwrap_or_else(|found| panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n")));
     let interpreted = Interpreted::new(&compiled.program);
-    let tables = ntg::runtime::transcribe::interpolants(&interpreted.structure().tables).expect("the tables of shipped specs");
+    let tables =
+        ntg::runtime::transcribe::interpolants(&interpreted.structure().tables).expect("the tables of shipped specs");
     Spec { name, generated, program: compiled.program, interpreted, tables }
 }
 

@@ -163,7 +163,7 @@ impl Model {
                 }
             }
         }
-        let tables = tables::interpolants(&structure.tables)?;
+        let tables = interpolants(&structure.tables)?;
         let mut layout = Layout::new(&structure)?;
         times::fix(problem, &structure, &tables, &mut layout)?;
         let clock = Clock::fixed(&layout);
