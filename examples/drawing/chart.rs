@@ -116,16 +116,10 @@ pub(crate) fn limits(chart: &mut Chart<'_, RangedCoordf64>, across: Range<f64>, 
     for &(y, name) in limits {
         let ends = [(across.start, y), (across.end, y)];
         chart.draw_series(DashedLineSeries::new(ends, 5, 7, INK.stroke_width(3)))?;
-        let right = (across.end - 0.005 * (across.end - across.start), y);
-        let label = Text::new(name.to_owned(), (0, -28), style.pos(anchor_right()));
-        chart.draw_series([EmptyElement::at(right) + label])?;
+        let label = Text::new(name.to_owned(), (10, -28), style.clone());
+        chart.draw_series([EmptyElement::at((across.start, y)) + label])?;
     }
     Ok(())
-}
-
-fn anchor_right() -> plotters::style::text_anchor::Pos {
-    use plotters::style::text_anchor::{HPos, Pos, VPos};
-    Pos::new(HPos::Right, VPos::Top)
 }
 
 /// Draws the legend in a strip of 44 pixels a row at the top; gives the area beneath it.

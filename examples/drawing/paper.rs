@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use ntg_splines::{Axis, Extrapolation, Method, Table};
+use ntg::runtime::splines::{Axis, Extrapolation, Method, Table};
 use plotters::prelude::*;
 
 use super::chart::{Axes, Line, Stroke, axes, draw, legend};
@@ -85,16 +85,16 @@ fn path_dependence(path: &Path) -> Drawn {
         "Figure 4: what is seen depends on the path, not only on the place",
         "Left: two routes to the radar at (0, 0). Right: each turn across 30 degrees of azimuth is a jump. (Way-points are ours.)",
     )?;
-    let looks = [("straight in", BLUE, Stroke::Solid), ("in segments", VERMILION, Stroke::Dashed)];
-    let routes = [&STRAIGHT[..], &SEGMENTS[..]];
-    let line = |(look, points): (&(&str, RGBColor, Stroke), Vec<(f64, f64)>)| Line::new(look.0, look.1, look.2, points);
-    let tracks: Vec<Line> = looks.iter().zip(routes.map(<[_]>::to_vec)).map(line).collect();
-    let seen: Vec<Line> = looks.iter().zip(routes.map(detection_along)).map(line).collect();
+    let names = [("straight in", BLUE, Stroke::Solid), ("in segments", VERMILION, Stroke::Dashed)];
+    let [straight, segments] = names.map(|(name, colour, stroke)| Line::new(name, colour, stroke, vec![]));
+    let along = |look: &Line, points: Vec<(f64, f64)>| Line { points, ..look.clone() };
+    let tracks = [along(&straight, STRAIGHT.to_vec()), along(&segments, SEGMENTS.to_vec())];
+    let seen = [along(&straight, detection_along(&STRAIGHT)), along(&segments, detection_along(&SEGMENTS))];
     let (left, right) = legend(&area, &tracks)?.split_horizontally(700);
     let ground = Axes::new(("east [km]", -110.0..10.0), ("north [km]", -110.0..10.0));
     draw(&mut axes(&left, ground)?, &tracks)?;
-    let along = Axes::new(("distance flown [km]", 0.0..190.0), ("probability of detection", 0.0..1.05));
-    draw(&mut axes(&right, along)?, &seen)
+    let flown = Axes::new(("distance flown [km]", 0.0..190.0), ("probability of detection", 0.0..1.05));
+    draw(&mut axes(&right, flown)?, &seen)
 }
 
 /// Distance flown and probability of detection along a polygon, every 0.5 km.
