@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "{:<26} {:>6} {:>5}  {:>10}  {:>7}  objectives",
         "from 50 random routes", "solved", "best", "iterations", "ms each"
     );
-    println!("{:<26} {:>6} {:>5}  {:>10}  {:>7}  (how often)", "", "", "", "median max", "");
+    println!("{:<26} {:>6} {:>5}  {:>10}  {:>7}  (how often|broken)", "", "", "", "median max", "");
     table("no limit", &AtOnce(&unlimited), 128.252905291)?;
     table("limit 4.2, at once", &AtOnce(&limited), 130.907227498)?;
     table("limit 4.2, continuation", &limited, 130.907227498)

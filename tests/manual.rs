@@ -1,0 +1,106 @@
+//! What the documents show is what the compiler takes.
+//!
+//! Every block of docs/language.md that is marked `ntg` compiles; one marked `ntg,error=E020` is
+//! refused with that code. The README's spec is a file under specs/, word for word.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ntg_compiler::compile;
+use ntg_compiler::diagnostic::Code;
+use ntg_compiler::model::Loader;
+use ntg_compiler::source::Source;
+
+struct NoFiles;
+
+impl Loader for NoFiles {
+    fn load(&self, path: &str) -> Result<String, String> {
+        Err(format!("the manual's specs have no file `{path}`"))
+    }
+}
+
+/// A fenced block: what stands behind the fence, and its text.
+struct Block {
+    marks: String,
+    text: String,
+}
+
+fn blocks(document: &str) -> Vec<Block> {
+    let mut found: Vec<Block> = vec![];
+    let mut open = false;
+    for line in document.lines() {
+        match (line.strip_prefix("```"), open) {
+            (Some(marks), false) => found.push(Block { marks: marks.to_owned(), text: String::new() }),
+            (None, true) => {
+                let block = found.last_mut().expect("a block was opened");
+                block.text.push_str(line);
+                block.text.push('\n');
+            }
+            _ => {}
+        }
+        open ^= line.starts_with("```");
+    }
+    assert!(!open, "a fence is not closed");
+    found.retain(|block| block.marks == "ntg" || block.marks.starts_with("ntg,"));
+    found
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
+}
+
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The codes of everything that is wrong with a spec, and how a person would read it.
+fn errors(text: &str) -> (Vec<Code>, String) {
+    let source = Source::new("manual.ntg", text);
+    match compile(&source, &NoFiles) {
+        Ok(_) => (vec![], String::new()),
+        Err(found) => {
+            let words: Vec<String> = found.iter().map(|finding| finding.render(&source)).collect();
+            (found.iter().map(|finding| finding.code).collect(), words.join("\n"))
+        }
+    }
+}
+
+#[test]
+fn every_spec_of_the_manual_compiles_or_fails_as_it_says() {
+    let blocks = blocks(&read("docs/language.md"));
+    assert!(blocks.len() > 10, "only {} specs were found", blocks.len());
+    for block in blocks {
+        let (codes, words) = errors(&block.text);
+        match block.marks.strip_prefix("ntg,error=") {
+            None => assert!(codes.is_empty(), "{}\n{words}", block.text),
+            Some(expected) => {
+                assert_eq!(
+                    codes.iter().map(|code| code.text()).collect::<Vec<_>>(),
+                    [expected],
+                    "{}\n{words}",
+                    block.text
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_readme_shows_a_spec_of_the_repository() {
+    let blocks = blocks(&read("README.md"));
+    assert_eq!(blocks.len(), 1);
+    assert_eq!(blocks[0].text, read("specs/van_der_pol.ntg"));
+}
+
+#[test]
+fn the_pictures_that_documents_show_exist() {
+    for (document, folder) in [("README.md", ""), ("docs/language.md", "docs/")] {
+        let text = read(document);
+        for after in text.split("](").skip(1) {
+            let target = after.split([')', '#']).next().unwrap_or_default();
+            if target.ends_with(".svg") {
+                assert!(root().join(format!("{folder}{target}")).is_file(), "{document} shows {target}");
+            }
+        }
+    }
+}
