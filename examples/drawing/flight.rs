@@ -90,7 +90,7 @@ fn time_ticks(chart: &mut Chart<'_, RangedCoordf64>, flight: &Flight) -> Drawn {
 }
 
 /// Nearer to the radar than this, km, even the nose shows more than the limit of 4.2
-/// (docs/maths.md, section 10.3).
+/// (`f_in` of docs/maths.md, equation 10.2, at an elevation of 59.9 degrees and 12 km up).
 const TOO_NEAR: f64 = 7.0;
 
 /// Start, target circle of 1 km, the radar, and where it must not be approached.
