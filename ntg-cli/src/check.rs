@@ -8,7 +8,7 @@ pub(crate) fn run(arguments: &arguments::Check) -> Exit {
         match files::compile(spec) {
             Some((_, compiled)) => {
                 let structure = &compiled.program.structure;
-                println!("{}: `{}` is well formed", spec.display(), structure.name);
+                files::print(&format!("{}: `{}` is well formed", spec.display(), structure.name));
             }
             None => exit = Exit::Bad,
         }

@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &arguments::Expand) -> Exit {
 fn rust(program: &Program) -> Exit {
     match syn::parse2(codegen::generate(program)) {
         Ok(file) => {
-            print!("{}", prettyplease::unparse(&file));
+            files::print(prettyplease::unparse(&file).trim_end());
             Exit::Done
         }
         Err(error) => {
@@ -32,7 +32,7 @@ fn structure(program: &Program) -> Exit {
     let problem = Interpreted::new(program);
     match ntg_runtime::transcribe::Transcription::new(&problem) {
         Ok(transcription) => {
-            print!("{}", picture(program, &transcription));
+            files::print(picture(program, &transcription).trim_end());
             Exit::Done
         }
         Err(error) => {

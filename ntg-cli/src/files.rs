@@ -1,6 +1,6 @@
 //! Reads specs and the tables they name; shows findings.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use ntg_compiler::Compiled;
@@ -51,6 +51,11 @@ pub(crate) fn compile(path: &Path) -> Option<(Source, Compiled)> {
             None
         }
     }
+}
+
+/// Prints a line to standard output. A reader that has gone away, as `head` does, is no error.
+pub(crate) fn print(text: &str) {
+    let _ = writeln!(std::io::stdout(), "{text}");
 }
 
 fn show(source: &Source, findings: &[Diagnostic]) {

@@ -55,8 +55,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
 
     let solved = Solved { problem: &problem, report: &report, samples: arguments.samples as usize, compile_seconds };
     match arguments.format {
-        Format::Text => text::print(&solved),
-        Format::Json => json::print(&solved),
+        Format::Text => files::print(&text::document(&solved)),
+        Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
         save::write(path, arguments.force, &problem, &report)?;

@@ -7,11 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::Solved;
 
-pub(super) fn print(solved: &Solved<'_>) {
-    println!("{:#}", document(solved));
-}
-
-fn document(solved: &Solved<'_>) -> Value {
+pub(super) fn document(solved: &Solved<'_>) -> Value {
     let report = solved.report;
     let solution = &report.solution;
     json!({

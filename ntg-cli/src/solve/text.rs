@@ -10,31 +10,31 @@ const MOST_ROWS: usize = 21;
 /// How wide a column is at least.
 const LEAST_WIDTH: usize = 11;
 
-pub(super) fn print(solved: &Solved<'_>) {
-    println!("{}", solved.report);
-    println!();
+pub(super) fn document(solved: &Solved<'_>) -> String {
+    let mut lines = vec![solved.report.to_string(), String::new()];
     let problem: &dyn Problem = solved.problem;
     let solution = &solved.report.solution;
     let trajectories = solution.trajectories();
     let signals = solution.signals(problem);
     for signal in signals.iter().filter(|s| s.is_constant()) {
-        println!("  {} = {}{}", signal.name(), number(signal.at(0.0)), spaced(signal.unit()));
+        lines.push(format!("  {} = {}{}", signal.name(), number(signal.at(0.0)), spaced(signal.unit())));
     }
 
     let mut heads = vec!["t [s]".to_owned()];
     heads.extend(trajectories.iter().map(|t| head(t.name(), t.unit())));
     heads.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| head(s.name(), s.unit())));
-    println!("{}", heads.iter().map(|h| format!("{h:>w$}", w = width(h))).collect::<Vec<_>>().join(" "));
+    lines.push(heads.iter().map(|h| format!("{h:>w$}", w = width(h))).collect::<Vec<_>>().join(" "));
     for t in solution.times(solved.samples.min(MOST_ROWS)) {
         let mut row = vec![t];
         row.extend(trajectories.iter().map(|trajectory| trajectory.at(t)));
         row.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| s.at(t)));
         let cells = row.iter().zip(&heads).map(|(value, head)| format!("{:>w$}", number(*value), w = width(head)));
-        println!("{}", cells.collect::<Vec<_>>().join(" "));
+        lines.push(cells.collect::<Vec<_>>().join(" "));
     }
     if solved.samples > MOST_ROWS {
-        println!("(all {} samples: --format json)", solved.samples);
+        lines.push(format!("(all {} samples: --format json)", solved.samples));
     }
+    lines.join("\n")
 }
 
 fn head(name: &str, unit: &Unit) -> String {

@@ -26,12 +26,7 @@ pub(super) struct Formulas {
 
 /// Shape and body of the kernel, and where its probes stand. The shape's name and the body's
 /// names and labels are the caller's.
-pub(super) fn derive(
-    formulas: Formulas,
-    slots: usize,
-    data: usize,
-    mode: Mode,
-) -> (Kernel, KernelBody, Vec<Span>) {
+pub(super) fn derive(formulas: Formulas, slots: usize, data: usize, mode: Mode) -> (Kernel, KernelBody, Vec<Span>) {
     let Formulas { mut dag, values, origin } = formulas;
     let (inputs, rows) = (slots + data, values.len());
     let variables = ids(0, slots);

@@ -136,6 +136,12 @@ fn finish(nlp: &Transcription, mut x: Vec<f64>) -> Result<Vec<f64>, SetupError> 
     const NESTING: usize = 3;
     clamp(nlp, &mut x);
     let layout = &nlp.model.layout;
+    // Not 0, at which a quotient by an integral has no value; the rows are linear in these variables, so any
+    // other number leads to the sum.
+    for (first, members) in layout.integral_first.iter().zip(&layout.integral_members) {
+        let own = &mut x[*first as usize..][..members.len()];
+        own.iter_mut().filter(|value| **value == 0.0).for_each(|value| *value = 1.0);
+    }
     let has_integrals = layout.integral_members.iter().any(|members| !members.is_empty());
     for _ in 0..if has_integrals { NESTING } else { 0 } {
         let (mut work, mut out) = nlp.workspace();
