@@ -162,7 +162,7 @@ fn families_stay_families_and_add_up() {
                 output x[1 .. N] [m]: spline(order = 4, intervals = 2);
                 param goal[N] = (1, 2, 3) [m];
                 let effort = sum(i in 1 .. N, der(x[i], 2)^2) / 1 [m^2/s^4];
-                minimize sqrt(1 + integral(effort) / 1 [s]);
+                minimize integral(effort);
                 initial { for i in 1 .. N { x[i] == 0;        der(x[i]) == 0; } }
                 final   { for i in 1 .. N { x[i] == goal[i];  der(x[i]) == 0; } }
             }
@@ -171,7 +171,7 @@ fn families_stay_families_and_add_up() {
     // Each moves rest to rest with the least effort, 12 d^2 / T^3.
     let report = solve(&inline::Fleet::default(), &Settings::default()).expect("it can be set up");
     assert!(report.is_solved(), "{report}");
-    close(report.objective, (1.0 + 12.0_f64 * (1.0 + 4.0 + 9.0) / 8.0).sqrt(), 1e-8);
+    close(report.objective, 12.0 * (1.0 + 4.0 + 9.0) / 8.0, 1e-8);
 }
 
 #[test]
