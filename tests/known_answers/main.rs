@@ -1,0 +1,11 @@
+//! Problems whose answers are known: on paper, published, or from independent solvers.
+//!
+//! A module holds one family of problems. Compiling a spec into a test costs seconds, so each
+//! shipped spec is generated code in one test at most; the others run it through the interpreter
+//! (`support::Shipped`), which agrees with it bit for bit (`tests/contract/`).
+
+mod car;
+mod constructs;
+mod flight;
+mod oscillator;
+mod support;

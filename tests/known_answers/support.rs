@@ -1,0 +1,79 @@
+//! Shipped specs without rustc, and what it means that a number is known.
+
+use std::path::{Path, PathBuf};
+
+use ntg::prelude::*;
+use ntg_compiler::model::Loader;
+use ntg_compiler::source::Source;
+use ntg_interp::Interpreted;
+
+/// Asserts that a number is the known one, to a relative error.
+#[track_caller]
+pub(crate) fn close(found: f64, known: f64, relative: f64) {
+    let error = (found / known - 1.0).abs();
+    assert!(error <= relative, "{found}, but {known} is known: relative error {error:e}");
+}
+
+/// A spec of the folder `specs/`, interpreted.
+pub(crate) struct Shipped(Interpreted);
+
+struct BesideSpecs;
+
+impl Loader for BesideSpecs {
+    fn load(&self, path: &str) -> Result<String, String> {
+        std::fs::read_to_string(folder().join(path)).map_err(|error| error.to_string())
+    }
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("specs")
+}
+
+impl Shipped {
+    /// The spec `specs/{name}.ntg`.
+    pub(crate) fn spec(name: &str) -> Self {
+        Self::edited(name, &[])
+    }
+
+    /// The spec with pieces of its text replaced: for constants, which no program can set.
+    pub(crate) fn edited(name: &str, edits: &[(&str, &str)]) -> Self {
+        let path = folder().join(name).with_extension("ntg");
+        let mut text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        for (old, new) in edits {
+            assert_eq!(text.matches(old).count(), 1, "`{old}` must stand once in specs/{name}.ntg");
+            text = text.replace(old, new);
+        }
+        let source = Source::new(format!("specs/{name}.ntg"), text);
+        let compiled = ntg_compiler::compile(&source, &BesideSpecs);
+        let compiled = compiled.unwrap_or_else(|found| {
+            panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n"))
+        });
+        Self(Interpreted::new(&compiled.program))
+    }
+
+    /// Sets a parameter, in its declared unit.
+    #[track_caller]
+    pub(crate) fn with(mut self, name: &str, values: &[f64]) -> Self {
+        let structure = self.0.structure();
+        let parameter = structure.parameters.iter().find(|p| p.name == name);
+        let factor = parameter.unwrap_or_else(|| panic!("there is no parameter {name}")).unit.factor;
+        let si: Vec<f64> = values.iter().map(|value| value * factor).collect();
+        self.0.set(name, &si).unwrap_or_else(|error| panic!("{error}"));
+        self
+    }
+
+    /// Solves from a guess; the solve must succeed.
+    #[track_caller]
+    pub(crate) fn solve_from(&self, guess: &Guess) -> Report {
+        let report = solve_from(&self.0, guess, &Settings::default());
+        let report = report.unwrap_or_else(|error| panic!("{error}"));
+        assert!(report.is_solved(), "{report}");
+        report
+    }
+
+    /// Solves from the spec's own guess; the solve must succeed.
+    #[track_caller]
+    pub(crate) fn solve(&self) -> Report {
+        self.solve_from(&Guess::new())
+    }
+}
