@@ -24,6 +24,7 @@ pub(crate) enum Command {
     ///   ntg solve specs/van_der_pol.ntg
     ///   ntg solve specs/low_observable.ntg --set sig_max=4.5 --format json
     ///   ntg solve mission.ntg --set "v_max=250 [m/s]" --set start_x=-100,-97 --save run.json
+    ///   ntg solve specs/low_observable.ntg --route "x, y: -100, -100; 0, -100; 5, -15 [km]"
     #[command(verbatim_doc_comment)]
     Solve(Solve),
 }
@@ -69,6 +70,10 @@ pub(crate) struct Solve {
     /// Start from a saved solution.
     #[arg(long, value_name = "FILE")]
     pub(crate) guess: Option<PathBuf>,
+    /// Start from a coarse route, flown at constant speed: outputs, then way-points, numbers in
+    /// declared units or with a unit at the end. May be given several times, for several vehicles.
+    #[arg(long, value_name = "OUTPUTS: POINT; POINT ...", allow_hyphen_values = true)]
+    pub(crate) route: Vec<String>,
     /// Save the solution, for `--guess` and other programs. An existing file is kept unless
     /// `--force` is given.
     #[arg(long, value_name = "FILE")]

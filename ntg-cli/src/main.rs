@@ -1,15 +1,19 @@
 //! The `ntg` command: one file a verb, no mathematics.
 //!
-//! Exit status: 0 done (for `solve`: solved), 1 not solved, 2 bad spec or arguments.
+//! Exit status: 0 done (for `solve`: solved), 1 not solved, 2 bad spec or arguments, 130 stopped by
+//! Ctrl-C.
 
 mod arguments;
 mod check;
 mod expand;
 mod files;
 mod guess;
+mod route;
 mod save;
 mod solve;
 mod values;
+mod watch;
+mod write;
 
 use std::process::ExitCode;
 
@@ -23,6 +27,20 @@ enum Exit {
     Done,
     NotSolved,
     Bad,
+    Interrupted,
+}
+
+impl Exit {
+    /// The number that the shell sees.
+    fn status(self) -> i32 {
+        match self {
+            Self::Done => 0,
+            Self::NotSolved => 1,
+            Self::Bad => 2,
+            // What shells say of a command that ended by SIGINT.
+            Self::Interrupted => 130,
+        }
+    }
 }
 
 fn main() -> ExitCode {
@@ -31,9 +49,5 @@ fn main() -> ExitCode {
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
     };
-    match exit {
-        Exit::Done => ExitCode::SUCCESS,
-        Exit::NotSolved => ExitCode::from(1),
-        Exit::Bad => ExitCode::from(2),
-    }
+    ExitCode::from(u8::try_from(exit.status()).unwrap_or(u8::MAX))
 }

@@ -1,7 +1,5 @@
 //! Saved solutions: JSON with a version, described in docs/solution-format.md.
 
-use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 use ntg_interp::Interpreted;
@@ -17,25 +15,9 @@ pub(crate) const VERSION: u64 = 1;
 /// Samples of each output, for problems with other splines.
 const SAMPLES: usize = 401;
 
-/// Refuses a file that exists, before anything is computed.
-pub(crate) fn may_write(path: &Path, force: bool) -> Result<(), String> {
-    if path.exists() && !force {
-        return Err(format!("`{}` exists; give --force to replace it, or another name", path.display()));
-    }
-    Ok(())
-}
-
-/// Writes the solution beside its place first and then moves it there, so that nothing is ever
-/// half written.
+/// Writes the solution.
 pub(crate) fn write(path: &Path, force: bool, problem: &Interpreted, report: &Report) -> Result<(), String> {
-    may_write(path, force)?;
-    let failed = |error: std::io::Error| format!("cannot write `{}`: {error}", path.display());
-    let mut name = path.file_name().ok_or_else(|| format!("`{}` is no file name", path.display()))?.to_owned();
-    name.push(".partial");
-    let partial = path.with_file_name(name);
-    let mut file = fs::File::create(&partial).map_err(failed)?;
-    writeln!(file, "{:#}", document(problem, report)).and_then(|()| file.sync_all()).map_err(failed)?;
-    fs::rename(&partial, path).map_err(failed)
+    crate::write::whole(path, force, format!("{:#}\n", document(problem, report)).as_bytes())
 }
 
 fn document(problem: &Interpreted, report: &Report) -> Value {

@@ -6,11 +6,13 @@ mod text;
 use std::time::{Duration, Instant};
 
 use ntg_interp::Interpreted;
+use ntg_runtime::guess::Guess;
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::Settings;
 
 use crate::arguments::{self, Format};
-use crate::{Exit, files, guess, save, values};
+use crate::watch::{Interrupt, Watch};
+use crate::{Exit, files, guess, route, save, values, write};
 
 pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
     match solve(arguments) {
@@ -35,23 +37,27 @@ struct Solved<'a> {
 /// The error is what to say; empty where all has been said.
 fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let began = Instant::now();
-    let settings = settings(arguments)?;
+    let mut settings = settings(arguments)?;
     if let Some(path) = &arguments.save {
-        save::may_write(path, arguments.force)?;
+        write::may_write(path, arguments.force)?;
     }
     let Some((_, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
     let mut problem = Interpreted::new(&compiled.program);
     for assignment in &arguments.set {
         values::set(&mut problem, assignment)?;
     }
-    let guess = arguments.guess.as_deref().map(|path| guess::read(path, &problem)).transpose()?;
+    let guess = first_guess(arguments, &problem)?;
     let compile_seconds = began.elapsed().as_secs_f64();
 
+    let interrupt = Interrupt::install();
+    let watch = Watch::new(&interrupt);
+    watch.over(&mut settings);
     let report = match &guess {
         Some(guess) => ntg_runtime::solve_from(&problem, guess, &settings),
         None => ntg_runtime::solve(&problem, &settings),
-    }
-    .map_err(|error| format!("{}: {error}", arguments.spec.display()))?;
+    };
+    watch.end();
+    let report = report.map_err(|error| format!("{}: {error}", arguments.spec.display()))?;
 
     let solved = Solved { problem: &problem, report: &report, samples: arguments.samples as usize, compile_seconds };
     match arguments.format {
@@ -61,7 +67,20 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     if let Some(path) = &arguments.save {
         save::write(path, arguments.force, &problem, &report)?;
     }
-    Ok(if report.is_solved() { Exit::Done } else { Exit::NotSolved })
+    Ok(match report.is_solved() {
+        true => Exit::Done,
+        false if interrupt.is_pressed() => Exit::Interrupted,
+        false => Exit::NotSolved,
+    })
+}
+
+/// What the command line says about the start; none for the spec's own guess.
+fn first_guess(arguments: &arguments::Solve, problem: &Interpreted) -> Result<Option<Guess>, String> {
+    let mut guess = arguments.guess.as_deref().map(|path| guess::read(path, problem)).transpose()?;
+    for text in &arguments.route {
+        guess = Some(route::add(guess.unwrap_or_default(), problem, text)?);
+    }
+    Ok(guess)
 }
 
 fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {

@@ -59,7 +59,13 @@ impl Guess {
     /// Outputs along a polygon, at constant speed over the agent's whole time, ends exact.
     pub fn route<const N: usize>(self, outputs: &[&str; N], points: &[[f64; N]]) -> Self {
         let outputs = outputs.iter().map(|name| (*name).to_owned()).collect();
-        self.and(Statement::Route { outputs, points: points.iter().map(|p| p.to_vec()).collect() })
+        self.polygon(outputs, points.iter().map(|p| p.to_vec()).collect())
+    }
+
+    /// As [`Guess::route`], for outputs that are known only when the program runs. A point with
+    /// another number of values than there are outputs is refused when the solve begins.
+    pub fn polygon(self, outputs: Vec<String>, points: Vec<Vec<f64>>) -> Self {
+        self.and(Statement::Route { outputs, points })
     }
 
     /// An output as a function of scaled time: of the agent's whole time, or of one phase where

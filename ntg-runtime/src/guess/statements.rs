@@ -163,6 +163,11 @@ impl<'a> Statements<'a> {
                     if points.iter().flatten().any(|v| !v.is_finite()) {
                         return Err(SetupError::Guess { message: "a way-point of the route is not finite".into() });
                     }
+                    if let Some(point) = points.iter().find(|point| point.len() != outputs.len()) {
+                        let (wanted, got) = (outputs.len(), point.len());
+                        let message = format!("a way-point of the route has {got} values for {wanted} outputs");
+                        return Err(SetupError::Guess { message });
+                    }
                     let Some(route) = Route::new(points.clone()).map(Rc::new) else { continue };
                     for (axis, output) in outputs.iter().enumerate() {
                         self.named(output, &mut curves, |unit| {

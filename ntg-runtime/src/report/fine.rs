@@ -19,6 +19,10 @@ pub(super) struct Checked {
     pub(super) point: Point,
     pub(super) value: f64,
     pub(super) bounds: (f64, f64),
+    /// The group of the structure that computes it.
+    pub(super) group: usize,
+    /// The indices of the loops around it.
+    pub(super) indices: Vec<i64>,
 }
 
 /// The problem on the finer grid.
@@ -53,7 +57,7 @@ impl Fine {
                 Row::Constraint { .. } | Row::Integral { .. } => {}
             })?;
         }
-        for group in &structure.groups {
+        for group in 0..structure.groups.len() {
             fine.check(nlp, group, &x, samples, &parts)?;
         }
         Ok(fine)
@@ -62,11 +66,12 @@ impl Fine {
     fn check(
         &mut self,
         nlp: &Transcription,
-        group: &Group,
+        index: usize,
         x: &[f64],
         samples: usize,
         parts: &BTreeMap<Member, f64>,
     ) -> Result<(), SetupError> {
+        let group = &nlp.model.structure.groups[index];
         if !group.rows.iter().any(|row| matches!(row, Row::Constraint { .. })) {
             return Ok(());
         }
@@ -82,12 +87,14 @@ impl Fine {
                 }
                 for (row, meaning) in group.rows.iter().enumerate() {
                     let Row::Constraint { constraint, .. } = meaning else { continue };
+                    let indices = site.indices.clone();
                     let mut value = work.node.values[row * batch.sites.len() + element];
                     if site.point.phase.is_none() {
                         value += parts.get(&(*constraint, site.indices.clone())).copied().unwrap_or(0.0);
                     }
                     let (constraint, point) = (*constraint, site.point);
-                    self.checked.push(Checked { constraint, point, value, bounds: bounds.1[row] });
+                    let bounds = bounds.1[row];
+                    self.checked.push(Checked { constraint, point, value, bounds, group: index, indices });
                 }
             }
         }

@@ -8,6 +8,9 @@ mod cost;
 mod display;
 mod fine;
 mod multipliers;
+mod traces;
+
+pub use traces::Trace;
 
 use crate::settings::Settings;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};

@@ -48,12 +48,12 @@ impl Solution {
 }
 
 /// From SI and minimisation to the user's units and sense.
-fn sense(structure: &Structure, unit: f64) -> f64 {
+pub(super) fn sense(structure: &Structure, unit: f64) -> f64 {
     let sign = if structure.maximize { -1.0 } else { 1.0 };
     sign * unit / structure.objective_unit.factor
 }
 
-fn multiplier(layout: &Layout, x: &[f64], info: &RowInfo, value: f64) -> Multiplier {
+pub(super) fn multiplier(layout: &Layout, x: &[f64], info: &RowInfo, value: f64) -> Multiplier {
     let Some(phase) = info.point.phase else { return Multiplier { value, density: false, time: None } };
     let duration = layout.duration(phase, x);
     let time = Some(layout.start(phase, x) + info.point.tau * duration);

@@ -1,0 +1,116 @@
+//! Every member of every constraint over time, with its bounds and multipliers: what plots and
+//! reports show.
+
+use super::fine::{Checked, Fine};
+use super::multipliers;
+use crate::problem::Problem;
+use crate::solution::{Inner, Solution};
+use crate::transcribe::points::Point;
+use crate::transcribe::rows::RowKind;
+use crate::transcribe::{SetupError, Transcription, names};
+use std::collections::BTreeMap;
+
+/// One member of a constraint in one phase.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// Index into `Structure::constraints` and `Report::constraints`.
+    pub constraint: usize,
+    /// The phase's path; empty without one.
+    pub phase: String,
+    /// The indices of the loops around it, without those of its agent and phase.
+    pub indices: Vec<i64>,
+    /// Mission time in seconds and value in the constraint's unit, by increasing time; both
+    /// one-sided values where it jumps. The time is NaN for a constraint at no point.
+    pub points: Vec<(f64, f64)>,
+    /// Lower bound in the constraint's unit; minus infinity for none.
+    pub lower: f64,
+    /// Upper bound in the constraint's unit; infinity for none.
+    pub upper: f64,
+    /// Mission time and multiplier `dJ*/d(bound)` at the points of the transcription; the time is
+    /// NaN for a constraint at no point.
+    pub multipliers: Vec<(f64, f64)>,
+    /// Whether the multipliers are densities over time (docs/maths.md, equation 9.4).
+    pub density: bool,
+}
+
+/// Constraint, phase member and all loop indices.
+type Key = (usize, Option<usize>, Vec<i64>);
+
+impl Solution {
+    /// Every member of every constraint over time, in the order of the spec; `problem` must be
+    /// the one that was solved. There are `samples` stretches for each point of the transcription.
+    ///
+    /// # Errors
+    /// [`SetupError`], only if `problem` is another one.
+    pub fn traces(&self, problem: &dyn Problem, samples: usize) -> Result<Vec<Trace>, SetupError> {
+        let inner = &self.inner;
+        let nlp = Transcription::with(problem, inner.model.structure.clone())?;
+        let fine = Fine::new(&nlp, &inner.x, samples.max(1))?;
+        let mut sets: BTreeMap<(Key, usize), Vec<&Checked>> = BTreeMap::new();
+        for checked in &fine.checked {
+            let key = key(checked.constraint, checked.point, &checked.indices);
+            sets.entry((key, checked.group)).or_default().push(checked);
+        }
+        // A constraint that stands in several point sets (Gauss points and breakpoints) is shown
+        // by the finest.
+        let mut found: BTreeMap<Key, Trace> = BTreeMap::new();
+        for ((key, _), set) in sets {
+            let trace = trace(inner, &set);
+            if found.get(&key).is_none_or(|held| held.points.len() < trace.points.len()) {
+                found.insert(key, trace);
+            }
+        }
+        for (info, raw) in inner.rows.iter().zip(&inner.row_multipliers) {
+            let RowKind::Constraint(constraint) = info.kind else { continue };
+            let Some(trace) = found.get_mut(&key(constraint, info.point, &info.indices)) else { continue };
+            let sense = multipliers::sense(&inner.model.structure, unit(inner, constraint));
+            let shown = multipliers::multiplier(&inner.model.layout, &inner.x, info, sense * raw);
+            // Beside Gauss points stand breakpoints without weights, whose multipliers are no
+            // densities: they are not drawn with the others.
+            let comparable = trace.multipliers.is_empty() || trace.density == shown.density;
+            if shown.density && !trace.density {
+                trace.multipliers.clear();
+                trace.density = true;
+            }
+            if comparable || trace.multipliers.is_empty() {
+                trace.multipliers.push((shown.time.unwrap_or(f64::NAN), shown.value));
+            }
+        }
+        let mut traces: Vec<Trace> = found.into_values().collect();
+        for trace in &mut traces {
+            trace.multipliers.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        Ok(traces)
+    }
+}
+
+fn key(constraint: usize, point: Point, indices: &[i64]) -> Key {
+    (constraint, point.phase, indices.to_vec())
+}
+
+fn unit(inner: &Inner, constraint: usize) -> f64 {
+    inner.model.structure.constraints[constraint].unit.factor
+}
+
+/// The trace of one member from its checked values, without multipliers.
+fn trace(inner: &Inner, set: &[&Checked]) -> Trace {
+    let (structure, layout, x) = (&inner.model.structure, &inner.model.layout, &inner.x);
+    let first = set[0];
+    let factor = unit(inner, first.constraint);
+    let phase = first.point.phase;
+    let around = phase.map_or(0, |phase| {
+        let member = &layout.phases[phase];
+        usize::from(layout.agents[member.agent].index.is_some()) + usize::from(member.index.is_some())
+    });
+    let time = |point: &Point| phase.map_or(f64::NAN, |p| layout.start(p, x) + point.tau * layout.duration(p, x));
+    Trace {
+        constraint: first.constraint,
+        phase: phase.map(|phase| names::phase(structure, layout, phase)).unwrap_or_default(),
+        indices: first.indices.get(around..).unwrap_or(&[]).to_vec(),
+        points: set.iter().map(|c| (time(&c.point), c.value / factor)).collect(),
+        lower: first.bounds.0 / factor,
+        upper: first.bounds.1 / factor,
+        multipliers: vec![],
+        density: false,
+    }
+}
