@@ -37,6 +37,13 @@ specs! {
     kinematic_car_gauss: "specs/kinematic_car_gauss.ntg" => KinematicCarGauss,
     low_observable: "specs/low_observable.ntg" => LowObservable,
     low_observable_gauss: "specs/low_observable_gauss.ntg" => LowObservableGauss,
+    missile_boost_coast: "specs/missile_boost_coast.ntg" => MissileBoostCoast,
+    missile_intercept: "specs/missile_intercept.ntg" => MissileIntercept,
+    multi_vehicle: "specs/multi_vehicle.ntg" => MultiVehicle,
+    multi_vehicle_look_after_strike: "specs/multi_vehicle_look_after_strike.ntg" => MultiVehicleLookAfterStrike,
+    multi_vehicle_separated: "specs/multi_vehicle_separated.ntg" => MultiVehicleSeparated,
+    multi_vehicle_simultaneous: "specs/multi_vehicle_simultaneous.ntg" => MultiVehicleSimultaneous,
+    strike_and_look: "specs/strike_and_look.ntg" => StrikeAndLook,
     van_der_pol: "specs/van_der_pol.ntg" => VanDerPol,
     van_der_pol_gauss: "specs/van_der_pol_gauss.ntg" => VanDerPolGauss,
 }
