@@ -27,6 +27,8 @@ pub(crate) enum Command {
     ///   ntg solve specs/low_observable.ntg --route "x, y: -100, -100; 0, -100; 5, -15 [km]"
     #[command(verbatim_doc_comment)]
     Solve(Solve),
+    Plot(crate::plot::Arguments),
+    Report(crate::report::Arguments),
 }
 
 #[derive(Args, Debug)]

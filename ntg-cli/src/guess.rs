@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use ntg_interp::Interpreted;
+use ntg_report::run::{FORMAT, VERSION, layout};
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use serde_json::Value;
-
-use crate::save::{FORMAT, VERSION, layout};
 
 /// Reads a saved solution as a guess for a problem: its unknowns where the splines are the same,
 /// its sampled outputs, durations and variables otherwise.

@@ -8,8 +8,10 @@ mod check;
 mod expand;
 mod files;
 mod guess;
+mod plot;
+mod report;
 mod route;
-mod save;
+mod runs;
 mod solve;
 mod values;
 mod watch;
@@ -48,6 +50,18 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
+        Command::Plot(arguments) => said(plot::run(&arguments)),
+        Command::Report(arguments) => said(report::run(&arguments)),
     };
     ExitCode::from(u8::try_from(exit.status()).unwrap_or(u8::MAX))
+}
+
+/// Says what went wrong; an empty message has been said already.
+fn said(ended: Result<Exit, String>) -> Exit {
+    ended.unwrap_or_else(|message| {
+        if !message.is_empty() {
+            eprintln!("error: {message}");
+        }
+        Exit::Bad
+    })
 }

@@ -6,24 +6,17 @@ mod text;
 use std::time::{Duration, Instant};
 
 use ntg_interp::Interpreted;
+use ntg_report::run::Recording;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::Settings;
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
-use crate::{Exit, files, guess, route, save, values, write};
+use crate::{Exit, files, guess, route, values, write};
 
 pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
-    match solve(arguments) {
-        Ok(exit) => exit,
-        Err(message) => {
-            if !message.is_empty() {
-                eprintln!("error: {message}");
-            }
-            Exit::Bad
-        }
-    }
+    crate::said(solve(arguments))
 }
 
 /// What is printed beside the report.
@@ -41,7 +34,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     if let Some(path) = &arguments.save {
         write::may_write(path, arguments.force)?;
     }
-    let Some((_, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
+    let Some((source, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
     let mut problem = Interpreted::new(&compiled.program);
     for assignment in &arguments.set {
         values::set(&mut problem, assignment)?;
@@ -56,7 +49,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         Some(guess) => ntg_runtime::solve_from(&problem, guess, &settings),
         None => ntg_runtime::solve(&problem, &settings),
     };
-    watch.end();
+    let iterations = watch.end();
     let report = report.map_err(|error| format!("{}: {error}", arguments.spec.display()))?;
 
     let solved = Solved { problem: &problem, report: &report, samples: arguments.samples as usize, compile_seconds };
@@ -65,7 +58,10 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
-        save::write(path, arguments.force, &problem, &report)?;
+        let notes = &compiled.notes;
+        let run =
+            Recording { problem: &problem, report: &report, source: &source, notes, iterations: &iterations }.run();
+        write::whole(path, arguments.force, run.text().as_bytes())?;
     }
     Ok(match report.is_solved() {
         true => Exit::Done,

@@ -60,6 +60,14 @@ impl Signal<'_> {
         self.agent.is_none()
     }
 
+    /// Start and end of its agent in seconds of mission time; none for a single number.
+    pub fn span(&self) -> Option<(f64, f64)> {
+        let (layout, x) = (&self.inner.model.layout, &self.inner.x);
+        let agent = &layout.agents[self.agent?];
+        let start = agent.start.at(x);
+        Some((start, agent.phases.clone().fold(start, |t, phase| t + layout.duration(phase, x))))
+    }
+
     /// The value at mission time `t` (seconds, clamped to the agent's time), in the declared unit.
     /// NaN in a phase that does not define it.
     pub fn at(&self, t: f64) -> f64 {

@@ -1,0 +1,106 @@
+//! `ntg plot`: a picture of what was found.
+
+use std::path::PathBuf;
+
+use ntg_report::figure::{self, Panel};
+use ntg_report::{Run, draw, png};
+
+use crate::{Exit, runs, write};
+
+/// Draw outputs, named expressions, constraints with their bounds, and tracks.
+///
+/// Examples:
+///   ntg plot specs/van_der_pol.ntg -o oscillator.svg
+///   ntg plot mission.ntg --xy x,y --show speed -o track.png
+///   ntg plot slow.json fast.json --show speed -o comparison.svg
+#[derive(clap::Args, Debug)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Arguments {
+    /// Specs, which are solved, or saved results (`ntg solve --save`); several are drawn together.
+    #[arg(required = true, value_name = "SPEC|RESULT")]
+    inputs: Vec<PathBuf>,
+    /// Where to write; `.svg` or `.png`.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Draw a track of two quantities, with equal axes where they have the same unit.
+    #[arg(long, value_name = "X,Y", value_parser = runs::pair)]
+    xy: Vec<(String, String)>,
+    /// Draw this quantity or constraint (by name) over time; without `--show` and `--xy`
+    /// everything is drawn.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    show: Vec<String>,
+    /// Set a parameter of the spec, as for `ntg solve`.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+    /// Replace an existing file.
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Svg,
+    Png,
+}
+
+/// Pixels of a PNG for one unit of the SVG, whose text is meant for 1600 units across.
+const SCALE: f32 = 1.0;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
+    let kind = match arguments.output.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("svg") => Kind::Svg,
+        Some("png") => Kind::Png,
+        _ => return Err(format!("`{}`: plots are .svg or .png files", arguments.output.display())),
+    };
+    write::may_write(&arguments.output, arguments.force)?;
+    let loaded = runs::load(&arguments.inputs, &arguments.set)?;
+    let runs: Vec<(String, &Run)> = loaded.iter().map(|(name, run)| (name.clone(), run)).collect();
+    let panels = panels(arguments, &runs)?;
+    let names: Vec<&str> = runs.iter().map(|(_, run)| run.problem.as_str()).collect();
+    let svg = draw::svg(names[0], &sentence(&runs), &panels)?;
+    let bytes = match kind {
+        Kind::Svg => svg.into_bytes(),
+        Kind::Png => png::png(&svg, SCALE)?,
+    };
+    write::whole(&arguments.output, arguments.force, &bytes)?;
+    Ok(Exit::Done)
+}
+
+fn panels(arguments: &Arguments, runs: &figure::Runs<'_>) -> Result<Vec<Panel>, String> {
+    let mut panels = vec![];
+    for (x, y) in &arguments.xy {
+        panels.push(figure::track(runs, x, y)?);
+    }
+    let mut over_time = figure::outputs(runs);
+    over_time.extend(figure::lets(runs));
+    over_time.extend(figure::constraints(runs));
+    if arguments.show.is_empty() && arguments.xy.is_empty() {
+        return Ok(over_time);
+    }
+    for name in &arguments.show {
+        let before = panels.len();
+        panels.extend(over_time.iter().filter(|panel| panel.title == *name).cloned());
+        if panels.len() == before {
+            let mut known: Vec<&str> = vec![];
+            for panel in &over_time {
+                if !known.contains(&panel.title.as_str()) {
+                    known.push(&panel.title);
+                }
+            }
+            return Err(format!("there is no `{name}` over time; there are: `{}`", known.join("`, `")));
+        }
+    }
+    Ok(panels)
+}
+
+/// What one should know before looking.
+fn sentence(runs: &figure::Runs<'_>) -> String {
+    let one = |run: &Run| {
+        let unit = if run.objective_unit.is_empty() { String::new() } else { format!(" {}", run.objective_unit) };
+        format!("{}, objective {:.6}{unit}", run.status, run.objective)
+    };
+    match runs {
+        [(_, run)] => one(run),
+        several => several.iter().map(|(name, run)| format!("{name}: {}", one(run))).collect::<Vec<_>>().join("; "),
+    }
+}

@@ -1,0 +1,141 @@
+// A map: lines whose axes may share a unit, with zoom, pan and a reading of the nearest point.
+"use strict";
+function NtgMap(place, chart, { colour, dash, number }) {
+  const NS = "http://www.w3.org/2000/svg";
+  const make = (name, attributes, parent) => {
+    const element = document.createElementNS(NS, name);
+    for (const key in attributes) element.setAttribute(key, attributes[key]);
+    return parent.appendChild(element);
+  };
+  const svg = make("svg", { class: "map", role: "img" }, place);
+  const tip = place.appendChild(document.createElement("div"));
+  tip.className = "maptip";
+  const legend = place.appendChild(document.createElement("div"));
+  legend.className = "maplegend";
+  const margin = { left: 62, right: 14, top: 10, bottom: 44 };
+  const all = chart.lines.flatMap((line) => line.x.map((x, i) => [x, line.y[i]])).filter(([x, y]) => x != null && y != null);
+  const home = () => {
+    const xs = all.map((p) => p[0]), ys = all.map((p) => p[1]);
+    const grow = (low, high) => { const pad = 0.06 * (high - low) || Math.max(1e-3, 0.1 * Math.abs(low)); return [low - pad, high + pad]; };
+    return { x: grow(Math.min(...xs), Math.max(...xs)), y: grow(Math.min(...ys), Math.max(...ys)) };
+  };
+  let view = home(), width = 0, height = 0;
+
+  // Widens the shorter axis until a unit is as long on both.
+  const fitted = () => {
+    const w = width - margin.left - margin.right, h = height - margin.top - margin.bottom;
+    let { x: [x0, x1], y: [y0, y1] } = view;
+    if (chart.equal) {
+      const scale = Math.max((x1 - x0) / w, (y1 - y0) / h);
+      const cx = (x0 + x1) / 2, cy = (y0 + y1) / 2;
+      [x0, x1, y0, y1] = [cx - scale * w / 2, cx + scale * w / 2, cy - scale * h / 2, cy + scale * h / 2];
+    }
+    return {
+      x0, x1, y0, y1, w, h,
+      px: (x) => margin.left + (x - x0) / (x1 - x0) * w, py: (y) => margin.top + (y1 - y) / (y1 - y0) * h,
+      ux: (p) => x0 + (p - margin.left) / w * (x1 - x0), uy: (p) => y1 - (p - margin.top) / h * (y1 - y0),
+    };
+  };
+  const ticks = (low, high, count) => {
+    const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
+    const step = power * ([1, 2, 5, 10].find((m) => m * power >= raw) || 10);
+    const found = [];
+    for (let v = Math.ceil(low / step) * step; v <= high; v += step) found.push(Math.abs(v) < step * 1e-9 ? 0 : v);
+    return found;
+  };
+  const path = (line, f) => {
+    let text = "", pen = false;
+    line.x.forEach((x, i) => {
+      const y = line.y[i];
+      if (x == null || y == null) { pen = false; return; }
+      text += `${pen ? "L" : "M"}${f.px(x).toFixed(1)} ${f.py(y).toFixed(1)}`;
+      pen = true;
+    });
+    return text;
+  };
+
+  function redraw() {
+    width = Math.max(place.clientWidth - 14, 240);
+    height = Math.round(Math.min(Math.max(width * 0.62, 300), 640));
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    svg.style.height = `${height}px`;
+    svg.replaceChildren();
+    const f = fitted();
+    const clip = make("clipPath", { id: `clip${place.dataset.chart}` }, make("defs", {}, svg));
+    make("rect", { x: margin.left, y: margin.top, width: f.w, height: f.h }, clip);
+    for (const v of ticks(f.x0, f.x1, f.w / 90)) {
+      make("line", { class: "grid", x1: f.px(v), x2: f.px(v), y1: margin.top, y2: margin.top + f.h }, svg);
+      make("text", { x: f.px(v), y: margin.top + f.h + 16, "text-anchor": "middle" }, svg).textContent = number(v);
+    }
+    for (const v of ticks(f.y0, f.y1, f.h / 60)) {
+      make("line", { class: "grid", x1: margin.left, x2: margin.left + f.w, y1: f.py(v), y2: f.py(v) }, svg);
+      make("text", { x: margin.left - 6, y: f.py(v) + 4, "text-anchor": "end" }, svg).textContent = number(v);
+    }
+    make("rect", { class: "frame", x: margin.left, y: margin.top, width: f.w, height: f.h }, svg);
+    make("text", { x: margin.left + f.w / 2, y: height - 8, "text-anchor": "middle" }, svg).textContent = chart.x;
+    const side = make("text", { transform: `translate(13 ${margin.top + f.h / 2}) rotate(-90)`, "text-anchor": "middle" }, svg);
+    side.textContent = chart.y;
+    const inside = make("g", { "clip-path": `url(#clip${place.dataset.chart})` }, svg);
+    legend.replaceChildren();
+    chart.lines.forEach((line, i) => {
+      const dashes = dash(line.run);
+      make("path", { d: path(line, f), fill: "none", stroke: colour(i), "stroke-width": 2.2, "stroke-dasharray": dashes ? dashes.join(" ") : "none" }, inside);
+      if (line.x.length) make("circle", { cx: f.px(line.x[0]), cy: f.py(line.y[0]), r: 5, fill: "none", stroke: colour(i), "stroke-width": 2 }, inside);
+      for (const [x, y] of line.events) make("circle", { cx: f.px(x), cy: f.py(y), r: 4, fill: colour(i) }, inside);
+      if (line.name) {
+        const item = legend.appendChild(document.createElement("span"));
+        const stroke = item.appendChild(document.createElement("i"));
+        stroke.style.borderTopColor = colour(i);
+        stroke.style.borderTopStyle = line.run ? "dashed" : "solid";
+        item.append(line.name);
+      }
+    });
+    const reading = make("circle", { r: 5, fill: "none", "stroke-width": 2, visibility: "hidden", class: "reading" }, inside);
+    reading.setAttribute("stroke", "currentColor");
+  }
+
+  const at = (event) => {
+    const box = svg.getBoundingClientRect();
+    return [(event.clientX - box.left) * width / box.width, (event.clientY - box.top) * height / box.height];
+  };
+  const nearest = (px, py) => {
+    const f = fitted();
+    let best = { distance: 40 };
+    chart.lines.forEach((line, l) => line.x.forEach((x, i) => {
+      if (x == null || line.y[i] == null) return;
+      const distance = Math.hypot(f.px(x) - px, f.py(line.y[i]) - py);
+      if (distance < best.distance) best = { distance, line, l, i };
+    }));
+    return best;
+  };
+  let held = null;
+  svg.addEventListener("pointerdown", (event) => { held = { from: at(event), view: fitted() }; svg.setPointerCapture(event.pointerId); });
+  svg.addEventListener("pointerup", () => { held = null; });
+  svg.addEventListener("pointermove", (event) => {
+    const [px, py] = at(event);
+    if (held) {
+      const { x0, x1, y0, y1, w, h } = held.view;
+      const dx = (held.from[0] - px) / w * (x1 - x0), dy = (py - held.from[1]) / h * (y1 - y0);
+      view = { x: [x0 + dx, x1 + dx], y: [y0 + dy, y1 + dy] };
+      redraw();
+      return;
+    }
+    const { line, i } = nearest(px, py), f = fitted(), reading = svg.querySelector(".reading");
+    if (!reading) return;
+    reading.setAttribute("visibility", line ? "visible" : "hidden");
+    if (!line) { tip.textContent = ""; return; }
+    reading.setAttribute("cx", f.px(line.x[i]));
+    reading.setAttribute("cy", f.py(line.y[i]));
+    tip.textContent = `${line.name ? `${line.name}: ` : ""}${chart.x} ${number(line.x[i])}, ${chart.y} ${number(line.y[i])}, t ${number(line.t[i])} s`;
+  });
+  svg.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const [px, py] = at(event), f = fitted(), k = event.deltaY > 0 ? 1.2 : 1 / 1.2, cx = f.ux(px), cy = f.uy(py);
+    view = { x: [cx + (f.x0 - cx) * k, cx + (f.x1 - cx) * k], y: [cy + (f.y0 - cy) * k, cy + (f.y1 - cy) * k] };
+    redraw();
+  }, { passive: false });
+  svg.addEventListener("dblclick", () => { view = home(); redraw(); });
+  new ResizeObserver(redraw).observe(place);
+  redraw();
+  return { redraw };
+}

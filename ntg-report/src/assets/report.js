@@ -1,0 +1,123 @@
+// Draws the page's charts: uPlot for what is over time or iterations, NtgMap for tracks.
+"use strict";
+(() => {
+  const root = document.documentElement;
+  const charts = JSON.parse(document.getElementById("data").textContent);
+  const css = (name) => getComputedStyle(root).getPropertyValue(name).trim();
+  const isDark = () => root.classList.contains("dark");
+  // Okabe and Ito's colours; the lighter set is legible on dark paper.
+  const light = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#56b4e9", "#b07d00", "#785e28", "#5a5a5a"];
+  const dark = ["#58b4ea", "#ff9248", "#2fd3a2", "#e08bd2", "#9bd7ff", "#f0c04a", "#c9a86a", "#b0b0b0"];
+  const colour = (i) => (isDark() ? dark : light)[i % 8];
+  const dash = (run) => (run ? [10, 3 + 4 * run] : undefined);
+  const drawn = [];
+
+  const prefers = matchMedia("(prefers-color-scheme: dark)");
+  const wear = (on) => { root.classList.toggle("dark", on); drawn.forEach((chart) => chart.redraw()); };
+  wear(prefers.matches);
+  prefers.addEventListener("change", (event) => wear(event.matches));
+  document.getElementById("theme").addEventListener("click", () => wear(!isDark()));
+
+  const number = (v) => {
+    if (v == null || !isFinite(v)) return "–";
+    if (v !== 0 && (Math.abs(v) >= 1e6 || Math.abs(v) < 1e-3)) return v.toExponential(2);
+    return String(+v.toPrecision(5));
+  };
+
+  // One table of all lines over the union of their abscissas.
+  const joined = (lines) => {
+    const tables = lines.map((line) => {
+      const xs = [], ys = [];
+      line.x.forEach((x, i) => {
+        // uPlot wants increasing abscissas; the two sides of a jump are a hair apart.
+        const last = xs[xs.length - 1];
+        xs.push(last !== undefined && x <= last ? last + 1e-9 * Math.max(1, Math.abs(last)) : x);
+        ys.push(line.y[i]);
+      });
+      return [xs, ys];
+    });
+    return tables.length === 1 ? tables[0] : uPlot.join(tables);
+  };
+
+  const marks = (chart) => (u) => {
+    const { ctx } = u, { left, top, width, height } = u.bbox, px = devicePixelRatio;
+    ctx.save();
+    ctx.beginPath(); ctx.rect(left, top, width, height); ctx.clip();
+    ctx.font = `${11 * px}px system-ui, sans-serif`;
+    ctx.fillStyle = css("--quiet"); ctx.strokeStyle = css("--ink"); ctx.lineWidth = 1.5 * px; ctx.setLineDash([4 * px, 4 * px]);
+    for (const [at, name] of chart.limits) {
+      const y = u.valToPos(at, "y", true);
+      ctx.beginPath(); ctx.moveTo(left, y); ctx.lineTo(left + width, y); ctx.stroke();
+      ctx.fillText(name, left + 6 * px, y - 4 * px);
+    }
+    ctx.strokeStyle = css("--quiet"); ctx.lineWidth = px; ctx.setLineDash([7 * px, 5 * px]);
+    chart.marks.forEach(([at, name], i) => {
+      const x = u.valToPos(at, "x", true);
+      ctx.beginPath(); ctx.moveTo(x, top); ctx.lineTo(x, top + height); ctx.stroke();
+      ctx.fillText(name, x + 4 * px, top + (12 + 13 * (i % 4)) * px);
+    });
+    ctx.restore();
+  };
+
+  // Limits that are near enough to the values belong into the picture.
+  const spanned = (chart) => (u, low, high) => {
+    if (low == null) return [0, 1];
+    const reach = 3 * (high - low);
+    for (const [at] of chart.limits) if (at > low - reach && at < high + reach) { low = Math.min(low, at); high = Math.max(high, at); }
+    const flat = high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high));
+    const pad = flat ? Math.max(0.1 * Math.abs(low), 1e-3) : 0.06 * (high - low);
+    return [low - pad, high + pad];
+  };
+
+  const axis = (label) => ({
+    label, labelSize: 22, labelFont: "12px system-ui, sans-serif", font: "11px system-ui, sans-serif",
+    stroke: () => css("--ink"), grid: { stroke: () => css("--line"), width: 1 }, ticks: { stroke: () => css("--line"), width: 1 },
+  });
+
+  const time = (place, chart) => {
+    const log = chart.kind === "log";
+    const width = () => Math.max(place.clientWidth - 14, 240);
+    const series = chart.lines.map((line, i) => ({
+      label: line.name || chart.title, stroke: () => colour(i), width: 2, dash: dash(line.run), spanGaps: false,
+      value: (u, v) => number(v), points: { show: (log || chart.y.startsWith("dJ*")) && line.x.length < 100, size: 5, fill: () => colour(i) },
+    }));
+    const u = new uPlot({
+      width: width(), height: 270, series: [{ label: chart.x, value: (u, v) => number(v) }, ...series],
+      scales: { x: { time: false }, y: log ? { distr: 3 } : { range: spanned(chart) } },
+      axes: [axis(chart.x), { ...axis(chart.y), size: 62, values: (u, ticks) => ticks.map((v) => (v == null || (log && Math.abs(Math.log10(v) % 1) > 1e-9) ? null : log ? `1e${Math.round(Math.log10(v))}` : number(v))) }],
+      cursor: { sync: log ? undefined : { key: "t" }, drag: { x: true, y: false } },
+      legend: { live: true }, hooks: { draw: [marks(chart)] },
+    }, joined(chart.lines), place);
+    new ResizeObserver(() => u.setSize({ width: width(), height: 270 })).observe(place);
+    drawn.push({ redraw: () => u.redraw(false, true) });
+  };
+
+  for (const place of document.querySelectorAll("[data-chart]")) {
+    const chart = charts[+place.dataset.chart];
+    const title = place.appendChild(document.createElement("h3"));
+    title.textContent = chart.title;
+    const hint = place.appendChild(document.createElement("span"));
+    hint.className = "hint";
+    hint.textContent = chart.kind === "map" ? "wheel zooms, drag moves, double click resets" : "drag zooms, double click resets";
+    place.classList.toggle("crowded", chart.lines.length > 6);
+    if (chart.kind === "map") {
+      place.classList.add("wide");
+      drawn.push(NtgMap(place, chart, { colour, dash, number }));
+    } else {
+      time(place, chart);
+    }
+  }
+
+  // Tips beside the pointer or the focused constraint, within the window.
+  for (const mark of document.querySelectorAll("pre.spec mark")) {
+    const tip = mark.querySelector(".tip");
+    const show = () => {
+      const box = mark.getClientRects()[0], size = tip.getBoundingClientRect();
+      tip.style.left = `${Math.max(8, Math.min(box.left, innerWidth - size.width - 8))}px`;
+      tip.style.top = `${box.bottom + size.height + 8 < innerHeight ? box.bottom + 4 : Math.max(8, box.top - size.height - 4)}px`;
+    };
+    mark.addEventListener("mouseenter", show);
+    mark.addEventListener("focus", show);
+  }
+  for (const link of document.querySelectorAll("nav a")) if (!document.querySelector(link.hash)) link.remove();
+})();

@@ -1,0 +1,246 @@
+//! Panels as an SVG picture, by plotters.
+//!
+//! Lengths are in pixels of a picture 1600 wide: the library rounds to whole pixels, and at this
+//! size that does not show. Colours are Okabe and Ito's, which colour-blind eyes can tell apart.
+
+use std::ops::Range;
+
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+
+use crate::figure::{Line, Panel};
+
+/// A rectangle of a picture to draw in.
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
+
+const WIDTH: u32 = 1600;
+/// The strip of title and sentence.
+const HEAD: u32 = 130;
+/// Heights of a panel, and of one that is a map.
+const HEIGHT: u32 = 540;
+const MAP_HEIGHT: u32 = 1100;
+/// Height of a row of the legend.
+const ROW: i32 = 40;
+
+const INK: RGBColor = RGBColor(30, 30, 30);
+const GREY: RGBColor = RGBColor(110, 110, 110);
+const COLOURS: [RGBColor; 8] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(170, 68, 153),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(120, 94, 40),
+    RGBColor(90, 90, 90),
+];
+
+/// Draws panels beneath a title and a sentence.
+///
+/// # Errors
+/// In words; only where a panel holds nothing that can be drawn.
+pub fn svg(title: &str, sentence: &str, panels: &[Panel]) -> Result<String, String> {
+    if panels.is_empty() {
+        return Err("there is nothing to draw".to_owned());
+    }
+    let rows = rows(panels);
+    let height = HEAD + rows.iter().map(|row| row_height(row)).sum::<u32>();
+    let mut text = String::new();
+    draw(&mut text, height, (title, sentence), &rows).map_err(|error| error.to_string())?;
+    Ok(text)
+}
+
+/// Maps and lone panels take a whole row, others share one.
+fn rows(panels: &[Panel]) -> Vec<Vec<&Panel>> {
+    let mut rows: Vec<Vec<&Panel>> = vec![];
+    for panel in panels {
+        match rows.last_mut() {
+            Some(row) if row.len() == 1 && !row[0].equal && !panel.equal && panels.len() > 2 => row.push(panel),
+            _ => rows.push(vec![panel]),
+        }
+    }
+    rows
+}
+
+fn row_height(row: &[&Panel]) -> u32 {
+    if row.iter().any(|panel| panel.equal) { MAP_HEIGHT } else { HEIGHT }
+}
+
+fn draw(text: &mut String, height: u32, (title, sentence): (&str, &str), rows: &[Vec<&Panel>]) -> Drawn {
+    let root = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
+    root.fill(&WHITE)?;
+    root.draw(&Text::new(title.to_owned(), (40, 28), font(46).style(FontStyle::Bold).color(&INK)))?;
+    root.draw(&Text::new(sentence.to_owned(), (40, 84), font(28).color(&GREY)))?;
+    let mut rest = root.split_vertically(HEAD).1;
+    for row in rows {
+        let (area, below) = rest.split_vertically(row_height(row));
+        rest = below;
+        for (panel, area) in row.iter().zip(area.split_evenly((1, row.len()))) {
+            self::panel(&area, panel)?;
+        }
+    }
+    root.present()?;
+    Ok(())
+}
+
+fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
+    area.draw(&Text::new(panel.title.clone(), (40, 6), font(32).style(FontStyle::Bold).color(&INK)))?;
+    let below = area.split_vertically(48).1;
+    let plot = if panel.lines.len() > 1 { legend(&below, &panel.lines)? } else { below };
+    let (mut xs, mut ys) = ranges(panel);
+    if panel.equal {
+        let (width, height) = plot.dim_in_pixel();
+        // What the labels and margins below take.
+        let aspect = f64::from(width.saturating_sub(170)) / f64::from(height.saturating_sub(110));
+        equalise(&mut xs, &mut ys, aspect);
+    }
+    let mut chart = ChartBuilder::on(&plot)
+        .margin_left(20)
+        .margin_right(40)
+        .margin_top(12)
+        .margin_bottom(10)
+        .x_label_area_size(78)
+        .y_label_area_size(110)
+        .build_cartesian_2d(xs.clone(), ys.clone())?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .axis_style(GREY)
+        .label_style(font(24).color(&INK))
+        .axis_desc_style(font(26).color(&INK))
+        .x_labels(9)
+        .y_labels(8)
+        .x_desc(panel.x.as_str())
+        .y_desc(panel.y.as_str())
+        .x_label_formatter(&|x| number(*x, xs.end - xs.start))
+        .y_label_formatter(&|y| number(*y, ys.end - ys.start))
+        .draw()?;
+    marks(&mut chart, panel, &xs, &ys)?;
+    for (index, line) in panel.lines.iter().enumerate() {
+        draw_line(&mut chart, index, line)?;
+    }
+    Ok(())
+}
+
+fn font(size: u32) -> FontDesc<'static> {
+    ("sans-serif", size).into_font()
+}
+
+/// Limits across and events up.
+fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>) -> Drawn {
+    for (y, name) in &panel.limits {
+        chart.draw_series(DashedLineSeries::new([(xs.start, *y), (xs.end, *y)], 5, 7, INK.stroke_width(3)))?;
+        let label = Text::new(name.clone(), (10, -26), font(22).color(&GREY));
+        chart.draw_series([EmptyElement::at((xs.start, *y)) + label])?;
+    }
+    for (i, (x, name)) in panel.marks.iter().enumerate() {
+        chart.draw_series(DashedLineSeries::new([(*x, ys.start), (*x, ys.end)], 10, 8, GREY.stroke_width(2)))?;
+        // Neighbouring events stand at different heights.
+        let height = 4 + 24 * i32::try_from(i % 4)?;
+        let label = Text::new(name.clone(), (6, height), font(22).color(&GREY));
+        chart.draw_series([EmptyElement::at((*x, ys.end)) + label])?;
+    }
+    Ok(())
+}
+
+fn draw_line(chart: &mut Chart<'_>, index: usize, line: &Line) -> Drawn {
+    let colour = COLOURS[index % COLOURS.len()];
+    let style = colour.stroke_width(4);
+    // A gap where a quantity does not exist.
+    for stretch in line.points.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+        let points = stretch.iter().copied();
+        if line.run == 0 {
+            chart.draw_series(LineSeries::new(points, style))?;
+        } else {
+            chart.draw_series(DashedLineSeries::new(points, 14, 4 + 4 * u32::try_from(line.run)?, style))?;
+        }
+    }
+    chart.draw_series(line.events.iter().map(|at| Circle::new(*at, 8, colour.filled())))?;
+    if let (false, Some(start)) = (line.times.is_empty(), line.points.first()) {
+        chart.draw_series([Circle::new(*start, 9, style)])?;
+    }
+    Ok(())
+}
+
+/// Draws the legend at the top; gives the area beneath it.
+fn legend<'a>(area: &Area<'a>, lines: &[Line]) -> Drawn<Area<'a>> {
+    /// Rows of a legend before the rest is left out: who has more lines knows them by their shape.
+    const MOST: i32 = 3;
+    let right = i32::try_from(area.dim_in_pixel().0)?;
+    let (mut x, mut y) = (40, 8);
+    for (index, line) in lines.iter().enumerate() {
+        // The width of a letter is not known in SVG; 13 pixels is ample at this size.
+        let width = 100 + 13 * i32::try_from(line.name.chars().count())?;
+        if x > 40 && x + width > right {
+            (x, y) = (40, y + ROW);
+        }
+        if y > MOST * ROW {
+            area.draw(&Text::new(format!("and {} more", lines.len() - index), (x, y - 4), font(24).color(&GREY)))?;
+            break;
+        }
+        let ends = [(x, y + 14), (x + 56, y + 14)];
+        let style = COLOURS[index % COLOURS.len()].stroke_width(4);
+        if line.run == 0 {
+            area.draw(&PathElement::new(ends, style))?;
+        } else {
+            area.draw(&DashedPathElement::new(ends, 14, 4 + 4 * u32::try_from(line.run)?, style))?;
+        }
+        area.draw(&Text::new(line.name.clone(), (x + 68, y), font(26).color(&INK)))?;
+        x += width;
+    }
+    Ok(area.split_vertically(y + ROW).1)
+}
+
+/// What the axes span: all lines, and the limits.
+fn ranges(panel: &Panel) -> (Range<f64>, Range<f64>) {
+    let points = || panel.lines.iter().flat_map(|line| &line.points).filter(|(x, y)| x.is_finite() && y.is_finite());
+    let xs = span(points().map(|p| p.0), 0.0);
+    let values = span(points().map(|p| p.1), 0.0);
+    let reach = 3.0 * (values.end - values.start);
+    // A limit that is far away would flatten what there is to see.
+    let near = panel.limits.iter().map(|limit| limit.0);
+    let near = near.filter(|limit| *limit > values.start - reach && *limit < values.end + reach);
+    let ys = span(points().map(|p| p.1).chain(near), 0.06);
+    (if panel.equal { span(points().map(|p| p.0), 0.06) } else { xs }, ys)
+}
+
+/// The least and the greatest, widened by a share; never empty.
+fn span(values: impl Iterator<Item = f64>, widen: f64) -> Range<f64> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    if low > high {
+        return 0.0..1.0;
+    }
+    let size = high - low;
+    if size <= 1e-9 * low.abs().max(high.abs()) || size == 0.0 {
+        let half = (0.1 * low.abs()).max(1e-3);
+        return low - half..high + half;
+    }
+    low - widen * size..high + widen * size
+}
+
+/// Widens the shorter axis until a unit is as long on both.
+fn equalise(xs: &mut Range<f64>, ys: &mut Range<f64>, aspect: f64) {
+    let (width, height) = (xs.end - xs.start, ys.end - ys.start);
+    let (axis, wanted) = if width < aspect * height { (xs, aspect * height) } else { (ys, width / aspect) };
+    let middle = 0.5 * (axis.start + axis.end);
+    *axis = middle - 0.5 * wanted..middle + 0.5 * wanted;
+}
+
+/// A number as short as it can be said on an axis of a given length.
+fn number(x: f64, length: f64) -> String {
+    if x.abs() < 1e-9 * length {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e6).contains(&x.abs()) {
+        return format!("{x:.1e}");
+    }
+    // Two digits beyond the tenth part of the axis tell neighbouring labels apart.
+    let decimals = (1.0 - (length / 10.0).log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}

@@ -1,0 +1,296 @@
+//! What is drawn: axes with lines, limits and events, chosen from one run or several.
+//!
+//! Takes [`Run`]s; gives [`Panel`]s that SVG and HTML draw alike. Members of families and the same
+//! quantity of several agents and runs share axes.
+
+use crate::run::{Constraint, Run, Series};
+
+/// One pair of axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// What is shown, in a few words.
+    pub title: String,
+    /// The abscissa with its unit.
+    pub x: String,
+    /// The ordinate with its unit.
+    pub y: String,
+    /// Whether a unit is as long on both axes: a map.
+    pub equal: bool,
+    /// Whether the ordinate is logarithmic.
+    pub logarithmic: bool,
+    /// The lines.
+    pub lines: Vec<Line>,
+    /// Horizontal limits, each with what it is.
+    pub limits: Vec<(f64, String)>,
+    /// Vertical marks at events, each with what happens.
+    pub marks: Vec<(f64, String)>,
+}
+
+/// Points that are joined.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Line {
+    /// Its name in the legend.
+    pub name: String,
+    /// Which run it belongs to, from 0: runs differ in their dashes.
+    pub run: usize,
+    /// Abscissas and ordinates.
+    pub points: Vec<(f64, f64)>,
+    /// Mission times of the points of a track.
+    pub times: Vec<f64>,
+    /// Places where one phase follows another, for tracks.
+    pub events: Vec<(f64, f64)>,
+}
+
+/// Runs that are drawn together, each with its name.
+pub type Runs<'a> = [(String, &'a Run)];
+
+/// The tail of a path without indices: what members of a family have in common.
+pub fn base(path: &str) -> &str {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    last.split('[').next().unwrap_or(last)
+}
+
+/// The name of a line: the path, and the run where there are several.
+fn label(runs: &Runs<'_>, run: usize, path: &str) -> String {
+    match (runs.len() > 1, path.is_empty()) {
+        (true, true) => runs[run].0.clone(),
+        (true, false) => format!("{path} ({})", runs[run].0),
+        (false, _) => path.to_owned(),
+    }
+}
+
+/// `name [unit]`.
+pub fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
+}
+
+/// One panel for each output, families and agents together.
+pub fn outputs(runs: &Runs<'_>) -> Vec<Panel> {
+    quantities(runs, |run| run.outputs.iter().collect())
+}
+
+/// One panel for each named expression that is a function of time.
+pub fn lets(runs: &Runs<'_>) -> Vec<Panel> {
+    quantities(runs, |run| run.lets.iter().collect())
+}
+
+fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a Series)>) -> Vec<Panel> {
+    let mut panels: Vec<Panel> = vec![];
+    for (index, (_, run)) in runs.iter().enumerate() {
+        for (path, series) in of(run) {
+            if series.t.is_empty() {
+                continue;
+            }
+            let (name, y) = (base(path), with_unit(base(path), &series.unit));
+            let line = Line {
+                name: label(runs, index, path),
+                run: index,
+                points: series.t.iter().copied().zip(series.value.iter().copied()).collect(),
+                ..Line::default()
+            };
+            match panels.iter_mut().find(|panel| panel.y == y) {
+                Some(panel) => panel.lines.push(line),
+                None => panels.push(Panel {
+                    title: name.to_owned(),
+                    x: "t [s]".to_owned(),
+                    y,
+                    lines: vec![line],
+                    marks: marks(runs),
+                    ..Panel::default()
+                }),
+            }
+        }
+    }
+    panels
+}
+
+/// One panel for each constraint along a trajectory, with its bounds.
+pub fn constraints(runs: &Runs<'_>) -> Vec<Panel> {
+    over_constraints(runs, |constraint, runs, run| {
+        let lines = constraint.members.iter().map(|member| (&member.name, &member.t, &member.value));
+        let lines: Vec<Line> = lines.map(|(name, t, value)| line(label(runs, run, name), run, t, value)).collect();
+        (with_unit(&short(&constraint.name), &constraint.unit), lines, limits(constraint))
+    })
+}
+
+/// One panel for each constraint along a trajectory that has multipliers.
+pub fn multipliers(runs: &Runs<'_>) -> Vec<Panel> {
+    let mut panels = over_constraints(runs, |constraint, runs, run| {
+        let density = constraint.multiplier.as_ref().is_some_and(|m| m.density);
+        let lines = constraint.members.iter().filter(|member| member.multiplier_t.len() > 1);
+        let lines =
+            lines.map(|member| line(label(runs, run, &member.name), run, &member.multiplier_t, &member.multiplier));
+        let y = if density { "dJ*/d(bound), per second" } else { "dJ*/d(bound)" };
+        (y.to_owned(), lines.collect(), vec![])
+    });
+    panels.retain(|panel| panel.lines.iter().any(|line| line.points.iter().any(|p| p.1.abs() > 0.0)));
+    panels
+}
+
+type Shown = (String, Vec<Line>, Vec<(f64, String)>);
+
+fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize) -> Shown) -> Vec<Panel> {
+    let mut panels: Vec<Panel> = vec![];
+    for (index, (_, run)) in runs.iter().enumerate() {
+        for constraint in run.constraints.iter().filter(|c| c.members.iter().any(|m| m.t.len() > 1)) {
+            let (y, lines, limits) = show(constraint, runs, index);
+            let title = short(&constraint.name);
+            let panel = match panels.iter_mut().find(|panel| panel.title == title && panel.y == y) {
+                Some(panel) => panel,
+                None => {
+                    let panel = Panel { title, x: "t [s]".to_owned(), y, marks: marks(runs), ..Panel::default() };
+                    panels.push(panel);
+                    let last = panels.len() - 1;
+                    &mut panels[last]
+                }
+            };
+            panel.lines.extend(lines.into_iter().filter(|line| line.points.len() > 1));
+            for limit in limits {
+                if !panel.limits.contains(&limit) {
+                    panel.limits.push(limit);
+                }
+            }
+        }
+    }
+    panels
+}
+
+fn line(name: String, run: usize, t: &[f64], value: &[f64]) -> Line {
+    Line { name, run, points: t.iter().copied().zip(value.iter().copied()).collect(), ..Line::default() }
+}
+
+/// The bounds of a constraint, each once.
+fn limits(constraint: &Constraint) -> Vec<(f64, String)> {
+    let mut found: Vec<(f64, String)> = vec![];
+    for member in &constraint.members {
+        let equal = member.lower.is_some() && member.lower == member.upper;
+        let sides =
+            [(member.lower, if equal { "=" } else { "lower" }), (member.upper, if equal { "=" } else { "upper" })];
+        for (bound, side) in sides {
+            let limit = bound.map(|bound| (bound, side.to_owned()));
+            found.extend(limit.filter(|limit| !found.contains(limit)));
+        }
+    }
+    found
+}
+
+/// A name that fits above a panel.
+fn short(name: &str) -> String {
+    /// Characters that fit.
+    const MOST: usize = 48;
+    match name.char_indices().nth(MOST) {
+        Some((cut, _)) => format!("{}...", &name[..cut]),
+        None => name.to_owned(),
+    }
+}
+
+/// Starts of phases after the first, of all runs.
+fn marks(runs: &Runs<'_>) -> Vec<(f64, String)> {
+    let mut marks: Vec<(f64, String)> = vec![];
+    for (index, (_, run)) in runs.iter().enumerate() {
+        let starts = run.phases.iter().filter(|phase| run.phases.iter().any(|before| before.end == phase.start));
+        for phase in starts.filter(|phase| !phase.name.is_empty()) {
+            let mark = (phase.start, label(runs, index, &phase.name));
+            if !marks.contains(&mark) {
+                marks.push(mark);
+            }
+        }
+    }
+    marks
+}
+
+/// A map of two quantities, one line for each agent and member that has both.
+///
+/// # Errors
+/// In words, where a name is unknown.
+pub fn track(runs: &Runs<'_>, x: &str, y: &str) -> Result<Panel, String> {
+    let mut panel = Panel { equal: true, ..Panel::default() };
+    for (index, (_, run)) in runs.iter().enumerate() {
+        let all = || run.outputs.iter().chain(&run.lets).filter(|(_, series)| !series.t.is_empty());
+        for (path, across) in all().filter(|(path, _)| path.as_str() == x || base(path) == x) {
+            let stem = path.strip_suffix(x).map(|stem| format!("{stem}{y}"));
+            let partner = stem.unwrap_or_else(|| replace_base(path, x, y));
+            let Some((_, up)) = all().find(|(other, _)| **other == partner) else { continue };
+            panel.x = with_unit(x, &across.unit);
+            panel.y = with_unit(y, &up.unit);
+            // A unit is as long on both axes only where it is the same unit.
+            panel.equal &= across.unit == up.unit;
+            let name = path
+                .rsplit_once('.')
+                .map_or_else(|| suffix(path).to_owned(), |(agent, own)| format!("{agent}{}", suffix(own)));
+            panel.lines.push(track_line(run, label(runs, index, &name), index, (across, up)));
+        }
+    }
+    if panel.lines.is_empty() {
+        return Err(unknown(runs, x, y));
+    }
+    panel.title = format!("{y} over {x}");
+    Ok(panel)
+}
+
+/// `[2]` of `x[2]`.
+fn suffix(name: &str) -> &str {
+    name.find('[').map_or("", |at| &name[at..])
+}
+
+/// `uav[1].y[2]` from `uav[1].x[2]`.
+fn replace_base(path: &str, x: &str, y: &str) -> String {
+    let (agent, own) = path.rsplit_once('.').map_or((None, path), |(agent, own)| (Some(agent), own));
+    let own = own.replacen(x, y, 1);
+    agent.map_or_else(|| own.clone(), |agent| format!("{agent}.{own}"))
+}
+
+fn track_line(run: &Run, name: String, index: usize, (across, up): (&Series, &Series)) -> Line {
+    let points: Vec<(f64, f64)> = across.value.iter().copied().zip(up.value.iter().copied()).collect();
+    let events = run.phases.iter().filter_map(|phase| {
+        let at = across.t.partition_point(|t| *t < phase.start);
+        (at > 0 && at + 1 < points.len() && across.t[at] - phase.start < 1e-6 * phase.start.abs().max(1.0))
+            .then(|| points[at])
+    });
+    let events = events.collect();
+    Line { name, run: index, times: across.t.clone(), events, points }
+}
+
+fn unknown(runs: &Runs<'_>, x: &str, y: &str) -> String {
+    let mut known: Vec<&str> = vec![];
+    for (_, run) in runs {
+        for (path, series) in run.outputs.iter().chain(&run.lets) {
+            if !series.t.is_empty() && !known.contains(&base(path)) {
+                known.push(base(path));
+            }
+        }
+    }
+    format!("no agent has both `{x}` and `{y}`; there are: `{}`", known.join("`, `"))
+}
+
+/// The pair of outputs that is most likely a map: `x` and `y`, or `x` and `h` or `z`.
+pub fn likely_track(run: &Run) -> Option<(&'static str, &'static str)> {
+    let has = |name: &str| run.outputs.keys().any(|path| base(path) == name);
+    [("x", "y"), ("x", "h"), ("x", "z"), ("east", "north")].into_iter().find(|(x, y)| has(x) && has(y))
+}
+
+/// The convergence of all runs: residuals over iterations.
+pub fn convergence(runs: &Runs<'_>) -> Panel {
+    let mut panel = Panel {
+        title: "Convergence".to_owned(),
+        x: "iteration".to_owned(),
+        y: "residual".to_owned(),
+        logarithmic: true,
+        ..Panel::default()
+    };
+    /// What is drawn for a residual of exactly zero.
+    const FLOOR: f64 = 1e-16;
+    for (index, (_, run)) in runs.iter().enumerate() {
+        let pick = |value: fn(&crate::run::Iteration) -> f64| {
+            let all = run.convergence.iter().enumerate();
+            all.map(|(i, step)| (i as f64, value(step).max(FLOOR))).collect::<Vec<_>>()
+        };
+        for (name, points) in [("violation", pick(|i| i.primal)), ("stationarity", pick(|i| i.dual))] {
+            let name = label(runs, index, name);
+            panel.lines.push(Line { name, run: index, points, ..Line::default() });
+        }
+        let begun = run.convergence.iter().enumerate().filter(|(i, step)| *i > 0 && step.iteration == 0);
+        panel.marks.extend(begun.map(|(i, step)| (i as f64, format!("step {}", step.step))));
+    }
+    panel
+}

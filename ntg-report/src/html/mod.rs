@@ -1,0 +1,125 @@
+//! One HTML page that needs no network: what a colleague should see of one run or several.
+//!
+//! Takes [`Run`]s; gives a page that holds its styles, its program (uPlot for charts over time, a
+//! small one of ours for maps) and its data.
+
+mod data;
+mod spec;
+mod tables;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::figure;
+use crate::run::Run;
+
+const STYLE: &str = include_str!("../assets/report.css");
+const UPLOT_STYLE: &str = include_str!("../assets/uPlot.min.css");
+const UPLOT: &str = include_str!("../assets/uPlot.iife.min.js");
+const PROGRAM: &str = include_str!("../assets/report.js");
+const MAP: &str = include_str!("../assets/map.js");
+
+/// What stands in a page beside the runs.
+#[derive(Clone, Debug, Default)]
+pub struct Page {
+    /// Pairs of quantities to draw as maps; empty for the likely one.
+    pub tracks: Vec<(String, String)>,
+}
+
+/// The page about runs, each with its name. The first is shown in full, the others are compared.
+///
+/// # Errors
+/// In words: no run, or a track of unknown quantities.
+pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
+    let Some((_, first)) = runs.first() else { return Err("there is no run to report".to_owned()) };
+    let data = data::charts(runs, page)?;
+    let title = format!("{} · ntg report", first.problem);
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+                title { (title) }
+                style { (PreEscaped(UPLOT_STYLE)) (PreEscaped(STYLE)) }
+            }
+            body {
+                (head(first))
+                main {
+                    (summary(first))
+                    @if runs.len() > 1 { (tables::comparison(runs)) }
+                    (charts("tracks", "Tracks", &data.tracks))
+                    (charts("outputs", "Outputs", &data.outputs))
+                    (charts("lets", "Named expressions", &data.lets))
+                    (charts("constraints", "Constraints and their bounds", &data.constraints))
+                    (charts("multipliers", "Multipliers", &data.multipliers))
+                    @for (name, run) in runs { (spec::section(name, run, runs.len() > 1)) }
+                    (tables::constraints(first))
+                    (tables::quantities(first))
+                    (charts("convergence", "Convergence", &data.convergence))
+                    (tables::history(first))
+                    (tables::discretisation(first))
+                }
+                footer { "Made by ntg " (env!("CARGO_PKG_VERSION")) ". Charts by uPlot (MIT licence, Leon Sorokin). This page needs no network." }
+                script type="application/json" id="data" { (PreEscaped(data.json)) }
+                script { (PreEscaped(UPLOT)) }
+                script { (PreEscaped(MAP)) (PreEscaped(PROGRAM)) }
+            }
+        }
+    };
+    Ok(markup.into_string())
+}
+
+fn head(run: &Run) -> Markup {
+    html! {
+        header {
+            div.bar {
+                h1 { (run.problem) }
+                span.status.good[run.is_solved()].bad[!run.is_solved()] { (run.status) }
+                button #theme type="button" title="light or dark" { "◐" }
+            }
+            @let doc = run.doc.split("\n\n").next().unwrap_or("");
+            @if !doc.is_empty() { p.doc { (doc) } }
+            nav {
+                @for (anchor, name) in [("tracks", "Tracks"), ("outputs", "Outputs"), ("constraints", "Constraints"), ("spec", "Spec"), ("table", "Table"), ("convergence", "Convergence"), ("discretisation", "Discretisation")] {
+                    a href={ "#" (anchor) } { (name) }
+                }
+            }
+        }
+    }
+}
+
+/// The numbers that one looks at first.
+fn summary(run: &Run) -> Markup {
+    let unit = &run.objective_unit;
+    html! {
+        section #summary {
+            @if !run.advice.is_empty() { p.advice { "Try: " (run.advice) } }
+            dl.cards {
+                (card("objective", &tables::with_unit(run.objective, unit), "as discretised"))
+                (card("finely integrated", &tables::with_unit(run.objective_fine, unit), "closer to what following it would cost"))
+                (card("violation at points", &tables::small(run.violation.points), "largest, relative to the bounds"))
+                (card("between points", &tables::small(run.violation.between), "largest, on a finer grid"))
+                (card("iterations", &run.iterations.to_string(), "over all steps"))
+                (card("time", &tables::seconds(run.seconds), "of the solve"))
+            }
+            @if run.terms.len() > 1 { (tables::terms(run)) }
+        }
+    }
+}
+
+fn card(name: &str, value: &str, note: &str) -> Markup {
+    html! { div.card title=(note) { dt { (name) } dd { (value) } } }
+}
+
+/// Places where the page's program draws; nothing where there is nothing to draw.
+fn charts(anchor: &str, title: &str, ids: &[usize]) -> Markup {
+    html! {
+        @if !ids.is_empty() {
+            section id=(anchor) {
+                h2 { (title) }
+                div.charts { @for id in ids { figure.chart data-chart=(id) {} } }
+            }
+        }
+    }
+}

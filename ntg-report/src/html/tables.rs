@@ -1,0 +1,217 @@
+//! The tables of a page, and how numbers are written in it.
+
+use maud::{Markup, html};
+
+use super::spec::{State, state};
+use crate::figure::Runs;
+use crate::run::{Multiplier, Run};
+
+/// Seven significant digits without an exponent where that is readable.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    if !(1e-4..1e9).contains(&value.abs()) {
+        return format!("{value:.3e}");
+    }
+    let decimals = (6.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A number with its unit.
+pub(super) fn with_unit(value: f64, unit: &str) -> String {
+    if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
+}
+
+/// A violation: its order of magnitude matters.
+pub(super) fn small(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
+}
+
+/// Seconds of computing.
+pub(super) fn seconds(value: f64) -> String {
+    if value < 1.0 { format!("{:.3} ms", 1e3 * value) } else { format!("{value:.3} s") }
+}
+
+/// ", t = 12.5 s in `covert`"; empty for no place.
+pub(super) fn place_words(t: Option<f64>, phase: &str) -> String {
+    let time = t.map_or_else(String::new, |t| format!(" at t = {} s", number(t)));
+    if phase.is_empty() { time } else { format!("{time} in {phase}") }
+}
+
+/// A multiplier, per second where it is a density.
+pub(super) fn multiplier_words(multiplier: &Multiplier) -> String {
+    format!("{}{}", number(multiplier.value), if multiplier.density { " per second" } else { "" })
+}
+
+/// The objective's terms.
+pub(super) fn terms(run: &Run) -> Markup {
+    html! {
+        div.scroll { table {
+            thead { tr { th { "term" } th.n { "value" } th.n { "finely integrated" } th { "unit" } } }
+            tbody { @for term in &run.terms {
+                tr { td { (term.name) } td.n { (number(term.value)) } td.n { (number(term.fine)) } td { (term.unit) } }
+            } }
+        } }
+    }
+}
+
+/// Every constraint with its state, violations and multiplier.
+pub(super) fn constraints(run: &Run) -> Markup {
+    html! {
+        @if !run.constraints.is_empty() {
+            section #table {
+                h2 { "Constraints" }
+                div.scroll { table {
+                    thead { tr {
+                        th { "constraint" } th { "block" } th.n { "line" } th { "state" }
+                        th.n { "missed at points" } th.n { "between" } th.n { "largest multiplier" } th.n { "at t" }
+                        th.n title="when the bound moves everywhere at once" { "dJ*/d(bound)" } th { "unit" }
+                    } }
+                    tbody { @for constraint in &run.constraints {
+                        @let state = state(constraint);
+                        tr.dim[state == State::Inactive] {
+                            td.name { (constraint.name) }
+                            td { (constraint.block) }
+                            td.n { @if constraint.line > 0 { (constraint.line) } }
+                            td { mark class=(state.class()) { (state.word()) } }
+                            td.n { @if let Some(worst) = &constraint.points { (small(worst.relative)) } }
+                            td.n { @if let Some(worst) = &constraint.between { (small(worst.relative)) } }
+                            @if let Some(multiplier) = &constraint.multiplier {
+                                td.n { (multiplier_words(multiplier)) }
+                                td.n { @if let Some(t) = multiplier.t { (number(t)) } }
+                                td.n { (number(constraint.sensitivity)) }
+                            } @else { td {} td {} td {} }
+                            td { (constraint.unit) }
+                        }
+                    } }
+                } }
+                p.quiet { "Violations are relative to the size of the bounds. Multipliers are dJ*/d(bound) in units of the objective per unit of the constraint; along a trajectory they are densities over time." }
+            }
+        }
+    }
+}
+
+/// Times, phases, variables and parameters.
+pub(super) fn quantities(run: &Run) -> Markup {
+    html! {
+        section #quantities {
+            h2 { "Times, variables and parameters" }
+            div.columns {
+                @if !run.times.is_empty() {
+                    div.scroll { table {
+                        thead { tr { th { "time" } th.n { "seconds" } } }
+                        tbody { @for (name, t) in &run.times { tr { td { (name) } td.n { (number(*t)) } } } }
+                    } }
+                }
+                @if !run.variables.is_empty() {
+                    div.scroll { table {
+                        thead { tr { th { "variable" } th.n { "value" } th { "unit" } } }
+                        tbody { @for (name, v) in &run.variables { tr { td { (name) } td.n { (number(v.value)) } td { (v.unit) } } } }
+                    } }
+                }
+                @let constants = run.lets.iter().filter(|(_, series)| series.t.is_empty()).collect::<Vec<_>>();
+                @if !constants.is_empty() {
+                    div.scroll { table {
+                        thead { tr { th { "named number" } th.n { "value" } th { "unit" } } }
+                        tbody { @for (name, series) in constants {
+                            tr { td { (name) } td.n { (number(series.value.first().copied().unwrap_or(f64::NAN))) } td { (series.unit) } }
+                        } }
+                    } }
+                }
+                @if !run.parameters.is_empty() {
+                    div.scroll { table {
+                        thead { tr { th { "parameter" } th.n { "value" } th { "unit" } } }
+                        tbody { @for (name, v) in &run.parameters {
+                            tr { td { (name) } td.n { (v.value.iter().map(|v| number(*v)).collect::<Vec<_>>().join(", ")) } td { (v.unit) } }
+                        } }
+                    } }
+                }
+            }
+        }
+    }
+}
+
+/// The steps of a continuation.
+pub(super) fn history(run: &Run) -> Markup {
+    html! {
+        @if run.history.len() > 1 {
+            section {
+                h2 { "Steps of the continuation" }
+                div.scroll { table {
+                    thead { tr { th { "parameters" } th.n { "objective" } th.n { "iterations" } th.n { "time" } th { "status" } } }
+                    tbody { @for step in &run.history {
+                        tr {
+                            td { (step.parameters.iter().map(|(n, v)| format!("{n} = {}", number(*v))).collect::<Vec<_>>().join(", ")) }
+                            td.n { (number(step.objective)) } td.n { (step.iterations) } td.n { (seconds(step.seconds)) }
+                            td { (step.status) }
+                        }
+                    } }
+                } }
+            }
+        }
+    }
+}
+
+/// Splines, points and the size of the optimisation problem.
+pub(super) fn discretisation(run: &Run) -> Markup {
+    let grid = &run.discretisation;
+    html! {
+        section #discretisation {
+            h2 { "Discretisation" }
+            p { (grid.variables) " variables, of which " (grid.coefficients) " are spline coefficients; " (grid.rows) " rows of constraints." }
+            div.scroll { table {
+                thead { tr { th { "phase" } th { "points" } th { "splines" } } }
+                tbody { @for phase in &grid.phases {
+                    tr {
+                        td { @if phase.name.is_empty() { "the whole time" } @else { (phase.name) } }
+                        td { (phase.points) }
+                        td { @for (name, words) in &phase.splines { div { code { (name) } ": " (words) } } }
+                    }
+                } }
+            } }
+        }
+    }
+}
+
+/// Several runs side by side.
+pub(super) fn comparison(runs: &Runs<'_>) -> Markup {
+    let mut parameters: Vec<&str> = vec![];
+    for (name, values) in runs.iter().flat_map(|(_, run)| &run.parameters) {
+        let differs =
+            runs.iter().any(|(_, run)| run.parameters.get(name).is_none_or(|other| other.value != values.value));
+        if differs && !parameters.contains(&name.as_str()) {
+            parameters.push(name);
+        }
+    }
+    html! {
+        section #comparison {
+            h2 { "Comparison" }
+            div.scroll { table {
+                thead { tr {
+                    th { "run" } th { "status" } th.n { "objective" } th { "unit" } th.n { "finely integrated" }
+                    th.n { "missed at points" } th.n { "between" } th.n { "iterations" } th.n { "time" }
+                    @for name in &parameters { th.n { (name) } }
+                } }
+                tbody { @for (name, run) in runs {
+                    tr {
+                        td.name { (name) }
+                        td { mark.equality[run.is_solved()].violated[!run.is_solved()] { (run.status) } }
+                        td.n { (number(run.objective)) } td { (run.objective_unit) } td.n { (number(run.objective_fine)) }
+                        td.n { (small(run.violation.points)) } td.n { (small(run.violation.between)) }
+                        td.n { (run.iterations) } td.n { (seconds(run.seconds)) }
+                        @for parameter in &parameters {
+                            td.n { @if let Some(values) = run.parameters.get(*parameter) {
+                                (values.value.iter().map(|v| number(*v)).collect::<Vec<_>>().join(", "))
+                            } }
+                        }
+                    }
+                } }
+            } }
+        }
+    }
+}

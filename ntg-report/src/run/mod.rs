@@ -1,0 +1,372 @@
+//! A saved run: everything that plots, reports and later solves want to know of a solve.
+//!
+//! The fields are those of docs/solution-format.md. What an older or hand-written file does not
+//! say is empty. Numbers that are not finite are `null` in the file and NaN here.
+
+mod layout;
+mod numbers;
+mod record;
+
+pub use layout::layout;
+pub use record::Recording;
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// What the file says it is.
+pub const FORMAT: &str = "ntg-solution";
+/// The version that this program writes and reads.
+pub const VERSION: u64 = 1;
+
+/// One solve.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Run {
+    /// Always [`FORMAT`].
+    pub format: String,
+    /// [`VERSION`].
+    pub version: u64,
+    /// The problem's name.
+    pub problem: String,
+    /// The problem's documentation.
+    pub doc: String,
+    /// `solved`, or why the solve ended.
+    pub status: String,
+    /// What to try next; empty when solved.
+    pub advice: String,
+    /// In the user's sense and unit.
+    #[serde(with = "numbers::one")]
+    pub objective: f64,
+    /// The unit of objectives.
+    pub objective_unit: String,
+    /// The objective integrated on a finer grid.
+    #[serde(with = "numbers::one")]
+    pub objective_fine: f64,
+    /// The objective's terms.
+    pub terms: Vec<Term>,
+    /// Iterations of all steps of a continuation.
+    pub iterations: usize,
+    /// Seconds of the solve.
+    #[serde(with = "numbers::one")]
+    pub seconds: f64,
+    /// Largest relative violations.
+    pub violation: Violation,
+    /// What the meaning of `unknowns` depends on.
+    pub layout: Value,
+    /// All variables of the optimisation problem, SI.
+    #[serde(with = "numbers::many")]
+    pub unknowns: Vec<f64>,
+    /// Outputs by path.
+    pub outputs: IndexMap<String, Series>,
+    /// Named expressions by path.
+    pub lets: IndexMap<String, Series>,
+    /// Durations and event times by name, seconds.
+    pub times: IndexMap<String, f64>,
+    /// Phases in order.
+    pub phases: Vec<Phase>,
+    /// Declared variables.
+    pub variables: IndexMap<String, Quantity>,
+    /// Parameters as they were for this run.
+    pub parameters: IndexMap<String, Values>,
+    /// The constraints, in the order of the spec.
+    pub constraints: Vec<Constraint>,
+    /// The steps of a continuation; one without.
+    pub history: Vec<Step>,
+    /// Every iteration.
+    pub convergence: Vec<Iteration>,
+    /// The optimisation problem's size.
+    pub discretisation: Discretisation,
+    /// The spec.
+    pub spec: Option<Spec>,
+}
+
+/// A term of the objective.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Term {
+    /// Its name or text.
+    pub name: String,
+    /// As discretised.
+    #[serde(with = "numbers::one")]
+    pub value: f64,
+    /// On the finer grid.
+    #[serde(with = "numbers::one")]
+    pub fine: f64,
+    /// The unit of both.
+    pub unit: String,
+}
+
+/// Largest relative violations.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Violation {
+    /// At the points of the transcription.
+    #[serde(with = "numbers::one")]
+    pub points: f64,
+    /// Between them.
+    #[serde(with = "numbers::one")]
+    pub between: f64,
+}
+
+/// A quantity over time, or a single number (no times).
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Series {
+    /// The unit's symbol; empty for a pure number.
+    pub unit: String,
+    /// SI units in one unit.
+    pub factor: f64,
+    /// Its documentation in the spec.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub doc: String,
+    /// Seconds of mission time, increasing.
+    #[serde(with = "numbers::many", skip_serializing_if = "Vec::is_empty")]
+    pub t: Vec<f64>,
+    /// Values in the unit.
+    #[serde(with = "numbers::many")]
+    pub value: Vec<f64>,
+}
+
+/// A phase and its times.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Phase {
+    /// Its path.
+    pub name: String,
+    /// When it starts, seconds.
+    pub start: f64,
+    /// When it ends.
+    pub end: f64,
+}
+
+/// A number with its unit.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Quantity {
+    /// The unit's symbol.
+    pub unit: String,
+    /// SI units in one unit.
+    pub factor: f64,
+    /// In the unit.
+    #[serde(with = "numbers::one")]
+    pub value: f64,
+}
+
+/// The values of a parameter.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Values {
+    /// The unit's symbol.
+    pub unit: String,
+    /// In the unit; several for an array.
+    #[serde(with = "numbers::many")]
+    pub value: Vec<f64>,
+}
+
+/// One constraint of the spec.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Constraint {
+    /// Its name, or its text.
+    pub name: String,
+    /// `initial`, `trajectory`, `final`, `temporal` or `continuity`.
+    pub block: String,
+    /// Line in the spec, from 1; 0 for none.
+    pub line: u32,
+    /// Column in characters, from 1.
+    pub column: u32,
+    /// Its text, on one line, cut where it is long.
+    pub text: String,
+    /// The unit of values, bounds and violations.
+    pub unit: String,
+    /// Where it is violated most at the points.
+    pub points: Option<Worst>,
+    /// Where it is violated most between them.
+    pub between: Option<Worst>,
+    /// The largest multiplier.
+    pub multiplier: Option<Multiplier>,
+    /// `dJ*/d(bound)` when the bound moves everywhere.
+    #[serde(with = "numbers::one")]
+    pub sensitivity: f64,
+    /// Its members over time.
+    pub members: Vec<Member>,
+}
+
+/// A largest violation.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Worst {
+    /// In the constraint's unit.
+    #[serde(with = "numbers::one")]
+    pub violation: f64,
+    /// Relative to the scale of the bounds.
+    #[serde(with = "numbers::one")]
+    pub relative: f64,
+    /// The value there.
+    #[serde(with = "numbers::one")]
+    pub value: f64,
+    /// Seconds of mission time.
+    pub t: Option<f64>,
+    /// The phase's path.
+    pub phase: String,
+}
+
+/// A multiplier `dJ*/d(bound)`.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Multiplier {
+    /// In units of the objective per unit of the constraint, per second where it is a density.
+    #[serde(with = "numbers::one")]
+    pub value: f64,
+    /// Whether it is a density over time.
+    pub density: bool,
+    /// Seconds of mission time.
+    pub t: Option<f64>,
+}
+
+/// One member of a constraint in one phase.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Member {
+    /// Its phase and indices, `uav[2].covert [3]`; empty where there is one only.
+    pub name: String,
+    /// The lower bound; none for none.
+    pub lower: Option<f64>,
+    /// The upper bound; none for none.
+    pub upper: Option<f64>,
+    /// Seconds of mission time; empty for a constraint at no point.
+    #[serde(with = "numbers::many")]
+    pub t: Vec<f64>,
+    /// Values on the finer grid.
+    #[serde(with = "numbers::many")]
+    pub value: Vec<f64>,
+    /// Seconds at which there are multipliers.
+    #[serde(with = "numbers::many")]
+    pub multiplier_t: Vec<f64>,
+    /// Multipliers there.
+    #[serde(with = "numbers::many")]
+    pub multiplier: Vec<f64>,
+}
+
+/// One step of a continuation.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Step {
+    /// The parameters of the step.
+    pub parameters: IndexMap<String, f64>,
+    /// How it ended.
+    pub status: String,
+    /// Its objective.
+    #[serde(with = "numbers::one")]
+    pub objective: f64,
+    /// Its iterations.
+    pub iterations: usize,
+    /// Its seconds.
+    #[serde(with = "numbers::one")]
+    pub seconds: f64,
+}
+
+/// One iteration.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Iteration {
+    /// The step of the continuation, from 1.
+    pub step: usize,
+    /// Iterations completed in the step.
+    pub iteration: usize,
+    /// The minimised objective.
+    #[serde(with = "numbers::one")]
+    pub objective: f64,
+    /// Largest scaled violation.
+    #[serde(with = "numbers::one")]
+    pub primal: f64,
+    /// Largest scaled component of the Lagrangian's gradient.
+    #[serde(with = "numbers::one")]
+    pub dual: f64,
+    /// Length of the last step.
+    #[serde(with = "numbers::one")]
+    pub length: f64,
+}
+
+/// The size of the optimisation problem.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Discretisation {
+    /// Variables.
+    pub variables: usize,
+    /// Of these, spline coefficients.
+    pub coefficients: usize,
+    /// Constraint rows.
+    pub rows: usize,
+    /// Splines and points of each phase of the spec.
+    pub phases: Vec<Grid>,
+}
+
+/// Splines and points of one phase (family) of the spec.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Grid {
+    /// Agent and phase; empty without names.
+    pub name: String,
+    /// The points, in words.
+    pub points: String,
+    /// The splines, in words, by output.
+    pub splines: IndexMap<String, String>,
+}
+
+/// The spec's text.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Spec {
+    /// The file's name as the user wrote it.
+    pub name: String,
+    /// The whole text.
+    pub text: String,
+    /// What the compiler had to say.
+    pub findings: Vec<Finding>,
+}
+
+/// A finding of the compiler.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Finding {
+    /// Its code.
+    pub code: String,
+    /// `error`, `warning` or `note`.
+    pub severity: String,
+    /// What was found.
+    pub message: String,
+    /// What to write instead.
+    pub help: String,
+    /// Its line.
+    pub line: usize,
+}
+
+impl Run {
+    /// Reads a saved run.
+    ///
+    /// # Errors
+    /// In words: text that is no JSON, no saved run, or of another version.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let value: Value = serde_json::from_str(text).map_err(|e| format!("is not JSON: {e}"))?;
+        if value["format"] != FORMAT {
+            return Err(format!("is no saved solution (its \"format\" is not \"{FORMAT}\")"));
+        }
+        if value["version"] != VERSION {
+            return Err(format!("has version {}; this program reads version {VERSION}", value["version"]));
+        }
+        serde_json::from_value(value).map_err(|e| format!("is damaged: {e}"))
+    }
+
+    /// The run as a JSON document.
+    pub fn text(&self) -> String {
+        // Plain data with string keys always has a JSON form.
+        serde_json::to_string(self).unwrap_or_default() + "\n"
+    }
+
+    /// Whether a solution was found.
+    pub fn is_solved(&self) -> bool {
+        self.status == "solved"
+    }
+}

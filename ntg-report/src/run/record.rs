@@ -1,0 +1,306 @@
+//! From a solve to a [`Run`].
+
+use indexmap::IndexMap;
+use ntg_compiler::diagnostic::{Diagnostic, Severity};
+use ntg_compiler::source::Source;
+use ntg_runtime::nlp::Nlp;
+use ntg_runtime::problem::Problem;
+use ntg_runtime::report::{ConstraintReport, Report, Trace};
+use ntg_runtime::settings::Progress;
+use ntg_runtime::structure::{Block, Points, Structure, Unit};
+use ntg_runtime::transcribe::Transcription;
+
+use super::{
+    Constraint, Discretisation, FORMAT, Finding, Grid, Iteration, Member, Multiplier, Phase, Quantity, Run, Series,
+    Spec, Step, Term, VERSION, Values, Violation, Worst, layout,
+};
+
+/// Samples of each output and named expression.
+const SAMPLES: usize = 401;
+/// Stretches of the finer grid for each point of the transcription.
+const FINER: usize = 10;
+/// How near to a jump, relative to the whole time, its left value is taken.
+const NEAR: f64 = 1e-9;
+
+/// A solve and what led to it.
+pub struct Recording<'a> {
+    /// The problem with its parameters as they were.
+    pub problem: &'a dyn Problem,
+    /// What the solve said.
+    pub report: &'a Report,
+    /// The spec.
+    pub source: &'a Source,
+    /// What the compiler had to say about it.
+    pub notes: &'a [Diagnostic],
+    /// All iterations that were seen, of all steps of a continuation.
+    pub iterations: &'a [Progress],
+}
+
+impl Recording<'_> {
+    /// Everything about the solve as plain data.
+    pub fn run(&self) -> Run {
+        let (report, solution) = (self.report, &self.report.solution);
+        let structure = solution.structure();
+        Run {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            problem: report.problem.clone(),
+            doc: structure.doc.clone(),
+            status: if report.is_solved() { "solved".to_owned() } else { report.status.to_string() },
+            advice: report.advice.to_owned(),
+            objective: report.objective,
+            objective_unit: report.objective_unit.symbol.clone(),
+            objective_fine: report.objective_fine,
+            terms: report.terms.iter().map(term).collect(),
+            iterations: report.iterations,
+            seconds: report.seconds,
+            violation: Violation { points: report.violation.points, between: report.violation.between },
+            layout: layout(structure),
+            unknowns: solution.coefficients().to_vec(),
+            outputs: self.outputs(),
+            lets: self.lets(),
+            times: solution.event_times().into_iter().collect(),
+            phases: solution.phases().into_iter().map(|p| Phase { name: p.name, start: p.start, end: p.end }).collect(),
+            variables: solution.variables().into_iter().map(|v| (v.name, quantity(v.value, &v.unit))).collect(),
+            parameters: parameters(structure),
+            constraints: self.constraints(),
+            history: report.history.iter().map(step).collect(),
+            convergence: iterations(self.iterations, report),
+            discretisation: self.discretisation(),
+            spec: Some(Spec {
+                name: self.source.name.clone(),
+                text: self.source.text.clone(),
+                findings: self.notes.iter().map(|note| finding(note, self.source)).collect(),
+            }),
+        }
+    }
+
+    fn outputs(&self) -> IndexMap<String, Series> {
+        let structure = self.report.solution.structure();
+        let doc = |name: &str| {
+            let last = name.rsplit('.').next().unwrap_or(name);
+            let base = last.split('[').next().unwrap_or(last);
+            let mut outputs = structure.phases.iter().flat_map(|phase| &phase.outputs);
+            outputs.find(|output| output.name == base).map(|output| output.doc.clone()).unwrap_or_default()
+        };
+        let trajectories = self.report.solution.trajectories().into_iter();
+        let series = trajectories.map(|trajectory| {
+            let t = self.times(trajectory.start(), trajectory.end());
+            let value = t.iter().map(|t| trajectory.at(*t)).collect();
+            (trajectory.name().to_owned(), over(trajectory.unit(), doc(trajectory.name()), t, value))
+        });
+        series.collect()
+    }
+
+    fn lets(&self) -> IndexMap<String, Series> {
+        let signals = self.report.solution.signals(self.problem).into_iter();
+        let series = signals.map(|signal| {
+            let t = signal.span().map(|(start, end)| self.times(start, end)).unwrap_or_default();
+            let value = match t.is_empty() {
+                true => vec![signal.at(0.0)],
+                false => t.iter().map(|t| signal.at(*t)).collect(),
+            };
+            (signal.name().to_owned(), over(signal.unit(), signal.doc().to_owned(), t, value))
+        });
+        series.collect()
+    }
+
+    /// Equally spaced times, with both sides of every start of a phase between them.
+    fn times(&self, start: f64, end: f64) -> Vec<f64> {
+        let last = (SAMPLES - 1) as f64;
+        let mut times: Vec<f64> = (0..SAMPLES).map(|i| start + (end - start) * i as f64 / last).collect();
+        if let Some(time) = times.last_mut() {
+            *time = end;
+        }
+        for phase in self.report.solution.phases() {
+            let before = phase.start - NEAR * (end - start);
+            if before > start && phase.start < end {
+                times.extend([before, phase.start]);
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    fn constraints(&self) -> Vec<Constraint> {
+        // Only another problem than the solved one has no traces.
+        let traces = self.report.solution.traces(self.problem, FINER).unwrap_or_default();
+        let all = self.report.constraints.iter().enumerate();
+        all.map(|(index, report)| {
+            let own: Vec<&Trace> = traces.iter().filter(|trace| trace.constraint == index).collect();
+            constraint(report, &own)
+        })
+        .collect()
+    }
+
+    fn discretisation(&self) -> Discretisation {
+        let structure = self.report.solution.structure();
+        let Ok(nlp) = Transcription::new(self.problem) else { return Discretisation::default() };
+        Discretisation {
+            variables: nlp.variables(),
+            coefficients: nlp.coefficients(),
+            rows: nlp.rows(),
+            phases: structure.phases.iter().map(|phase| grid(structure, phase)).collect(),
+        }
+    }
+}
+
+fn over(unit: &Unit, doc: String, t: Vec<f64>, value: Vec<f64>) -> Series {
+    Series { unit: unit.symbol.clone(), factor: unit.factor, doc, t, value }
+}
+
+fn quantity(value: f64, unit: &Unit) -> Quantity {
+    Quantity { unit: unit.symbol.clone(), factor: unit.factor, value }
+}
+
+fn term(term: &ntg_runtime::report::TermReport) -> Term {
+    Term { name: term.name.clone(), value: term.value, fine: term.fine, unit: term.unit.symbol.clone() }
+}
+
+fn parameters(structure: &Structure) -> IndexMap<String, Values> {
+    let shown = structure.parameters.iter().map(|parameter| {
+        let value = parameter.value.iter().map(|value| value / parameter.unit.factor).collect();
+        (parameter.name.clone(), Values { unit: parameter.unit.symbol.clone(), value })
+    });
+    shown.collect()
+}
+
+fn constraint(report: &ConstraintReport, traces: &[&Trace]) -> Constraint {
+    let worst = |worst: &Option<ntg_runtime::report::Worst>| {
+        worst.as_ref().map(|worst| Worst {
+            violation: worst.violation,
+            relative: worst.relative,
+            value: worst.value,
+            t: worst.time,
+            phase: worst.phase.clone(),
+        })
+    };
+    Constraint {
+        name: report.name.clone(),
+        block: block(report.block).to_owned(),
+        line: report.place.line,
+        column: report.place.column,
+        text: report.place.text.clone(),
+        unit: report.unit.symbol.clone(),
+        points: worst(&report.points),
+        between: worst(&report.between),
+        multiplier: report.multiplier.as_ref().map(|found| Multiplier {
+            value: found.value,
+            density: found.density,
+            t: found.time,
+        }),
+        sensitivity: report.sensitivity,
+        members: traces.iter().map(|trace| member(trace)).collect(),
+    }
+}
+
+fn block(block: Block) -> &'static str {
+    match block {
+        Block::Initial => "initial",
+        Block::Trajectory => "trajectory",
+        Block::Final => "final",
+        Block::Temporal => "temporal",
+        Block::Continuity => "continuity",
+    }
+}
+
+fn member(trace: &Trace) -> Member {
+    let indices = if trace.indices.is_empty() { String::new() } else { format!("{:?}", trace.indices) };
+    let name = match (trace.phase.is_empty(), indices.is_empty()) {
+        (false, false) => format!("{} {indices}", trace.phase),
+        _ => format!("{}{indices}", trace.phase),
+    };
+    let timed = trace.points.iter().any(|(t, _)| t.is_finite());
+    let (t, value): (Vec<f64>, Vec<f64>) = trace.points.iter().copied().unzip();
+    let (multiplier_t, multiplier) = trace.multipliers.iter().copied().unzip();
+    Member {
+        name,
+        lower: Some(trace.lower).filter(|bound| bound.is_finite()),
+        upper: Some(trace.upper).filter(|bound| bound.is_finite()),
+        t: if timed { t } else { vec![] },
+        value,
+        multiplier_t: if timed { multiplier_t } else { vec![] },
+        multiplier,
+    }
+}
+
+fn step(step: &ntg_runtime::report::StepReport) -> Step {
+    Step {
+        parameters: step.parameters.iter().map(|value| (value.name.clone(), value.value)).collect(),
+        status: step.status.to_string(),
+        objective: step.objective,
+        iterations: step.iterations,
+        seconds: step.seconds,
+    }
+}
+
+/// Iterations with the step of the continuation that each belongs to: counting begins anew in
+/// every step. The point at which the last step ended follows, if it was not seen.
+fn iterations(seen: &[Progress], report: &Report) -> Vec<Iteration> {
+    let mut step = 0;
+    let mut found = vec![];
+    for progress in seen {
+        if progress.iteration == 0 {
+            step += 1;
+        }
+        found.push(Iteration {
+            step: step.max(1),
+            iteration: progress.iteration,
+            objective: progress.objective,
+            primal: progress.primal,
+            dual: progress.dual,
+            length: progress.step,
+        });
+    }
+    let made = report.history.last().map_or(0, |step| step.iterations);
+    if found.last().is_some_and(|last| last.iteration < made) {
+        found.push(Iteration {
+            step,
+            iteration: made,
+            objective: report.objective,
+            primal: report.residuals.scaled.primal,
+            dual: report.residuals.scaled.dual,
+            length: f64::NAN,
+        });
+    }
+    found
+}
+
+fn finding(finding: &Diagnostic, source: &Source) -> Finding {
+    let severity = match finding.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Note => "note",
+    };
+    Finding {
+        code: finding.code.text().to_owned(),
+        severity: severity.to_owned(),
+        message: finding.message.clone(),
+        help: finding.help.clone().unwrap_or_default(),
+        line: source.place(finding.span.start).line,
+    }
+}
+
+fn grid(structure: &Structure, phase: &ntg_runtime::structure::Phase) -> Grid {
+    let agent = structure.agents.get(phase.agent).and_then(|agent| agent.name.as_deref());
+    let name: Vec<&str> = agent.into_iter().chain(phase.name.as_deref()).collect();
+    let words = phase.points.iter().filter_map(|points| match points {
+        Points::Gauss { points } => Some(format!("{points} Gauss points in each interval")),
+        Points::Uniform { points } => Some(format!("{points} equally spaced points")),
+        Points::Breakpoints => Some("both ends of each interval".to_owned()),
+        Points::LeftLimits => None, // They belong to the breakpoints.
+    });
+    let splines = phase.outputs.iter().map(|output| {
+        let spline = &output.spline;
+        let intervals = spline.breakpoints.len().saturating_sub(1);
+        let family = output.family.map_or_else(String::new, |f| format!("[{} .. {}]", f.first, f.last));
+        let coefficients = intervals * (spline.order - spline.smoothness) + spline.smoothness;
+        let words = format!(
+            "order {}, smoothness {}, {intervals} intervals: {coefficients} coefficients",
+            spline.order, spline.smoothness
+        );
+        (format!("{}{family}", output.name), words)
+    });
+    Grid { name: name.join("."), points: words.collect::<Vec<_>>().join(", "), splines: splines.collect() }
+}
