@@ -15,4 +15,4 @@ mod start;
 mod statements;
 
 pub use program::Guess;
-pub(crate) use start::start;
+pub use start::start;

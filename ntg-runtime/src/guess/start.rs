@@ -25,11 +25,12 @@ pub(super) struct Curve<'a> {
     pub(super) function: Function<'a>,
 }
 
-/// The first point of a solve.
+/// The first point of a solve, from the spec's own guess or from a program's: what another solver has to
+/// start from to be compared.
 ///
 /// # Errors
 /// What the spec or the program guesses and cannot be used.
-pub(crate) fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, SetupError> {
+pub fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, SetupError> {
     let nothing = Guess::default();
     let guess = guess.unwrap_or(&nothing);
     let layout = &nlp.model.layout;

@@ -1,0 +1,68 @@
+"""Solvers on one row, by turns, several times."""
+
+import statistics
+
+from .casadi_solvers import Solver
+from .server import Asked
+
+
+def solvers(row, server, options):
+    """Every solver of a row that the options ask for, by name."""
+    found = {}
+    if "ntg" in options.by:
+        found["ntg"] = Asked(server, "ntg", row.ask)
+    if "ripopt" in options.by:
+        found["ripopt"] = Asked(server, "ripopt", row.ask)
+    if "ipopt" in options.by:
+        program = row.program()
+        scaled = better_scaling(program)
+        for kind in ipopt_kinds(row, options):
+            found[kind] = Solver(program, kind, scaled)
+    if "sqp" in options.by and row.sqp:
+        program = row.program()
+        found["sqp"] = Solver(program, "sqp", better_scaling(program))
+    return found
+
+
+def ipopt_kinds(row, options):
+    yield "sx"
+    if not options.skip_compiled:
+        yield "mc"
+        if row.scalar:
+            yield "c"
+
+
+def better_scaling(program):
+    """Whether IPOPT needs fewer iterations in variables of size 1 than in kilometres and seconds."""
+    plain, scaled = (Solver(program, "sx", scaled).once() for scaled in (False, True))
+    if plain["solved"] != scaled["solved"]:
+        return scaled["solved"]
+    return scaled["iterations"] < plain["iterations"]
+
+
+def measure(row, server, options):
+    """Everything known about a row: for each solver its answer, and medians of batches in seconds."""
+    asked = solvers(row, server, options)
+    answers, batches = {}, {name: {"wall": [], "cpu": []} for name in asked}
+    for _ in range(options.repeat):
+        for name, solver in list(asked.items()):
+            try:
+                answer = solver.answer(options.seconds, options.solves)
+            except RuntimeError as error:
+                # Some solvers end in an error; that is their answer to this row.
+                answers[name] = {"solved": False, "status": str(error).strip().splitlines()[-1]}
+                del asked[name]
+                continue
+            answers[name] = answer
+            for clock in ("wall", "cpu"):
+                batches[name][clock].append(statistics.median(answer[clock]))
+    return {name: summary(answer, batches[name]) for name, answer in answers.items()}
+
+
+def summary(answer, batches):
+    kept = {key: value for key, value in answer.items() if key not in ("wall", "cpu")}
+    for clock, values in batches.items():
+        if values:
+            kept[clock] = statistics.median(values)
+            kept[clock + "_batches"] = values
+    return kept

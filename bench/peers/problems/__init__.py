@@ -1,0 +1,1 @@
+"""Every problem of the comparison, transcribed for the peers."""

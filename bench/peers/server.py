@@ -1,0 +1,34 @@
+"""The other side of bench/server: ntg and ripopt, asked one question a line."""
+
+import json
+import subprocess
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent.parent / "server"
+
+
+class Server:
+    def __init__(self):
+        build = ["cargo", "build", "--release", "--quiet", "--manifest-path", str(HERE / "Cargo.toml")]
+        subprocess.run(build, check=True)
+        binary = HERE / "target" / "release" / "ntg-bench"
+        self.process = subprocess.Popen([str(binary)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def ask(self, by, question, **more):
+        """One answer; an error of the server is raised here."""
+        self.process.stdin.write(json.dumps({"by": by, **question, **more}) + "\n")
+        self.process.stdin.flush()
+        answer = json.loads(self.process.stdout.readline())
+        if isinstance(answer, dict) and "error" in answer:
+            raise RuntimeError(answer["error"])
+        return answer
+
+
+class Asked:
+    """One solver of the server on one case, with the face of `casadi_solvers.Solver`."""
+
+    def __init__(self, server, by, question):
+        self.server, self.by, self.question = server, by, question
+
+    def answer(self, seconds, solves):
+        return self.server.ask(self.by, self.question, seconds=seconds, solves=solves)

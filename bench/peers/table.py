@@ -1,0 +1,93 @@
+"""The table of results, and what it says of every row."""
+
+import math
+
+AGREES = 1e-6
+IPOPT = {"sx": "SX", "mx": "MX", "c": "C", "mc": "mapped C"}
+
+
+def best_ipopt(result):
+    """The name of the fastest variant that solved the row."""
+    found = [name for name in IPOPT if result.get(name, {}).get("solved")]
+    return min(found, key=lambda name: result[name]["cpu"], default=None)
+
+
+def milliseconds(answer):
+    if answer is None or "cpu" not in answer:
+        return "–"
+    text = f"{1e3 * answer['cpu']:.3g}"
+    return text if answer["solved"] else f"{text} (not solved)"
+
+
+def ratio(result, peer):
+    """How many times slower the peer is; none where one of them did not solve the row."""
+    ours, theirs = result.get("ntg", {}), result.get(peer, {}) if peer else {}
+    if not (ours.get("solved") and theirs.get("solved")):
+        return None
+    return theirs["cpu"] / ours["cpu"]
+
+
+def solver_share(answer):
+    """What part of a solve by ntg its solver takes; the rest is transcription and report."""
+    parts = answer.get("parts") or {}
+    whole = sum(parts.values())
+    return parts.get("solver", 0) / whole if whole else 1.0
+
+
+def against(value, target):
+    if value is None:
+        return "–"
+    return f"{value:.3g}" + (f" / {target:g}" if target else "")
+
+
+def agreement(row, result):
+    """Whether all that solved the row found one objective, and the known one."""
+    found = {name: answer["objective"] for name, answer in result.items() if answer.get("solved")}
+    if not found:
+        return "nobody solved it"
+    reference = row.reference if row.reference is not None else found.get("ntg", next(iter(found.values())))
+    off = {name: value / reference - 1 for name, value in found.items() if abs(value / reference - 1) > AGREES}
+    return "yes" if not off else ", ".join(f"{name} {value:+.1e}" for name, value in off.items())
+
+
+HEAD = (
+    "| problem | n | ntg | its | CasADi + IPOPT | its | ratio / target | solver only | sqpmethod | ratio / target "
+    "| ripopt | its | ratio / target | one objective |\n" + "|---" * 14 + "|"
+)
+
+
+def line(row, variables, result):
+    ours, name = result.get("ntg"), best_ipopt(result)
+    theirs = result.get(name)
+    ratios = [ratio(result, peer) for peer in (name, "sqp", "ripopt")]
+    alone = ratios[0] / solver_share(ours) if ratios[0] else None
+    cells = [
+        row.name,
+        str(variables),
+        milliseconds(ours),
+        str(ours.get("iterations", "–")) if ours else "–",
+        f"{milliseconds(theirs)} {IPOPT.get(name, '')}".strip(),
+        str(theirs["iterations"]) if theirs else "–",
+        against(ratios[0], row.ipopt),
+        against(alone, 0),
+        milliseconds(result.get("sqp")),
+        against(ratios[1], row.sqp if row.sqp > 1 else 0),
+        milliseconds(result.get("ripopt")),
+        str(result.get("ripopt", {}).get("iterations", "–")),
+        against(ratios[2], row.ripopt),
+        agreement(row, result),
+    ]
+    return "| " + " | ".join(cells) + " |"
+
+
+def growth(rows, results, solver):
+    """The exponent of time over intervals from B1/l=..., by least squares in logarithms; none for fewer than three."""
+    points = []
+    for row in rows:
+        answer = results.get(row.name, {}).get("solvers", {}).get(solver)
+        if row.name.startswith("B1/l=") and answer and answer.get("solved"):
+            points.append((math.log(int(row.name[5:])), math.log(answer["cpu"])))
+    if len(points) < 3:
+        return None
+    mean_x, mean_y = (sum(p[i] for p in points) / len(points) for i in (0, 1))
+    return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, y in points)

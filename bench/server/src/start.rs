@@ -1,0 +1,26 @@
+//! What the program is and where it starts, so that another transcription can be held against it.
+
+use crate::adapted::Adapted;
+use ntg::prelude::Guess;
+use ntg::runtime::guess::start;
+use ntg::runtime::nlp::Nlp;
+use ntg::runtime::transcribe::Transcription;
+use serde_json::{Value, json};
+
+/// Size, objective and largest violation at the first point, for each step of the continuation (all of them
+/// at the first step's point).
+pub fn describe(problem: &Adapted<'_>, guess: Option<&Guess>) -> Result<Value, String> {
+    let mut steps = vec![];
+    for step in &problem.steps() {
+        let nlp = Transcription::new(step).map_err(|error| error.to_string())?;
+        let first = start(&nlp, guess).map_err(|error| error.to_string())?;
+        let (mut work, mut at) = nlp.workspace();
+        nlp.values(&first, &mut work, &mut at).map_err(|error| error.to_string())?;
+        steps.push(json!({
+            "variables": nlp.variables(),
+            "rows": nlp.rows(),
+            "objective": problem.in_its_unit(at.objective),
+        }));
+    }
+    Ok(Value::Array(steps))
+}
