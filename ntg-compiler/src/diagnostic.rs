@@ -7,6 +7,7 @@
 //! Afterwards: who holds a `Diagnostics` holds at least one finding.
 
 mod code;
+mod manual;
 mod render;
 
 pub use code::Code;

@@ -12,6 +12,7 @@
 
 pub mod ast;
 mod explain;
+mod format;
 mod grammar;
 mod parse;
 mod recover;
@@ -24,6 +25,7 @@ use crate::source::Source;
 use ast::{Expr, Spec, Values};
 use parse::Build;
 
+pub use format::{WIDTH, format};
 pub use scan::{Comment, MAX_DEPTH};
 
 /// Reads a spec.

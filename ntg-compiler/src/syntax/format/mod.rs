@@ -1,0 +1,56 @@
+//! The canonical layout of a spec.
+//!
+//! Takes a spec that parses, gives its text laid out again. The tokens stay as they are, in their order: only the
+//! white space between them is new, so the meaning cannot change and numbers, redundant parentheses and comments
+//! stay as their author wrote them.
+//!
+//! ```text
+//! Source --pieces--> tokens and comments --block--> entries --statement--> a stream of breaks
+//!                                                        --layout--> lines --align--> text
+//! ```
+//!
+//! What the author decides, and the layout keeps: a blank line between statements (never two), a block on one line
+//! or on several, short constraints side by side on a line, comments behind a statement or above it.
+//! Afterwards: no line is longer than [`WIDTH`] unless a single word or a comment is; formatting again changes nothing.
+
+mod align;
+mod block;
+mod layout;
+mod pieces;
+mod statement;
+mod table;
+
+use super::{grammar, parse, scan};
+use crate::diagnostic::Diagnostics;
+use crate::source::Source;
+use align::Line;
+use pieces::Pieces;
+
+/// The longest line, in characters.
+pub const WIDTH: usize = 120;
+
+/// How far the inside of braces and the rest of a broken statement stand to the right.
+const INDENT: usize = 4;
+
+/// Lays a spec out again.
+///
+/// The line breaks are those of the first line of the text (`\n` or `\r\n`), a byte order mark is dropped.
+///
+/// # Errors
+/// What is wrong with the text as text: a spec that does not parse has no layout.
+pub fn format(source: &Source) -> Result<String, Diagnostics> {
+    parse(source)?;
+    let crlf = source.text.find('\n').is_some_and(|at| source.text[..at].ends_with('\r'));
+    let text = source.text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+    let scan = scan::scan(&Source::new(source.name.as_str(), text.as_str()));
+    let Ok(pair) = grammar::spec(&scan.clean) else {
+        // The same tokens parsed a moment ago; should they ever not, the text stays as it is.
+        return Ok(source.text.clone());
+    };
+    let pieces = Pieces::new(&text, &scan, pair);
+    let mut lines: Vec<Line> = vec![];
+    block::Writer { pieces: &pieces, lines: &mut lines }.file();
+    align::align(&mut lines);
+    let text: String = lines.iter().map(Line::text).collect();
+    Ok(if crlf { text.replace('\n', "\r\n") } else { text })
+}
