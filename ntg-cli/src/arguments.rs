@@ -1,8 +1,12 @@
 //! What can be written on the command line.
 
+mod text;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+
+pub(crate) use text::{Check, Completions, Explain, Fmt, New};
 
 /// Optimal control and trajectory generation from a readable problem file.
 #[derive(Debug, Parser)]
@@ -14,9 +18,50 @@ pub(crate) struct Ntg {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Say what is wrong with a spec, or that nothing is.
+    /// Write a commented spec to start from.
+    ///
+    /// Examples:
+    ///   ntg new landing              # writes landing.ntg, which solves as it is
+    ///   ntg new specs/landing.ntg    # the same in another folder
+    #[command(verbatim_doc_comment)]
+    New(New),
+    /// Say what is wrong with specs, or that nothing is.
+    ///
+    /// Exit status: 0 when all are well formed, 2 when one is not.
+    ///
+    /// Examples:
+    ///   ntg check specs/van_der_pol.ntg
+    ///   ntg check specs/*.ntg --format json
+    ///   git show HEAD:specs/car.ntg | ntg check -
+    #[command(verbatim_doc_comment)]
     Check(Check),
+    /// Lay specs out in the canonical way.
+    ///
+    /// Only white space changes; comments, single blank lines and blocks on one line stay.
+    /// A spec with syntax errors is left alone.
+    /// Exit status: 0 done, 1 with --check when a spec has another layout, 2 on errors.
+    ///
+    /// Examples:
+    ///   ntg fmt specs                # all .ntg files below a folder
+    ///   ntg fmt --check specs/*.ntg  # prints what would change
+    ///   ntg fmt - < draft.ntg        # for editors: standard input to standard output
+    #[command(verbatim_doc_comment)]
+    Fmt(Fmt),
+    /// Print what a code such as E042 stands for, and what to write instead.
+    ///
+    /// Examples:
+    ///   ntg explain E041
+    ///   ntg explain                  # lists all codes
+    #[command(verbatim_doc_comment)]
+    Explain(Explain),
     /// Print the Rust that a spec becomes, or what is inside it.
+    ///
+    /// Examples:
+    ///   ntg expand specs/van_der_pol.ntg                     # the generated Rust
+    ///   ntg expand specs/van_der_pol.ntg --what gradient     # what each function depends on
+    ///   ntg expand specs/van_der_pol.ntg --what structure    # kernels, band and border
+    ///   ntg expand specs/van_der_pol.ntg --what nlp          # sizes and matrices of the optimisation problem
+    #[command(verbatim_doc_comment)]
     Expand(Expand),
     /// Solve a spec and print its solution.
     ///
@@ -29,13 +74,14 @@ pub(crate) enum Command {
     Solve(Solve),
     Plot(crate::plot::Arguments),
     Report(crate::report::Arguments),
-}
-
-#[derive(Args, Debug)]
-pub(crate) struct Check {
-    /// The spec files.
-    #[arg(required = true)]
-    pub(crate) specs: Vec<PathBuf>,
+    /// Print a script that completes the command's words in a shell.
+    ///
+    /// Examples:
+    ///   ntg completions bash > ~/.local/share/bash-completion/completions/ntg
+    ///   ntg completions zsh > ~/.zfunc/_ntg
+    ///   ntg completions fish > ~/.config/fish/completions/ntg.fish
+    #[command(verbatim_doc_comment)]
+    Completions(Completions),
 }
 
 #[derive(Args, Debug)]
@@ -51,8 +97,12 @@ pub(crate) struct Expand {
 pub(crate) enum What {
     /// The generated Rust.
     Rust,
+    /// What each function depends on, and how: active variables, degree, entries of its derivatives.
+    Gradient,
     /// Kernels, elements, band and border of the optimisation problem.
     Structure,
+    /// The optimisation problem: sizes, bounds, pictures of its Jacobian and its Hessian.
+    Nlp,
 }
 
 #[derive(Args, Debug)]

@@ -1,17 +1,75 @@
 //! `ntg check`: what is wrong with specs.
 
-use crate::{Exit, arguments, files};
+mod json;
+
+use ntg_compiler::diagnostic::{Diagnostic, Severity};
+use ntg_compiler::source::Source;
+use serde_json::Value;
+
+use crate::arguments::{self, Format};
+use crate::files::{self, Failure};
+use crate::{Exit, files::BesideSpec};
+
+/// What became of a spec.
+struct Checked {
+    /// What it is called in messages.
+    name: String,
+    /// The problem's name; none where it is not well formed.
+    problem: Option<String>,
+    /// Its text as far as it could be read, and what was found in it.
+    found: Option<(Source, Vec<Diagnostic>)>,
+    /// Why it could not be read.
+    unread: Option<String>,
+}
 
 pub(crate) fn run(arguments: &arguments::Check) -> Exit {
-    let mut exit = Exit::Done;
-    for spec in &arguments.specs {
-        match files::compile(spec) {
-            Some((_, compiled)) => {
-                let structure = &compiled.program.structure;
-                files::print(&format!("{}: `{}` is well formed", spec.display(), structure.name));
-            }
-            None => exit = Exit::Bad,
+    let checked: Vec<Checked> = arguments.specs.iter().map(|spec| check(files::read(spec))).collect();
+    match arguments.format {
+        Format::Text => checked.iter().for_each(text),
+        Format::Json => files::print(&format!("{:#}", json::document(&checked))),
+    }
+    let is_good = checked.iter().all(|spec| spec.problem.is_some());
+    if is_good { Exit::Done } else { Exit::Bad }
+}
+
+fn check(read: Result<(Source, BesideSpec), Failure>) -> Checked {
+    match read {
+        Ok((source, loader)) => {
+            let (problem, found) = match ntg_compiler::compile(&source, &loader) {
+                Ok(compiled) => (Some(compiled.program.structure.name), compiled.notes),
+                Err(found) => (None, found.into_iter().collect()),
+            };
+            Checked { name: source.name.clone(), problem, found: Some((source, found)), unread: None }
+        }
+        Err(Failure::NotText(source, finding)) => {
+            Checked { name: source.name.clone(), problem: None, found: Some((source, vec![finding])), unread: None }
+        }
+        Err(Failure::Unread { name, message }) => Checked { name, problem: None, found: None, unread: Some(message) },
+    }
+}
+
+fn text(checked: &Checked) {
+    if let Some(message) = &checked.unread {
+        eprintln!("error: {message}");
+        return;
+    }
+    if let Some((source, found)) = &checked.found {
+        files::show(source, found.iter());
+    }
+    match &checked.problem {
+        Some(problem) => files::print(&format!("{}: `{problem}` is well formed", checked.name)),
+        None => {
+            let errors = |found: &[Diagnostic]| found.iter().filter(|f| f.severity == Severity::Error).count();
+            let errors = checked.found.as_ref().map_or(1, |(_, found)| errors(found));
+            let codes = checked.found.iter().flat_map(|(_, found)| found).find(|f| f.severity == Severity::Error);
+            let words = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
+            let more = codes.map_or(String::new(), |f| format!("; `ntg explain {}` says more", f.code));
+            eprintln!("{}: {words}{more}", checked.name);
         }
     }
-    exit
+}
+
+/// An empty value stays out of sight.
+fn or_null(text: Option<&String>) -> Value {
+    text.map_or(Value::Null, |text| Value::from(text.as_str()))
 }

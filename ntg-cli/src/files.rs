@@ -1,12 +1,13 @@
 //! Reads specs and the tables they name; shows findings.
 
-use std::io::{IsTerminal, Write};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
 
 use ntg_compiler::Compiled;
-use ntg_compiler::diagnostic::Diagnostic;
+use ntg_compiler::diagnostic::{Code, Diagnostic};
 use ntg_compiler::model::Loader;
-use ntg_compiler::source::Source;
+use ntg_compiler::source::{Source, Span};
 
 /// Finds table files relative to the spec that names them.
 pub(crate) struct BesideSpec {
@@ -20,34 +21,70 @@ impl Loader for BesideSpec {
     }
 }
 
-/// Reads a spec; on failure the message for the user.
-pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot read `{}`: {error}", path.display()))?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        format!("`{}` is not UTF-8 text (byte {at}); save it as UTF-8", path.display())
+/// Why a spec's text could not be had.
+pub(crate) enum Failure {
+    /// There is no such file, or it may not be read.
+    Unread { name: String, message: String },
+    /// It is not UTF-8; the text has a sign for every byte that is none.
+    NotText(Source, Diagnostic),
+}
+
+impl Failure {
+    /// Says it on standard error.
+    pub(crate) fn show(&self) {
+        match self {
+            Self::Unread { message, .. } => eprintln!("error: {message}"),
+            Self::NotText(source, finding) => show(source, std::iter::once(finding)),
+        }
+    }
+}
+
+/// Whether a path stands for standard input.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Reads a spec from a file, or from standard input for `-`.
+pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
+    let name = if is_standard_input(path) { "<stdin>".to_owned() } else { path.display().to_string() };
+    let bytes = if is_standard_input(path) {
+        let mut bytes = vec![];
+        std::io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        std::fs::read(path)
+    };
+    let bytes = bytes.map_err(|error| {
+        let message = format!("cannot read `{name}`: {error}");
+        Failure::Unread { name: name.clone(), message }
     })?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-    Ok((Source::new(path.display().to_string(), text), BesideSpec { folder }))
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok((Source::new(name, text), BesideSpec { folder })),
+        Err(error) => Err(not_text(name, &error)),
+    }
+}
+
+/// The finding about the first byte that is no text.
+fn not_text(name: String, error: &FromUtf8Error) -> Failure {
+    let at = error.utf8_error().valid_up_to();
+    let byte = error.as_bytes().get(at).copied().unwrap_or_default();
+    let source = Source::new(name, String::from_utf8_lossy(error.as_bytes()));
+    let span = Span::new(at, at + char::REPLACEMENT_CHARACTER.len_utf8());
+    let message = format!("this is not UTF-8 text: byte 0x{byte:02x}");
+    let finding = Diagnostic::new(Code::UnknownCharacter, span, message).help("save the file in the encoding UTF-8");
+    Failure::NotText(source, finding)
 }
 
 /// Reads and compiles a spec. Findings go to standard error; `None` when there are errors.
 pub(crate) fn compile(path: &Path) -> Option<(Source, Compiled)> {
-    let (source, loader) = match read(path) {
-        Ok(read) => read,
-        Err(message) => {
-            eprintln!("error: {message}");
-            return None;
-        }
-    };
+    let (source, loader) = read(path).map_err(|failure| failure.show()).ok()?;
     match ntg_compiler::compile(&source, &loader) {
         Ok(compiled) => {
-            show(&source, &compiled.notes);
+            show(&source, compiled.notes.iter());
             Some((source, compiled))
         }
         Err(found) => {
-            let found: Vec<Diagnostic> = found.iter().cloned().collect();
-            show(&source, &found);
+            show(&source, found.iter());
             None
         }
     }
@@ -58,9 +95,14 @@ pub(crate) fn print(text: &str) {
     let _ = writeln!(std::io::stdout(), "{text}");
 }
 
-fn show(source: &Source, findings: &[Diagnostic]) {
-    let colour = std::io::stderr().is_terminal();
+/// Prints text as it is.
+pub(crate) fn print_raw(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// Shows findings on standard error; in colour where that is a terminal and the user's environment wants it.
+pub(crate) fn show<'a>(source: &Source, findings: impl Iterator<Item = &'a Diagnostic>) {
     for finding in findings {
-        eprintln!("{}\n", finding.render_with(source, colour));
+        let _ = writeln!(anstream::stderr(), "{}\n", finding.render_with(source, true));
     }
 }

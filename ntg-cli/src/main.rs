@@ -1,13 +1,17 @@
 //! The `ntg` command: one file a verb, no mathematics.
 //!
-//! Exit status: 0 done (for `solve`: solved), 1 not solved, 2 bad spec or arguments, 130 stopped by
+//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, 130 stopped by
 //! Ctrl-C.
 
 mod arguments;
 mod check;
+mod completions;
 mod expand;
+mod explain;
 mod files;
+mod fmt;
 mod guess;
+mod new;
 mod plot;
 mod report;
 mod route;
@@ -28,6 +32,7 @@ use arguments::{Command, Ntg};
 enum Exit {
     Done,
     NotSolved,
+    NotFormatted,
     Bad,
     Interrupted,
 }
@@ -37,7 +42,7 @@ impl Exit {
     fn status(self) -> i32 {
         match self {
             Self::Done => 0,
-            Self::NotSolved => 1,
+            Self::NotSolved | Self::NotFormatted => 1,
             Self::Bad => 2,
             // What shells say of a command that ended by SIGINT.
             Self::Interrupted => 130,
@@ -48,6 +53,10 @@ impl Exit {
 fn main() -> ExitCode {
     let exit = match Ntg::parse().command {
         Command::Check(arguments) => check::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Fmt(arguments) => fmt::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Plot(arguments) => said(plot::run(&arguments)),

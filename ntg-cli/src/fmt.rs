@@ -1,0 +1,86 @@
+//! `ntg fmt`: specs in the canonical layout.
+
+use std::path::{Path, PathBuf};
+
+use ntg_compiler::syntax;
+use similar::TextDiff;
+
+use crate::{Exit, arguments, files, write};
+
+pub(crate) fn run(arguments: &arguments::Fmt) -> Exit {
+    let mut exit = Exit::Done;
+    let specs: Vec<PathBuf> = match arguments.specs.iter().map(|path| below(path)).collect::<Result<Vec<_>, _>>() {
+        Ok(specs) => specs.concat(),
+        Err(message) => {
+            eprintln!("error: {message}");
+            return Exit::Bad;
+        }
+    };
+    for spec in specs {
+        match format(&spec, arguments.check) {
+            Ok(true) => {}
+            Ok(false) if exit == Exit::Done => exit = Exit::NotFormatted,
+            Ok(false) => {}
+            Err(()) => exit = Exit::Bad,
+        }
+    }
+    exit
+}
+
+/// The path itself, or all specs below it if it is a folder.
+fn below(path: &Path) -> Result<Vec<PathBuf>, String> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let failed = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
+    let mut found = vec![];
+    for entry in std::fs::read_dir(path).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let path = entry.path();
+        // A link to a folder may lead back to where it stands.
+        if entry.file_type().map_err(failed)?.is_dir() {
+            found.extend(below(&path)?);
+        } else if path.extension().is_some_and(|extension| extension == "ntg") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Gives whether the spec is, or now is, in the canonical layout. What was wrong has been said.
+fn format(path: &Path, only_check: bool) -> Result<bool, ()> {
+    let (source, _) = files::read(path).map_err(|failure| failure.show())?;
+    let formatted = syntax::format(&source).map_err(|found| files::show(&source, found.iter()))?;
+    let is_same = formatted == source.text;
+    if only_check {
+        if !is_same {
+            files::print(difference(&source.name, &source.text, &formatted).trim_end());
+        }
+        return Ok(is_same);
+    }
+    if files::is_standard_input(path) {
+        files::print_raw(&formatted);
+    } else if !is_same {
+        replace(path, &formatted).map_err(|message| eprintln!("error: {message}"))?;
+        files::print(&format!("{}: formatted", path.display()));
+    }
+    Ok(true)
+}
+
+/// What would change, as `diff -u` says it.
+fn difference(name: &str, old: &str, new: &str) -> String {
+    TextDiff::from_lines(old, new).unified_diff().header(name, &format!("{name} (formatted)")).to_string()
+}
+
+/// Replaces a file, through a link if it is one, and keeps its permissions.
+fn replace(path: &Path, text: &str) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("cannot write `{}`: {error}", path.display());
+    let target = path.canonicalize().map_err(failed)?;
+    let permissions = target.metadata().map_err(failed)?.permissions();
+    if permissions.readonly() {
+        return Err(format!("cannot write `{}`: it is read-only", path.display()));
+    }
+    write::whole(&target, true, text.as_bytes())?;
+    std::fs::set_permissions(&target, permissions).map_err(failed)
+}

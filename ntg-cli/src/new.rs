@@ -1,0 +1,62 @@
+//! `ntg new`: a spec to start from.
+
+use std::path::{Path, PathBuf};
+
+use ntg_compiler::diagnostic::Diagnostic;
+use ntg_compiler::source::Source;
+use ntg_compiler::syntax;
+
+use crate::{Exit, arguments, files, write};
+
+/// The spec, with `NAME` and `FILE` where the problem's own stand.
+const START: &str = include_str!("new/start.ntg");
+
+pub(crate) fn run(arguments: &arguments::New) -> Exit {
+    match start(&arguments.name, arguments.force) {
+        Ok(path) => {
+            let path = path.display();
+            files::print(&format!("{path}: written; `ntg check {path}`, `ntg solve {path}`"));
+            Exit::Done
+        }
+        Err(message) => {
+            eprintln!("error: {message}");
+            Exit::Bad
+        }
+    }
+}
+
+fn start(name: &Path, force: bool) -> Result<PathBuf, String> {
+    let path = if name.extension().is_some_and(|e| e == "ntg") { name.to_owned() } else { with_extension(name) };
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let problem = camel_case(stem);
+    let text = START.replace("NAME", &problem).replace("FILE", &path.display().to_string());
+    if let Err(found) = syntax::parse(&Source::new("name", text.as_str())) {
+        return Err(refused(stem, &problem, found.first()));
+    }
+    write::whole(&path, force, text.as_bytes())?;
+    Ok(path)
+}
+
+fn with_extension(name: &Path) -> PathBuf {
+    let mut name = name.as_os_str().to_owned();
+    name.push(".ntg");
+    name.into()
+}
+
+/// `two_stage-rocket` becomes `TwoStageRocket`, as types of Rust are called.
+fn camel_case(name: &str) -> String {
+    let words = name.split(['_', '-', ' ', '.']).filter(|word| !word.is_empty());
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    };
+    words.map(capital).collect()
+}
+
+fn refused(stem: &str, problem: &str, finding: &Diagnostic) -> String {
+    let help = "give a name of letters, digits and `_` that begins with a letter, such as `landing`";
+    match problem {
+        "" => format!("a problem needs a name; {help}"),
+        _ => format!("`{stem}` would give the problem the name `{problem}`: {}; {help}", finding.message),
+    }
+}
