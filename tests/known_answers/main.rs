@@ -6,6 +6,8 @@
 
 mod car;
 mod constructs;
+mod fleet;
 mod flight;
+mod missile;
 mod oscillator;
 mod support;
