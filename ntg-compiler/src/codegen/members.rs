@@ -1,8 +1,8 @@
 //! The members of a typed solution, each a question to the runtime's untyped one.
 //!
 //! Everything that generated code asks of `::ntg::runtime::solution` is in this file. Questions
-//! are names with the path of their agent: `x`, `x[3]`, `uav[2].x`. An agent's struct and those of
-//! its phases hold that path as `_agent`, with the point after it; the problem's own needs none.
+//! are names with the path of their agent or phase: `x`, `x[3]`, `uav[2].x`, `covert.x`. The structs of
+//! agents and phases hold that path as `_path`; the problem's own needs none.
 
 use ntg_structure::{Family, Unit};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -20,7 +20,7 @@ pub(super) enum Question {
     Number,
     /// A declared variable.
     Variable,
-    /// A named duration.
+    /// A named duration of the problem.
     Duration,
 }
 
@@ -29,10 +29,10 @@ pub(super) fn trajectory(family: Option<Family>) -> TokenStream {
     in_family(quote! { ::ntg::runtime::solution::Trajectory }, family)
 }
 
-/// The value of an output's field, in a function that has `solution`, and `agent` where there is
-/// an agent to be named.
+/// The value of an output's field, in a function that has `solution`, and `path` where it is not the
+/// problem's own.
 pub(super) fn output(name: &str, family: Option<Family>, in_root: bool) -> TokenStream {
-    let path = path(name, family, if in_root { None } else { Some(quote! { agent }) });
+    let path = path(name, family, if in_root { None } else { Some(quote! { path }) });
     members(family, quote! { known(solution.output(#path)) })
 }
 
@@ -43,7 +43,7 @@ pub(super) fn method(
     family: Option<Family>,
     in_root: bool,
 ) -> TokenStream {
-    let path = path(name, family, if in_root { None } else { Some(quote! { self._agent }) });
+    let path = path(name, family, if in_root { None } else { Some(quote! { self._path }) });
     let signal = quote! { known(self._solution.signal(&*self._problem, #path)) };
     let (answer, kind) = match question {
         Question::Signal => (signal, quote! { ::ntg::runtime::solution::Signal<'_> }),
@@ -56,6 +56,16 @@ pub(super) fn method(
         #(#[doc = #doc])*
         pub fn #ident(&self) -> #kind {
             #answer
+        }
+    }
+}
+
+/// The duration of an agent or phase under the name that the spec gives it.
+pub(super) fn own_duration(ident: &Ident, doc: &[String]) -> TokenStream {
+    quote! {
+        #(#[doc = #doc])*
+        pub fn #ident(&self) -> f64 {
+            self.duration()
         }
     }
 }
@@ -75,10 +85,10 @@ fn in_family(kind: TokenStream, family: Option<Family>) -> TokenStream {
     }
 }
 
-/// `"x"`, `&format!("{}x[{i}]", self._agent)`: the path of a thing.
-pub(super) fn path(name: &str, family: Option<Family>, agent: Option<TokenStream>) -> TokenStream {
+/// `"x"`, `&format!("{}.x[{i}]", self._path)`: the path of a thing.
+pub(super) fn path(name: &str, family: Option<Family>, within: Option<TokenStream>) -> TokenStream {
     let index = if family.is_some() { "[{i}]" } else { "" };
-    match agent {
+    match within {
         None if index.is_empty() => {
             let name = Literal::string(name);
             quote! { #name }
@@ -87,9 +97,9 @@ pub(super) fn path(name: &str, family: Option<Family>, agent: Option<TokenStream
             let format = Literal::string(&format!("{name}{index}"));
             quote! { &::std::format!(#format) }
         }
-        Some(agent) => {
-            let format = Literal::string(&format!("{{}}{name}{index}"));
-            quote! { &::std::format!(#format, #agent) }
+        Some(within) => {
+            let format = Literal::string(&format!("{{}}.{name}{index}"));
+            quote! { &::std::format!(#format, #within) }
         }
     }
 }

@@ -9,7 +9,7 @@
 //! Among methods ours come first: a `let report` is reached as `report_()`.
 
 use ntg_structure::{Domain, Family, Named, Structure, Unit, Variable};
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use super::members::{self, Question};
@@ -124,7 +124,7 @@ impl Writer<'_> {
         let make = if in_root { make_root(&problem, &values) } else { make_child(&problem, &values) };
         let own = match in_root {
             true => quote! { _report: ::std::sync::Arc<::ntg::runtime::report::Report>, },
-            false => quote! { _agent: ::std::string::String, _path: ::std::string::String, },
+            false => quote! { _path: ::std::string::String, },
         };
         let doc = self.title(scope);
         quote! {
@@ -148,14 +148,8 @@ impl Writer<'_> {
     /// the index.
     fn child(&self, child: &Scope<'_>, kind: &Ident, in_root: bool, parts: &mut Parts) {
         let Some((name, family)) = child.path.last().copied() else { return };
-        let prefix = (!in_root).then(|| quote! { agent });
-        let path = members::path(name, family, prefix);
-        let agent = match (child.kind, in_root) {
-            (Kind::Agent, _) => with_point(name, family),
-            (_, true) => quote! { "" },
-            (_, false) => quote! { agent },
-        };
-        let one = quote! { #kind::new(&problem, &solution, #agent, #path) };
+        let path = members::path(name, family, (!in_root).then(|| quote! { path }));
+        let one = quote! { #kind::new(&problem, &solution, #path) };
         let ident = self.ident(name);
         let Some(Family { first, last }) = family else {
             let doc = format!(" What happens in `{name}`.");
@@ -196,7 +190,10 @@ impl Writer<'_> {
         for duration in &scope.durations {
             let ident = parts.method(self, &format!("duration_{duration}"));
             let doc = [format!(" The duration `{duration}`, in seconds.")];
-            parts.methods.push(members::method((&ident, &doc), (Question::Duration, duration), None, in_root));
+            parts.methods.push(match in_root {
+                true => members::method((&ident, &doc), (Question::Duration, duration), None, true),
+                false => members::own_duration(&ident, &doc),
+            });
         }
         self.multipliers(scope, parts);
     }
@@ -281,27 +278,15 @@ fn make_child(problem: &Ident, values: &[TokenStream]) -> TokenStream {
         fn new(
             problem: &::std::sync::Arc<#problem>,
             solution: &::ntg::runtime::solution::Solution,
-            agent: &str,
             path: &str,
         ) -> Self {
             Self {
                 #(#values,)*
                 _problem: ::std::clone::Clone::clone(problem),
                 _solution: ::std::clone::Clone::clone(solution),
-                _agent: ::std::convert::From::from(agent),
                 _path: ::std::convert::From::from(path),
             }
         }
-    }
-}
-
-/// The path of an agent as a prefix of others.
-fn with_point(agent: &str, family: Option<Family>) -> TokenStream {
-    let format = Literal::string(&if family.is_some() { format!("{agent}[{{i}}].") } else { format!("{agent}.") });
-    if family.is_some() {
-        quote! { &::std::format!(#format) }
-    } else {
-        quote! { #format }
     }
 }
 

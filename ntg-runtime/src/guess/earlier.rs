@@ -63,7 +63,7 @@ pub(super) fn curves<'a>(nlp: &Transcription, solution: &'a Solution) -> Vec<Cur
         let same = old_phase(nlp, solution, phase);
         for (output, found) in member.outputs.iter().enumerate() {
             let name = &structure.phases[member.phase].outputs[found.output].name;
-            let Some(trajectory) = solution.one(agent, name, found.index) else { continue };
+            let Some(trajectory) = solution.of_agent(agent, name, found.index) else { continue };
             let (start, length) = match same {
                 Some(old) => (old_layout.start(old, &solution.inner.x), old_layout.duration(old, &solution.inner.x)),
                 None => (trajectory.start(), trajectory.end() - trajectory.start()),

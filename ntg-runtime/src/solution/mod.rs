@@ -17,6 +17,7 @@ use crate::transcribe::rows::RowInfo;
 use crate::transcribe::{Model, names};
 use ntg_structure::{Structure, Unit};
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Spline coefficients, times, variables and multipliers of a solved problem.
@@ -185,13 +186,12 @@ pub(crate) fn spaced(start: f64, end: f64, count: usize) -> Vec<f64> {
 }
 
 impl Inner {
-    /// The phase of an agent that holds time `t` (clamped), and the scaled time in it.
-    pub(crate) fn locate(&self, agent: usize, t: f64) -> Option<(usize, f64)> {
+    /// Which of these consecutive phases holds time `t` (clamped), and the scaled time in it.
+    pub(crate) fn locate(&self, phases: &Range<usize>, t: f64) -> Option<(usize, f64)> {
         let layout = &self.model.layout;
-        let phases = layout.agents[agent].phases.clone();
         let last = phases.clone().last()?;
-        let mut start = layout.agents[agent].start.at(&self.x);
-        for phase in phases {
+        let mut start = layout.start(phases.start, &self.x);
+        for phase in phases.clone() {
             let duration = layout.duration(phase, &self.x);
             if t < start + duration || phase == last {
                 let tau = (t - start) / duration;

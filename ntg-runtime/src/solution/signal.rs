@@ -9,9 +9,10 @@ use crate::transcribe::points::Point;
 use ntg_splines::Side;
 use ntg_structure::{Domain, Unit};
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
-/// A named expression (`let`) of one agent, over all of its phases that define it.
+/// A named expression (`let`) of one agent, over all of its phases that define it or in one of them.
 ///
 /// It borrows the problem, whose kernels compute it.
 #[derive(Clone)]
@@ -21,7 +22,8 @@ pub struct Signal<'p> {
     name: String,
     doc: String,
     unit: Unit,
-    agent: Option<usize>,
+    /// The phases over which it runs: all of its agent's, or one; none for a number.
+    phases: Option<Range<usize>>,
     pieces: Vec<Piece>,
 }
 
@@ -40,7 +42,7 @@ impl fmt::Debug for Signal<'_> {
 }
 
 impl Signal<'_> {
-    /// Its path: `speed`, `uav[2].pd[1]`.
+    /// Its path: `speed`, `uav[2].pd[1]`, `covert.speed` in one phase.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -57,24 +59,24 @@ impl Signal<'_> {
 
     /// Whether it is a single number rather than a function of time.
     pub fn is_constant(&self) -> bool {
-        self.agent.is_none()
+        self.phases.is_none()
     }
 
-    /// Start and end of its agent in seconds of mission time; none for a single number.
+    /// Its own start and end in seconds of mission time; none for a single number.
     pub fn span(&self) -> Option<(f64, f64)> {
         let (layout, x) = (&self.inner.model.layout, &self.inner.x);
-        let agent = &layout.agents[self.agent?];
-        let start = agent.start.at(x);
-        Some((start, agent.phases.clone().fold(start, |t, phase| t + layout.duration(phase, x))))
+        let phases = self.phases.clone()?;
+        let start = layout.start(phases.start, x);
+        Some((start, phases.fold(start, |t, phase| t + layout.duration(phase, x))))
     }
 
-    /// The value at mission time `t` (seconds, clamped to the agent's time), in the declared unit.
+    /// The value at mission time `t` (seconds, clamped to its own time), in the declared unit.
     /// NaN in a phase that does not define it.
     pub fn at(&self, t: f64) -> f64 {
-        let (phase, point) = match self.agent {
+        let (phase, point) = match &self.phases {
             None => (None, Point::NONE),
-            Some(agent) => {
-                let Some((phase, tau)) = self.inner.locate(agent, t) else { return f64::NAN };
+            Some(phases) => {
+                let Some((phase, tau)) = self.inner.locate(phases, t) else { return f64::NAN };
                 let side = if tau == 1.0 { Side::Left } else { Side::Right };
                 (Some(phase), Point { phase: Some(phase), tau, side, weight: f64::NAN })
             }
@@ -98,9 +100,22 @@ impl Solution {
         found
     }
 
-    /// A named expression by its path: `speed`, `uav[2].speed`, `pd[1]`.
+    /// A named expression by its path: `speed`, `uav[2].speed`, `pd[1]` over all phases of the agent;
+    /// `covert.speed`, `uav[2].leg[1].speed` in one phase alone, up to both of its ends.
     pub fn signal<'p>(&self, problem: &'p dyn Problem, path: &str) -> Option<Signal<'p>> {
-        self.signals(problem).into_iter().find(|signal| signal.name == path)
+        let signals = self.signals(problem);
+        if let Some(found) = signals.iter().find(|signal| signal.name == path) {
+            return Some(found.clone());
+        }
+        let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
+        (0..layout.phases.len()).find_map(|phase| {
+            let agent = layout.phases[phase].agent;
+            let own = path.strip_prefix(&names::phase(structure, layout, phase))?.strip_prefix('.')?;
+            let whole = names::join(&names::agent(structure, layout, agent), own);
+            let along = signals.iter().find(|signal| signal.name == whole)?;
+            let has = along.pieces.iter().any(|piece| piece.phase == Some(phase));
+            has.then(|| Signal { name: path.to_owned(), phases: Some(phase..phase + 1), ..along.clone() })
+        })
     }
 
     fn add_signals<'p>(
@@ -127,8 +142,9 @@ impl Solution {
                 (None, None, 1..) => names::indexed(&declared.name, indices.last().copied()),
                 _ => names::join(&path, &names::indexed(&declared.name, index)),
             };
+            let phases = agent.map(|agent| layout.agents[agent].phases.clone());
             let piece = Piece { phase, named, indices };
-            match found.iter_mut().find(|signal| signal.name == name && signal.agent == agent) {
+            match found.iter_mut().find(|signal| signal.name == name && signal.phases == phases) {
                 Some(signal) => signal.pieces.push(piece),
                 None => found.push(Signal {
                     problem,
@@ -136,7 +152,7 @@ impl Solution {
                     name,
                     doc: declared.doc.clone(),
                     unit: declared.unit.clone(),
-                    agent,
+                    phases,
                     pieces: vec![piece],
                 }),
             }

@@ -1,20 +1,22 @@
-//! One output of one agent over all of its phases.
+//! One output of one agent, over all of its phases or in one of them.
 
 use super::{Inner, Solution, spaced};
 use crate::transcribe::names;
 use ntg_splines::Side;
 use ntg_structure::Unit;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A flat output as a function of mission time, in its declared unit.
 #[derive(Clone)]
 pub struct Trajectory {
     inner: Arc<Inner>,
-    agent: usize,
+    /// The phases over which it runs: all of its agent's, or one.
+    phases: Range<usize>,
     name: String,
     unit: Unit,
-    /// For every phase of the agent the member of its outputs.
+    /// For each of these phases the member of its outputs.
     outputs: Vec<Option<usize>>,
 }
 
@@ -25,7 +27,7 @@ impl fmt::Debug for Trajectory {
 }
 
 impl Trajectory {
-    /// Its path: `x`, `uav[2].x[1]`.
+    /// Its path: `x`, `uav[2].x[1]`, `covert.x` in one phase.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -35,7 +37,7 @@ impl Trajectory {
         &self.unit
     }
 
-    /// The value at mission time `t` (seconds, clamped to the agent's time), in the declared unit.
+    /// The value at mission time `t` (seconds, clamped to its own time), in the declared unit.
     pub fn at(&self, t: f64) -> f64 {
         self.derivative(t, 0)
     }
@@ -50,8 +52,8 @@ impl Trajectory {
     /// NaN in a phase that does not have the output.
     pub fn si(&self, t: f64, order: usize) -> f64 {
         let (layout, x) = (&self.inner.model.layout, &self.inner.x);
-        let Some((phase, tau)) = self.inner.locate(self.agent, t) else { return f64::NAN };
-        let Some(output) = self.outputs[phase - layout.agents[self.agent].phases.start] else { return f64::NAN };
+        let Some((phase, tau)) = self.inner.locate(&self.phases, t) else { return f64::NAN };
+        let Some(output) = self.outputs[phase - self.phases.start] else { return f64::NAN };
         if tau.is_nan() {
             return f64::NAN;
         }
@@ -60,18 +62,18 @@ impl Trajectory {
         scaled / crate::math::powi(layout.duration(phase, x), i32::try_from(order).unwrap_or(i32::MAX))
     }
 
-    /// When the agent starts, in seconds of mission time.
+    /// When it starts, in seconds of mission time.
     pub fn start(&self) -> f64 {
-        self.inner.model.layout.agents[self.agent].start.at(&self.inner.x)
+        self.inner.model.layout.start(self.phases.start, &self.inner.x)
     }
 
-    /// When the agent ends, in seconds of mission time.
+    /// When it ends, in seconds of mission time.
     pub fn end(&self) -> f64 {
         let (layout, x) = (&self.inner.model.layout, &self.inner.x);
-        layout.agents[self.agent].phases.clone().fold(self.start(), |t, phase| t + layout.duration(phase, x))
+        self.phases.clone().fold(self.start(), |t, phase| t + layout.duration(phase, x))
     }
 
-    /// `count` values at equally spaced times over the agent's time, as `(t, value)`.
+    /// `count` values at equally spaced times over its own time, as `(t, value)`.
     pub fn sample(&self, count: usize) -> Vec<(f64, f64)> {
         spaced(self.start(), self.end(), count).into_iter().map(|t| (t, self.at(t))).collect()
     }
@@ -81,12 +83,18 @@ impl Solution {
     /// Every output of every agent.
     pub fn trajectories(&self) -> Vec<Trajectory> {
         let layout = &self.inner.model.layout;
-        (0..layout.agents.len()).flat_map(|agent| self.agent_trajectories(agent)).collect()
+        (0..layout.agents.len())
+            .flat_map(|agent| self.along(&self.agent_path(agent), layout.agents[agent].phases.clone()))
+            .collect()
     }
 
-    /// An output by its path: `x`, `x[1]`, `uav[2].x`.
+    /// An output by its path: `x`, `x[1]`, `uav[2].x` over all phases of the agent, one continuous
+    /// view; `covert.x`, `uav[2].leg[1].x` in one phase alone, up to both of its ends.
     pub fn output(&self, path: &str) -> Option<Trajectory> {
-        self.trajectories().into_iter().find(|t| t.name == path)
+        let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
+        let in_phase = |phase: usize| self.along(&names::phase(structure, layout, phase), phase..phase + 1);
+        let in_phases = (0..layout.phases.len()).flat_map(in_phase);
+        self.trajectories().into_iter().chain(in_phases).find(|t| t.name == path)
     }
 
     /// An output of one member of an agent.
@@ -106,14 +114,23 @@ impl Solution {
     ) -> Option<Trajectory> {
         let layout = &self.inner.model.layout;
         let agent = layout.agents.iter().position(|a| a.agent == agent && a.index == member)?;
-        self.one(agent, output, index)
+        self.of_agent(agent, output, index)
     }
 
     /// An output of one agent member, by position in the layout.
-    pub(crate) fn one(&self, agent: usize, output: &str, index: Option<i64>) -> Option<Trajectory> {
+    pub(crate) fn of_agent(&self, agent: usize, output: &str, index: Option<i64>) -> Option<Trajectory> {
+        self.one((&self.agent_path(agent), self.inner.model.layout.agents[agent].phases.clone()), output, index)
+    }
+
+    fn agent_path(&self, agent: usize) -> String {
+        names::agent(&self.inner.model.structure, &self.inner.model.layout, agent)
+    }
+
+    /// An output in consecutive phases, which have a path.
+    fn one(&self, (path, phases): (&str, Range<usize>), output: &str, index: Option<i64>) -> Option<Trajectory> {
         let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
         let mut unit = None;
-        let outputs = layout.agents[agent].phases.clone().map(|phase| {
+        let outputs = phases.clone().map(|phase| {
             let member = &layout.phases[phase];
             let declared = &structure.phases[member.phase].outputs;
             let found = member.outputs.iter().position(|o| o.index == index && declared[o.output].name == output)?;
@@ -121,18 +138,19 @@ impl Solution {
             Some(found)
         });
         let outputs: Vec<Option<usize>> = outputs.collect();
-        let name = names::join(&names::agent(structure, layout, agent), &names::indexed(output, index));
-        Some(Trajectory { inner: self.inner.clone(), agent, name, unit: unit?, outputs })
+        let name = names::join(path, &names::indexed(output, index));
+        Some(Trajectory { inner: self.inner.clone(), phases, name, unit: unit?, outputs })
     }
 
-    fn agent_trajectories(&self, agent: usize) -> Vec<Trajectory> {
+    /// Every output that consecutive phases of one agent have.
+    fn along(&self, path: &str, phases: Range<usize>) -> Vec<Trajectory> {
         let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
         let mut found: Vec<Trajectory> = vec![];
-        for phase in layout.agents[agent].phases.clone() {
+        for phase in phases.clone() {
             let member = &layout.phases[phase];
             for output in &member.outputs {
                 let name = &structure.phases[member.phase].outputs[output.output].name;
-                let Some(one) = self.one(agent, name, output.index) else { continue };
+                let Some(one) = self.one((path, phases.clone()), name, output.index) else { continue };
                 if found.iter().all(|known| known.name != one.name) {
                     found.push(one);
                 }
