@@ -2,9 +2,10 @@
 //!
 //! Takes the definitions, fills `Problem::named`.
 //! A definition that no point of the trajectory enters, and that is the same in all phases, is one
-//! number; the others are expressions along each phase.
+//! number; the others are expressions along each phase. So is what several phases define, each for
+//! itself: a thrust that is one number while the motor burns and another afterwards.
 
-use super::elaborator::Elaborator;
+use super::elaborator::{Definition, Elaborator};
 use super::kinds::Kind;
 use super::problem::{Domain, Form, Loop, Named};
 use super::scope::{Allow, Context, Point};
@@ -47,7 +48,7 @@ impl<'a> Elaborator<'a> {
             nodes.into_iter().all(|node| !self.kinds(node).meets(Kind::POINT))
         };
         let in_family = along.first().is_some_and(|(cx, ..)| cx.phase.is_some());
-        if numbers && (same || own.is_some()) && !in_family {
+        if numbers && same && !in_family && !self.in_other_phases(definition) {
             let outer = match own {
                 Some(phase) => self.phase_context(phase, Allow::All, Point::Nowhere),
                 None => self.agent_context(agent, Allow::All),
@@ -66,6 +67,17 @@ impl<'a> Elaborator<'a> {
                 self.settle(value, super::settle::Use::Point);
             }
         }
+    }
+
+    /// Whether another phase of the same agent has a definition of the same name.
+    fn in_other_phases(&self, definition: usize) -> bool {
+        let declared = &self.definitions[definition];
+        let scope = &self.scopes[declared.scope];
+        let rival = |other: &Definition<'_>| {
+            let theirs = &self.scopes[other.scope];
+            other.name.text == declared.name.text && theirs.agent == scope.agent && theirs.phase != scope.phase
+        };
+        scope.phase.is_some() && self.definitions.iter().any(rival)
     }
 
     /// The value of a definition, for its own index where it is a family.
