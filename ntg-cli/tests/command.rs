@@ -74,6 +74,29 @@ fn json_has_the_documented_keys_and_declared_units() {
 }
 
 #[test]
+fn json_lists_the_times_of_agents_and_phases_by_path() {
+    let found = json(&["solve", "multi_vehicle_simultaneous.ntg"]);
+    let at = |path: &str| number(&found["times"][path]);
+    assert!(at("end(uav[1])") > 500.0 && (at("end(uav[1])") - at("end(uav[4])")).abs() < 1e-6);
+    assert_eq!(
+        (at("start(uav[2])"), at("duration(uav[3])"), at("uav[3].T")),
+        (0.0, at("end(uav[3])"), at("end(uav[3])"))
+    );
+    for i in 1..=4 {
+        let times = &found["outputs"][format!("uav[{i}].x")]["t"];
+        assert_eq!(number(&times.as_array().expect("times")[100]), at(&format!("end(uav[{i}])")));
+    }
+
+    let found = json(&["solve", "missile_boost_coast.ntg"]);
+    let at = |path: &str| number(&found["times"][path]);
+    assert_eq!((at("end(boost)"), at("start(coast)"), at("burn")), (6.0, 6.0, 6.0));
+    assert!((at("end(coast)") / 18.799_113_6 - 1.0).abs() < 1e-6);
+    // A number in each phase, one function over both.
+    let thrust = found["lets"]["thrust"]["value"].as_array().expect("values over time");
+    assert_eq!((number(&thrust[0]), number(&thrust[100])), (18.0, 0.0));
+}
+
+#[test]
 fn parameters_are_set_in_their_units_or_with_a_unit() {
     let bare = json(&["solve", "low_observable.ntg", "--set", "v_max=0.24"]);
     let with_unit = json(&["solve", "low_observable.ntg", "--set", "v_max=240 [m/s]"]);
