@@ -3,6 +3,7 @@
 //!
 //! Run with `cargo run --release --example low_observable`; draws into `pictures/`.
 
+#[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;
 
 use std::path::Path;

@@ -6,10 +6,14 @@
 //! a picture 1600 wide: the library rounds to whole pixels, and at this size that does not show.
 
 pub(crate) mod chart;
+pub(crate) mod fleet;
 pub(crate) mod flight;
 pub(crate) mod heat;
+pub(crate) mod history;
+pub(crate) mod missile;
 pub(crate) mod paper;
 pub(crate) mod radar;
+pub(crate) mod track;
 
 use std::error::Error;
 use std::fs;
