@@ -74,6 +74,7 @@ pub(crate) enum Command {
     Solve(Solve),
     Plot(crate::plot::Arguments),
     Report(crate::report::Arguments),
+    Sweep(crate::sweep::Arguments),
     /// Print a script that completes the command's words in a shell.
     ///
     /// Examples:

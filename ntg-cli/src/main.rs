@@ -17,6 +17,7 @@ mod report;
 mod route;
 mod runs;
 mod solve;
+mod sweep;
 mod values;
 mod watch;
 mod write;
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Plot(arguments) => said(plot::run(&arguments)),
         Command::Report(arguments) => said(report::run(&arguments)),
+        Command::Sweep(arguments) => said(sweep::run(&arguments)),
     };
     ExitCode::from(u8::try_from(exit.status()).unwrap_or(u8::MAX))
 }

@@ -25,7 +25,7 @@ pub(crate) fn set(problem: &mut Interpreted, assignment: &str) -> Result<(), Str
 }
 
 /// `name` or `name[index]`.
-fn target_of(target: &str) -> Result<(&str, Option<i64>), String> {
+pub(crate) fn target_of(target: &str) -> Result<(&str, Option<i64>), String> {
     let Some((name, rest)) = target.split_once('[') else { return Ok((target, None)) };
     let index = rest.strip_suffix(']').and_then(|i| i.trim().parse().ok());
     let index =
@@ -34,7 +34,7 @@ fn target_of(target: &str) -> Result<(&str, Option<i64>), String> {
 }
 
 /// Values in SI units.
-fn given(text: &str, unit: &Unit) -> Result<Vec<f64>, String> {
+pub(crate) fn given(text: &str, unit: &Unit) -> Result<Vec<f64>, String> {
     let source = Source::new("--set", text);
     ntg_compiler::model::given(&source, unit)
         .map_err(|found| found.iter().map(|d| format!("\n{}", d.render(&source))).collect::<String>())

@@ -1,0 +1,132 @@
+//! Parameter sets from ranges and tables.
+
+use std::path::Path;
+
+use ntg_interp::Interpreted;
+use ntg_runtime::problem::Problem;
+use ntg_runtime::structure::Parameter;
+use ntg_sweep::{Range, grid};
+
+use crate::values::{self, given, target_of};
+
+/// What is set, and to which values, in declared units.
+pub(super) struct Sets {
+    pub(super) names: Vec<String>,
+    pub(super) rows: Vec<Vec<f64>>,
+}
+
+/// The assignments that hold for all rows: those without a range.
+pub(super) fn fixed(set: &[String]) -> Vec<String> {
+    set.iter().filter(|text| !text.contains(':')).cloned().collect()
+}
+
+/// All parameter sets: every row of the table with every combination of the ranges. The problem
+/// takes the values that hold for all rows.
+pub(super) fn sets(problem: &mut Interpreted, set: &[String], from: Option<&Path>) -> Result<Sets, String> {
+    for assignment in fixed(set) {
+        values::set(problem, &assignment)?;
+    }
+    let mut names = vec![];
+    let mut rows = vec![vec![]];
+    if let Some(path) = from {
+        (names, rows) = table(problem, path)?;
+    }
+    let mut ranges = vec![];
+    for text in set.iter().filter(|text| text.contains(':')) {
+        let (name, range) = range(problem, text).map_err(|message| format!("--set {text}: {message}"))?;
+        names.push(name);
+        ranges.push(range);
+    }
+    if names.is_empty() {
+        return Err("nothing is varied; give a range, such as `--set v_max=0.2:0.3:11`, or a table with --from".into());
+    }
+    if let Some(name) = names.iter().enumerate().find_map(|(i, name)| names[..i].contains(name).then_some(name)) {
+        return Err(format!("`{name}` is varied twice"));
+    }
+    let combinations = grid(&ranges)?;
+    let joined = |row: &Vec<f64>| {
+        let one = |more: &Vec<f64>| row.iter().chain(more).copied().collect();
+        combinations.iter().map(one).collect::<Vec<Vec<f64>>>()
+    };
+    let rows: Vec<Vec<f64>> = rows.iter().flat_map(joined).collect();
+    if rows.is_empty() {
+        return Err("there is no parameter set: the table has no rows, or a range no values".into());
+    }
+    Ok(Sets { names, rows })
+}
+
+/// Sets one parameter or member to a value in its declared unit.
+pub(super) fn put(problem: &mut Interpreted, name: &str, value: f64) -> Result<(), String> {
+    let factor = parameter(problem, name)?.unit.factor;
+    let (base, index) = target_of(name)?;
+    match index {
+        Some(index) => problem.set_member(base, index, value * factor),
+        None => problem.set(base, &[value * factor]),
+    }
+    .map_err(|error| error.to_string())
+}
+
+/// The parameter that a name or member belongs to.
+fn parameter(problem: &Interpreted, name: &str) -> Result<Parameter, String> {
+    let (base, _) = target_of(name)?;
+    let structure = problem.structure();
+    let known: Vec<String> = structure.parameters.iter().map(|p| p.name.clone()).collect();
+    structure.parameters.into_iter().find(|p| p.name == base).ok_or_else(|| match known.is_empty() {
+        true => format!("`{base}` cannot be varied: the problem has no parameters"),
+        false => format!("there is no parameter `{base}`; the parameters are: `{}`", known.join("`, `")),
+    })
+}
+
+/// One number, in the declared unit of a parameter.
+fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
+    match given(text, &parameter.unit)?[..] {
+        [value] => Ok(value / parameter.unit.factor),
+        _ => Err(format!("`{text}` is not one number")),
+    }
+}
+
+/// `name=first:last:count [unit]`.
+fn range(problem: &mut Interpreted, text: &str) -> Result<(String, Range), String> {
+    const FORM: &str = "a range is NAME=FIRST:LAST:COUNT, such as `v_max=0.2:0.3:11` or `v_max=\"200:300:11 [m/s]\"`";
+    let (name, range) = text.split_once('=').ok_or(FORM)?;
+    let name = name.trim();
+    let (range, unit) = range.find('[').map_or((range, ""), |at| range.split_at(at));
+    let [first, last, count] = range.split(':').map(str::trim).collect::<Vec<_>>()[..] else {
+        return Err(FORM.to_owned());
+    };
+    let parameter = parameter(problem, name)?;
+    let end = |text: &str| number(&parameter, format!("{text} {unit}").trim());
+    let count: usize = count.parse().map_err(|_| format!("`{count}` is no number of values; {FORM}"))?;
+    let range = Range { first: end(first)?, last: end(last)?, count };
+    // Whatever is wrong with the name shows here and not in every row.
+    put(problem, name, range.first)?;
+    Ok((name.to_owned(), range))
+}
+
+type Read = (Vec<String>, Vec<Vec<f64>>);
+
+/// A table of parameter sets.
+fn table(problem: &mut Interpreted, path: &Path) -> Result<Read, String> {
+    let table = ntg_sweep::read(path)?;
+    let parameters = table.names.iter().map(|name| parameter(problem, name)).collect::<Result<Vec<_>, _>>();
+    let parameters = parameters.map_err(|message| format!("`{}`: {message}", path.display()))?;
+    let mut rows = vec![];
+    for (line, row) in table.rows.iter().enumerate() {
+        let mut set = vec![];
+        for ((name, parameter), cell) in table.names.iter().zip(&parameters).zip(row) {
+            // Bare numbers, the usual case, need no parser.
+            let value = cell.parse().ok().filter(|value: &f64| value.is_finite());
+            let value = value.map_or_else(|| number(parameter, cell), Ok);
+            set.push(
+                value.map_err(|message| format!("`{}`: row {line}, `{name}` = `{cell}`: {message}", path.display()))?,
+            );
+        }
+        rows.push(set);
+    }
+    if let Some(set) = rows.first() {
+        for (name, value) in table.names.iter().zip(set) {
+            put(problem, name, *value).map_err(|message| format!("`{}`: {message}", path.display()))?;
+        }
+    }
+    Ok((table.names, rows))
+}
