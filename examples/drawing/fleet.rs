@@ -32,8 +32,7 @@ const COLOURS: [RGBColor; 4] = [BLUE, VERMILION, GREEN, PURPLE];
 /// One panel a fleet: tracks with a dot every 100 s, and the times of arrival beside the targets.
 pub(crate) fn tracks(path: &Path, fleets: &[Fleet]) -> Drawn {
     let height = 132 + 430 * u32::try_from(fleets.len())?;
-    let sentence =
-        "The same four aircraft under four rules. A dot every 100 s; beside each target the time of its strike.";
+    let sentence = "Four aircraft under four rules. A dot every 100 s, beside each target the time of its strike. North is stretched.";
     let area = picture(path, height + 50, "A fleet and the times of its strikes", sentence)?;
     for (i, (fleet, area)) in fleets.iter().zip(area.split_evenly((fleets.len(), 1))).enumerate() {
         let east = if i + 1 == fleets.len() { "east [km]" } else { "" };

@@ -10,12 +10,17 @@ use super::history::{Panel, panels};
 use super::track::{Track, words};
 use super::{Drawn, INK, picture};
 
+/// How a flight is drawn, and where its words stand.
+pub(crate) type Look = ((RGBColor, Stroke), (i32, i32));
+
 /// One flight to a hit.
 pub(crate) struct Shot {
     pub(crate) name: String,
     pub(crate) look: (RGBColor, Stroke),
     pub(crate) missile: Track,
     pub(crate) target: Track,
+    /// Where its words stand, in pixels from the place of the hit.
+    pub(crate) words: (i32, i32),
     /// For each panel, what it shows over time.
     pub(crate) histories: Vec<Vec<(f64, f64)>>,
 }
@@ -57,11 +62,7 @@ pub(crate) fn shots(path: &Path, mut scene: Scene<'_>, shots: &[Shot]) -> Drawn 
         shot.missile.dots(&mut chart, scene.every, shot.look.0)?;
         let hit = shot.missile.at(shot.missile.end());
         chart.draw_series([EmptyElement::at(hit) + Cross::new((0, 0), 12, INK.stroke_width(4))])?;
-    }
-    // Where the hits are near each other their words would be on top of each other: one row each.
-    for (row, shot) in (0..).zip(shots) {
-        let hit = shot.missile.at(shot.missile.end());
-        words(&mut chart, hit, &format!("{}: hit after {:.2} s", shot.name, shot.missile.end()), (20, 16 + 32 * row))?;
+        words(&mut chart, hit, &format!("{}: hit after {:.2} s", shot.name, shot.missile.end()), shot.words)?;
     }
     for (i, panel) in scene.panels.iter_mut().enumerate() {
         panel.lines.extend(shots.iter().map(|shot| shot.line(&shot.histories[i])));

@@ -8,6 +8,7 @@
 pub(crate) mod chart;
 pub(crate) mod fleet;
 pub(crate) mod flight;
+pub(crate) mod growth;
 pub(crate) mod heat;
 pub(crate) mod history;
 pub(crate) mod missile;
