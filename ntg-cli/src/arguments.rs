@@ -143,6 +143,9 @@ pub(crate) struct Solve {
     /// Largest scaled residual of the optimality conditions.
     #[arg(long, value_name = "RESIDUAL")]
     pub(crate) tolerance: Option<f64>,
+    /// Which method solves the problem.
+    #[arg(long, value_enum, default_value_t = Method::Auto)]
+    pub(crate) method: Method,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -151,4 +154,15 @@ pub(crate) enum Format {
     Text,
     /// For programs.
     Json,
+}
+
+/// Which method solves the problem.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Method {
+    /// The Newton method, and what helps where it fails.
+    Auto,
+    /// Sequential quadratic programming.
+    Sqp,
+    /// The structured primal-dual Newton method alone.
+    Newton,
 }

@@ -9,7 +9,7 @@ use ntg_interp::Interpreted;
 use ntg_report::run::Recording;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::report::Report;
-use ntg_runtime::settings::Settings;
+use ntg_runtime::settings::{Method, Settings};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
@@ -91,6 +91,11 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;
     }
+    settings.method = match arguments.method {
+        arguments::Method::Auto => Method::Auto,
+        arguments::Method::Sqp => Method::Sqp,
+        arguments::Method::Newton => Method::Newton,
+    };
     settings.validate().map_err(|invalid| invalid.to_string())?;
     Ok(settings)
 }

@@ -10,7 +10,10 @@
 pub mod guess;
 pub mod lanes;
 pub mod math;
+pub mod method;
+pub mod newton;
 pub mod nlp;
+pub mod outcome;
 pub mod problem;
 pub mod report;
 pub mod settings;
@@ -29,7 +32,7 @@ pub mod prelude {
     pub use crate::guess::Guess;
     pub use crate::problem::Problem;
     pub use crate::report::Report;
-    pub use crate::settings::{Control, Progress, Settings};
+    pub use crate::settings::{Control, Method, Progress, Settings};
     pub use crate::solution::{Family, Signal, Solution, Trajectory};
     pub use crate::status::Status;
     pub use crate::{Error, solve, solve_from};

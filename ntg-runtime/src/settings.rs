@@ -46,9 +46,24 @@ pub enum Scaling {
     Off,
 }
 
+/// Which method solves a program (docs/maths.md, section 11.9).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Method {
+    /// The structured Newton method; where it fails, sequential quadratic programming, and then the
+    /// Newton method again to finish.
+    #[default]
+    Auto,
+    /// Sequential quadratic programming on Clarabel.
+    Sqp,
+    /// The structured primal-dual Newton method alone.
+    Newton,
+}
+
 /// How to solve. `Settings::default()` suits most problems.
 #[derive(Clone)]
 pub struct Settings {
+    /// Which method solves the problem. Default [`Method::Auto`].
+    pub method: Method,
     /// Largest scaled stationarity and complementarity residual of a solution
     /// (docs/maths.md, section 6); between 1e-12 and 0.1. Default 1e-8.
     pub tolerance: f64,
@@ -79,6 +94,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            method: Method::Auto,
             tolerance: 1e-8,
             constraint_tolerance: 1e-8,
             max_iterations: 500,
@@ -96,6 +112,7 @@ impl Default for Settings {
 impl fmt::Debug for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Settings")
+            .field("method", &self.method)
             .field("tolerance", &self.tolerance)
             .field("constraint_tolerance", &self.constraint_tolerance)
             .field("max_iterations", &self.max_iterations)

@@ -12,7 +12,8 @@ use crate::problem::Problem;
 use crate::report::{Report, StepReport, user};
 use crate::settings::{InvalidSetting, Settings};
 use crate::solution::Value;
-use crate::sqp::{self, Outcome};
+use crate::method;
+use crate::outcome::Outcome;
 use crate::status::Status;
 use crate::transcribe::{SetupError, Transcription};
 use ntg_structure::Structure;
@@ -92,7 +93,7 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
             None => start(&nlp, guess)?,
         };
         nlp.set_scales(&first, settings)?;
-        let outcome = sqp::solve(&nlp, &first, &remaining(settings, began));
+        let outcome = method::solve(&nlp, &first, None, &remaining(settings, began));
         let stop = i + 1 == steps.len() || matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
         history.push(record(&nlp, &structure, step, &outcome, step_began));
         if stop {

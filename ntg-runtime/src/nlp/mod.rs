@@ -20,7 +20,7 @@ mod structure;
 
 pub use assemble::Assembly;
 pub use csc::Csc;
-pub use scales::Scales;
+pub use scales::{Scales, Slopes};
 pub use structure::Pattern;
 
 use ntg_structure::{Degree, Place};
@@ -148,6 +148,11 @@ pub trait Nlp: Sync {
     fn limits(&self) -> &Limits;
     /// The elements.
     fn blocks(&self) -> &[Block];
+    /// The first of the variables that belong to no point in time (durations, static variables): they
+    /// come last, and may meet every other variable. All variables before it are in order of time.
+    fn globals(&self) -> usize {
+        self.variables()
+    }
     /// Fresh buffers, and an [`Evaluation`] with all arrays sized.
     fn workspace(&self) -> (Self::Workspace, Evaluation);
 

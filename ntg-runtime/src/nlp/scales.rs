@@ -26,31 +26,54 @@ pub struct Scales {
     pub objective: f64,
 }
 
+/// How steep a program is at its start, in scaled variables and the program's own rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Slopes {
+    /// The largest derivative of each row.
+    pub rows: Vec<f64>,
+    /// The largest first derivative of the objective.
+    pub objective: f64,
+    /// The largest second derivative of the objective by one variable.
+    pub curvature: f64,
+}
+
 impl Scales {
     /// The scales of a program, equations (5.1) to (5.3): `gradient`, `jacobian` and the upper
     /// triangle of the objective's `curvature` are those at the start.
     pub fn new(limits: &Limits, scaling: Scaling, gradient: &[f64], jacobian: &Csc, curvature: &Csc) -> Self {
-        let variables: Vec<f64> = limits.scale.iter().map(|&size| positive(size)).collect();
+        let sizes = Self::sizes(limits);
+        let mut rows = vec![0.0_f64; limits.row_lower.len()];
+        for (j, size) in sizes.iter().enumerate() {
+            for (i, a) in jacobian.column(j) {
+                rows[i] = rows[i].max((a * size).abs());
+            }
+        }
+        let objective = gradient.iter().zip(&sizes).map(|(g, size)| (g * size).abs()).fold(0.0, f64::max);
+        let curvature = (0..sizes.len())
+            .filter_map(|j| curvature.position(j, j).map(|at| curvature.value[at].abs() * sizes[j].powi(2)))
+            .fold(0.0, f64::max);
+        Self::from_slopes(limits, scaling, &Slopes { rows, objective, curvature })
+    }
+
+    /// The typical size of each variable: 1 where none is known.
+    pub fn sizes(limits: &Limits) -> Vec<f64> {
+        limits.scale.iter().map(|&size| positive(size)).collect()
+    }
+
+    /// The scales of a program whose slopes at the start are known.
+    pub fn from_slopes(limits: &Limits, scaling: Scaling, slopes: &Slopes) -> Self {
+        let variables = Self::sizes(limits);
         if scaling == Scaling::Off {
             return Self { variables, rows: vec![1.0; limits.row_lower.len()], objective: 1.0 };
         }
         let mut rows: Vec<f64> = limits.row_scale.iter().map(|&size| 1.0 / positive(size)).collect();
-        let mut slope = vec![0.0_f64; rows.len()];
-        for (j, size) in variables.iter().enumerate() {
-            for (i, a) in jacobian.column(j) {
-                slope[i] = slope[i].max((rows[i] * a * size).abs());
-            }
-        }
-        for (factor, slope) in rows.iter_mut().zip(&slope) {
-            if *slope > LARGEST_SLOPE {
+        for (factor, slope) in rows.iter_mut().zip(&slopes.rows) {
+            let slope = *factor * slope;
+            if slope > LARGEST_SLOPE {
                 *factor *= (LARGEST_SLOPE / slope).max(SMALLEST_FACTOR);
             }
         }
-        let slope = gradient.iter().zip(&variables).map(|(g, size)| (g * size).abs()).fold(0.0, f64::max);
-        let bend = (0..variables.len())
-            .filter_map(|j| curvature.position(j, j).map(|at| curvature.value[at].abs() * variables[j].powi(2)))
-            .fold(0.0, f64::max);
-        Self { variables, rows, objective: objective_factor(slope.max(bend)) }
+        Self { variables, rows, objective: objective_factor(slopes.objective.max(slopes.curvature)) }
     }
 }
 

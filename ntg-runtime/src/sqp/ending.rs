@@ -1,6 +1,6 @@
 //! How far a solve has come, whether it is over, and what it gives back.
 
-use super::outcome::{IterationRecord, Outcome};
+use crate::outcome::{IterationRecord, Outcome};
 use super::run::Run;
 use crate::nlp::{Nlp, kkt};
 use crate::settings::{Control, Progress};

@@ -16,7 +16,6 @@ mod elastic;
 mod ending;
 mod exact;
 mod globalise;
-mod outcome;
 mod restore;
 mod run;
 mod scaled;
@@ -24,11 +23,11 @@ mod search;
 mod step;
 mod subproblem;
 
-pub use outcome::{IterationRecord, Multipliers, Outcome};
+pub use crate::outcome::{IterationRecord, Multipliers, Outcome};
 
 use crate::nlp::{Limits, Nlp, NotFinite};
 use crate::settings::Settings;
-use crate::status::{Bounded, Crossing, Residuals, Status};
+use crate::status::{Bounded, Crossing, Status};
 use ntg_structure::Place;
 use run::Run;
 use std::time::Instant;
@@ -44,19 +43,15 @@ pub fn solve<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Outcome {
 /// As [`solve`], with multipliers to start from, as after a small change of the program.
 pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, settings: &Settings) -> Outcome {
     let begin = Instant::now();
+    if let Some(status) = refused(nlp, start) {
+        return Outcome::failed(nlp, start, status);
+    }
     let limits = nlp.limits();
-    let crossings = crossings(nlp, limits);
-    if !crossings.is_empty() {
-        return failed(nlp, start, Status::Contradiction { bounds: crossings });
-    }
-    if let Some(what) = bad_start(nlp, start) {
-        return failed(nlp, start, Status::NotFinite(what));
-    }
     let bounds = limits.lower.iter().zip(&limits.upper);
     let inside: Vec<f64> = start.iter().zip(bounds).map(|(x, (lower, upper))| x.max(*lower).min(*upper)).collect();
     match Run::new(nlp, &inside, from, settings, begin) {
         Ok(run) => iterate(run),
-        Err(what) => failed(nlp, &inside, Status::NotFinite(what)),
+        Err(what) => Outcome::failed(nlp, &inside, Status::NotFinite(what)),
     }
 }
 
@@ -86,6 +81,15 @@ fn iterate<N: Nlp>(mut run: Run<'_, N>) -> Outcome {
     }
 }
 
+/// Why a solve cannot begin: bounds that cross, or a start that is not a point.
+pub(crate) fn refused<N: Nlp>(nlp: &N, start: &[f64]) -> Option<Status> {
+    let bounds = crossings(nlp, nlp.limits());
+    if !bounds.is_empty() {
+        return Some(Status::Contradiction { bounds });
+    }
+    bad_start(nlp, start).map(Status::NotFinite)
+}
+
 /// Bounds between which there is no number.
 fn crossings<N: Nlp>(nlp: &N, limits: &Limits) -> Vec<Crossing> {
     let mut found = Vec::new();
@@ -112,20 +116,4 @@ fn bad_start<N: Nlp>(nlp: &N, start: &[f64]) -> Option<NotFinite> {
     let j = (0..nlp.variables()).find(|&j| !value(j).is_finite())?;
     let place = Place { text: nlp.variable_name(j), ..Place::default() };
     Some(NotFinite { place, value: value(j), point: "the start".to_string() })
-}
-
-/// The outcome of a solve that did not begin.
-fn failed<N: Nlp>(nlp: &N, start: &[f64], status: Status) -> Outcome {
-    Outcome {
-        status,
-        x: start.to_vec(),
-        row_multipliers: vec![0.0; nlp.rows()],
-        bound_multipliers: vec![0.0; nlp.variables()],
-        objective: f64::NAN,
-        residuals: Residuals::default(),
-        iterations: 0,
-        qps: 0,
-        history: Vec::new(),
-        seconds: 0.0,
-    }
 }

@@ -5,7 +5,7 @@ use super::clarabel::Verdict;
 use super::elastic::{Elastic, Found};
 use super::exact::ExactStep;
 use super::globalise::Merit;
-use super::outcome::{IterationRecord, Multipliers};
+use crate::outcome::{IterationRecord, Multipliers};
 use super::scaled::Program;
 use super::search::Trial;
 use super::step::Step;

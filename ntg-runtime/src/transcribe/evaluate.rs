@@ -24,6 +24,10 @@ impl Nlp for Transcription<'_> {
         &self.elements.blocks
     }
 
+    fn globals(&self) -> usize {
+        self.model.layout.coefficients
+    }
+
     fn workspace(&self) -> (Workspace, Evaluation) {
         let batches = self.elements.batches.iter().map(|group| group.batch.work()).collect();
         let block = |block: &Block| BlockValues {

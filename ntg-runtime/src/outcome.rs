@@ -1,5 +1,6 @@
 //! What a solve gives back.
 
+use crate::nlp::Nlp;
 use crate::status::{Residuals, Status};
 
 /// What happened in one iteration.
@@ -19,6 +20,10 @@ pub struct IterationRecord {
     pub mixed: bool,
     /// Whether the accepted step holds a second-order correction.
     pub corrected: bool,
+    /// What was added to the diagonal of the scaled Hessian to make it that of a minimum.
+    pub shift: f64,
+    /// The barrier parameter of the interior-point method; 0 for other steps.
+    pub barrier: f64,
 }
 
 /// Multipliers from which a solve may start.
@@ -55,4 +60,22 @@ pub struct Outcome {
     pub history: Vec<IterationRecord>,
     /// Wall-clock time.
     pub seconds: f64,
+}
+
+impl Outcome {
+    /// The outcome of a solve that did not begin.
+    pub(crate) fn failed<N: Nlp>(nlp: &N, start: &[f64], status: Status) -> Self {
+        Self {
+            status,
+            x: start.to_vec(),
+            row_multipliers: vec![0.0; nlp.rows()],
+            bound_multipliers: vec![0.0; nlp.variables()],
+            objective: f64::NAN,
+            residuals: Residuals::default(),
+            iterations: 0,
+            qps: 0,
+            history: Vec::new(),
+            seconds: 0.0,
+        }
+    }
 }

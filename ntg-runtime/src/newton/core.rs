@@ -1,0 +1,252 @@
+//! The state of a solve, how far it has come, and the steps of the loop that the other files do not
+//! hold (docs/maths.md, section 11).
+
+use super::filter::Filter;
+use super::sides::{Sides, log_sum};
+use super::system::System;
+use crate::nlp::{Limits, Nlp, NotFinite, Scales};
+use crate::outcome::{IterationRecord, Multipliers};
+use crate::settings::{Control, Progress, Settings};
+use crate::status::Status;
+use std::time::Instant;
+
+/// The first barrier parameter (scaled), as in A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006).
+const FIRST_BARRIER: f64 = 0.1;
+/// The last barrier parameter as a fraction of the tolerance.
+const LAST_BARRIER: f64 = 0.1;
+/// A barrier problem is solved well enough when its error is below this multiple of the parameter.
+const ENOUGH: f64 = 10.0;
+/// Linear and superlinear decrease of the barrier parameter, equation (7) there.
+const DECREASE: f64 = 0.2;
+const POWER: f64 = 1.5;
+/// How far inside their bounds the first point lies, relative to bound and room.
+const INSIDE: f64 = 1e-2;
+/// Where the mean multiplier exceeds this, dual residuals are measured relative to it.
+const LARGE: f64 = crate::nlp::kkt::LARGE_MULTIPLIER;
+/// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
+const UNBOUNDED: f64 = 1e10;
+/// Most history records for which room is made at once.
+const HISTORY: usize = 4096;
+
+/// What one solve needs, sized once; all vectors are scaled.
+pub(super) struct Core<'a, N: Nlp> {
+    pub(super) nlp: &'a N,
+    pub(super) settings: &'a Settings,
+    pub(super) system: System<N>,
+    pub(super) sides: Sides,
+    /// The variables, and a 0 for nobody.
+    pub(super) x: Vec<f64>,
+    /// All quantities at `x`.
+    pub(super) quantities: Vec<f64>,
+    /// Minus the gradient of the Lagrangian, and a 0 for nobody.
+    pub(super) descent: Vec<f64>,
+    /// Multipliers of all quantities.
+    pub(super) multipliers: Vec<f64>,
+    pub(super) mu: f64,
+    pub(super) filter: Filter,
+    pub(super) step: super::direction::Direction,
+    /// A trial point: variables, quantities, distances.
+    pub(super) trial: Trial,
+    /// The last shift that the matrix needed.
+    pub(super) shift: f64,
+    pub(super) record: IterationRecord,
+    pub(super) history: Vec<IterationRecord>,
+    pub(super) iterations: usize,
+    pub(super) begin: Instant,
+}
+
+/// A point that is tried.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trial {
+    pub(super) x: Vec<f64>,
+    pub(super) quantities: Vec<f64>,
+    pub(super) w: Vec<f64>,
+    /// Why the last trial had no value.
+    pub(super) failure: Option<NotFinite>,
+}
+
+impl<'a, N: Nlp> Core<'a, N> {
+    /// Plans a program, moves `start` inside its bounds, and evaluates there.
+    pub(super) fn new(
+        nlp: &'a N,
+        start: &[f64],
+        from: Option<Multipliers<'_>>,
+        settings: &'a Settings,
+        begin: Instant,
+    ) -> Result<Self, NotFinite> {
+        let mut system = System::new(nlp);
+        let n = nlp.variables();
+        let sizes = Scales::sizes(nlp.limits());
+        let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();
+        x.push(0.0);
+        move_inside(&mut x, nlp.limits(), &sizes, if from.is_some() { super::warm::INSIDE } else { INSIDE });
+        system.rescale(nlp, &x, settings.scaling)?;
+        let sides = Sides::new(&scaled_limits(nlp.limits(), &system.scales), system.first_variable());
+        let count = system.quantities();
+        let (step, rows) = (super::direction::Direction::new(n, count, &sides, &system), sides.w.clone());
+        let mut core = Self {
+            nlp,
+            settings,
+            quantities: vec![0.0; count],
+            descent: vec![0.0; n + 1],
+            multipliers: vec![0.0; count],
+            mu: FIRST_BARRIER,
+            filter: Filter::default(),
+            step,
+            trial: Trial { x: x.clone(), quantities: vec![0.0; count], w: rows, failure: None },
+            shift: 0.0,
+            record: IterationRecord::default(),
+            history: Vec::with_capacity(settings.max_iterations.min(HISTORY) + 1),
+            iterations: 0,
+            begin,
+            x,
+            sides,
+            system,
+        };
+        core.start(from)?;
+        Ok(core)
+    }
+
+    /// First distances, multipliers and derivatives.
+    fn start(&mut self, from: Option<Multipliers<'_>>) -> Result<(), NotFinite> {
+        self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.quantities)?;
+        match from {
+            Some(from) => self.start_warm(from),
+            None => {
+                self.sides.place(&self.quantities, INSIDE);
+                self.sides.z.fill(1.0);
+                self.estimate_multipliers();
+            }
+        }
+        self.evaluate()?;
+        self.reset_filter();
+        Ok(())
+    }
+
+    /// Derivatives at the present point with the present multipliers.
+    pub(super) fn evaluate(&mut self) -> Result<(), NotFinite> {
+        self.sides.multipliers(self.system.objective(), &mut self.multipliers);
+        self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.quantities)
+    }
+
+    /// Starts a filter at the present point.
+    pub(super) fn reset_filter(&mut self) {
+        let theta = self.theta();
+        self.filter.clear();
+        self.filter.limit = 1e4 * theta.max(1.0);
+    }
+
+    /// Infeasibility of the present point.
+    pub(super) fn theta(&self) -> f64 {
+        self.sides.infeasibility(&self.quantities, &self.sides.w)
+    }
+
+    /// The barrier objective of a point.
+    pub(super) fn phi(&self, quantities: &[f64], w: &[f64]) -> f64 {
+        quantities[self.system.objective()] - self.mu * log_sum(w)
+    }
+
+    /// Computes the gradient of the Lagrangian and the residuals of the present point.
+    pub(super) fn measure(&mut self) {
+        self.system.gradient(&self.multipliers, &mut self.descent);
+        let relax = self.relaxation();
+        let mut residuals = crate::status::Residuals::default();
+        residuals.scaled.primal = self.sides.violation(&self.quantities);
+        residuals.scaled.dual = self.dual() / relax;
+        residuals.scaled.complementarity = self.sides.complementarity(&self.quantities) / relax;
+        self.record = IterationRecord {
+            objective: self.quantities[self.system.objective()] / self.system.scales.objective,
+            residuals,
+            exact: true,
+            barrier: self.mu,
+            ..IterationRecord::default()
+        };
+    }
+
+    fn dual(&self) -> f64 {
+        let finite = self.descent.iter().sum::<f64>().is_finite();
+        if finite { self.descent.iter().fold(0.0, |most: f64, g| most.max(g.abs())) } else { f64::INFINITY }
+    }
+
+    /// Equation (6.5).
+    fn relaxation(&self) -> f64 {
+        let (sum, count) = self.sides.multiplier_sum();
+        if count > 0.0 { (sum / count / LARGE).max(1.0) } else { 1.0 }
+    }
+
+    /// Whether the solve is over, and why.
+    pub(super) fn stops(&mut self) -> Option<Status> {
+        let found = self.record.residuals.scaled;
+        let tolerance = self.settings.tolerance;
+        let feasible = found.primal <= self.settings.constraint_tolerance;
+        if feasible && found.dual <= tolerance && found.complementarity <= tolerance {
+            return Some(Status::Solved);
+        }
+        let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        if self.quantities[self.system.objective()] < -UNBOUNDED || largest > UNBOUNDED {
+            return Some(Status::Unbounded);
+        }
+        if let Some(watch) = &self.settings.on_iteration {
+            let progress = Progress {
+                iteration: self.iterations,
+                objective: self.record.objective,
+                primal: found.primal,
+                dual: found.dual,
+                step: self.history.last().map_or(0.0, |last| last.step),
+                seconds: self.begin.elapsed().as_secs_f64(),
+            };
+            if watch(&progress) == Control::Cancel {
+                return Some(Status::Cancelled);
+            }
+        }
+        if self.settings.time_limit.is_some_and(|limit| self.begin.elapsed() >= limit) {
+            return Some(Status::TimeLimit);
+        }
+        (self.iterations >= self.settings.max_iterations).then_some(Status::IterationLimit)
+    }
+
+    /// Lowers the barrier as long as its problem is solved well enough (11.6).
+    pub(super) fn lower_barrier(&mut self) {
+        let last = LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance);
+        let (relax, dual) = (self.relaxation(), self.dual());
+        let before = self.mu;
+        while self.mu > last {
+            let apart = self.sides.residual(&self.quantities);
+            let error = (dual / relax).max(self.sides.deviation(self.mu) / relax).max(apart);
+            if error > ENOUGH * self.mu {
+                break;
+            }
+            self.mu = (DECREASE * self.mu).min(self.mu.powf(POWER)).max(last);
+        }
+        if self.mu != before {
+            self.filter.clear();
+        }
+    }
+}
+
+/// Moves variables inside their bounds, by a fraction of the room at most.
+fn move_inside(x: &mut [f64], limits: &Limits, sizes: &[f64], inside: f64) {
+    for (j, size) in sizes.iter().enumerate() {
+        let (lower, upper) = (limits.lower[j] / size, limits.upper[j] / size);
+        let room = inside * (upper - lower);
+        let margin = |bound: f64| (inside * bound.abs().max(1.0)).min(room);
+        if lower.is_finite() {
+            x[j] = x[j].max(lower + margin(lower));
+        }
+        if upper.is_finite() {
+            x[j] = x[j].min(upper - margin(upper));
+        }
+    }
+}
+
+fn scaled_limits(limits: &Limits, scales: &Scales) -> Limits {
+    let divide = |bounds: &[f64]| bounds.iter().zip(&scales.variables).map(|(b, size)| b / size).collect();
+    let multiply = |bounds: &[f64]| bounds.iter().zip(&scales.rows).map(|(b, factor)| b * factor).collect();
+    Limits {
+        lower: divide(&limits.lower),
+        upper: divide(&limits.upper),
+        row_lower: multiply(&limits.row_lower),
+        row_upper: multiply(&limits.row_upper),
+        ..Limits::default()
+    }
+}

@@ -1,0 +1,236 @@
+//! The primal-dual direction (docs/maths.md, sections 11.2 to 11.4).
+//!
+//! ```text
+//! A dx = -grad L + J^T q,   A = H + J^T Sigma J + shift I
+//! sides:       Sigma = z / w,   q = sign (mu / w - z - z r / w),   dw = sign J dx + r
+//! equalities:  Sigma = 1 / d,   q = -c / d                        (d: proximal term)
+//! ```
+//!
+//! The distances move by `J dx + (c - w)`, in this association: it keeps what is left of small
+//! distances. Equalities are then refined until the proximal term no longer shows.
+
+use super::core::Core;
+use super::elements::Weights;
+use super::sides::Sides;
+use super::system::System;
+use crate::nlp::Nlp;
+
+/// The proximal term of equalities (scaled): smaller ones make noise of the rows' rounding.
+const PROXIMAL: f64 = 1e-6;
+/// Refinements of the equalities at most.
+const REFINEMENTS: usize = 6;
+/// The share of the equalities' residuals that may remain.
+const REFINED: f64 = 1e-10;
+/// The weight of a quantity without bounds: none, written so that it may divide.
+const WEIGHTLESS: f64 = 1e-30;
+/// Shifts of the diagonal, equations (IC-1) to (IC-6) of A. Wächter and L. T. Biegler,
+/// *Math. Prog.* 106 (2006), section 3.1: the first, the smallest, the largest, and their factors.
+const FIRST_SHIFT: f64 = 1e-4;
+const LEAST_SHIFT: f64 = 1e-20;
+const LARGEST_SHIFT: f64 = 1e20;
+const FIRST_FACTOR: f64 = 100.0;
+const FACTOR: f64 = 8.0;
+const FALL: f64 = 1.0 / 3.0;
+/// Multipliers estimated larger than this start at 0 instead.
+const LARGEST_ESTIMATE: f64 = 1e3;
+
+/// A direction, and what is needed to compute it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Direction {
+    /// The variables', and a 0 for nobody.
+    pub(super) x: Vec<f64>,
+    /// The change of all quantities.
+    pub(super) along: Vec<f64>,
+    pub(super) w: Vec<f64>,
+    pub(super) z: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    /// Residuals of sides that the direction removes.
+    pub(super) r: Vec<f64>,
+    /// Residuals of equalities that the direction removes.
+    pub(super) c: Vec<f64>,
+    /// Weight of each quantity in the matrix.
+    sigma: Vec<f64>,
+    /// Weights on the right.
+    right: Vec<f64>,
+    /// A correction of `x`, and of `along`.
+    more_x: Vec<f64>,
+    more_along: Vec<f64>,
+    /// By row of the border.
+    border: Vec<f64>,
+}
+
+impl Direction {
+    pub(super) fn new<N: Nlp>(n: usize, quantities: usize, sides: &Sides, system: &System<N>) -> Self {
+        let (bounds, equalities) = (sides.side.len(), sides.equality.len());
+        Self {
+            x: vec![0.0; n + 1],
+            along: vec![0.0; quantities],
+            w: vec![0.0; bounds],
+            z: vec![0.0; bounds],
+            y: vec![0.0; equalities],
+            r: vec![0.0; bounds],
+            c: vec![0.0; equalities],
+            sigma: vec![0.0; quantities],
+            right: vec![0.0; quantities],
+            more_x: vec![0.0; n + 1],
+            more_along: vec![0.0; quantities],
+            border: vec![0.0; system.order.bordered.len()],
+        }
+    }
+}
+
+impl<N: Nlp> Core<'_, N> {
+    /// The direction from the present point; false where the matrix cannot be made that of a minimum.
+    pub(super) fn direction(&mut self) -> bool {
+        let sigma = &mut self.step.sigma;
+        sigma.fill(0.0);
+        for (side, (w, z)) in self.sides.side.iter().zip(self.sides.w.iter().zip(&self.sides.z)) {
+            sigma[side.of] += z / w;
+        }
+        for (of, _) in &self.sides.equality {
+            sigma[*of] = 1.0 / PROXIMAL;
+        }
+        self.assemble(true);
+        if !self.factorise() {
+            return false;
+        }
+        for (r, (side, w)) in self.step.r.iter_mut().zip(self.sides.side.iter().zip(&self.sides.w)) {
+            *r = side.distance(&self.quantities) - w;
+        }
+        for (c, (of, value)) in self.step.c.iter_mut().zip(&self.sides.equality) {
+            *c = self.quantities[*of] - value;
+        }
+        self.solve_direction()
+    }
+
+    /// The matrix with the weights of `step.sigma`, those of condensed rows inside and those of the
+    /// border's rows on its diagonal.
+    fn assemble(&mut self, curvature: bool) {
+        let sigma = &self.step.sigma;
+        self.system.assemble(Weights { sigma, curvature });
+        for border in 0..self.system.order.bordered.len() {
+            let weight = self.step.sigma[self.system.order.bordered[border]];
+            self.system.set_border(border, 1.0 / weight.max(WEIGHTLESS));
+        }
+    }
+
+    /// Factorises the matrix with the smallest shift that gives it the signs of a minimum.
+    fn factorise(&mut self) -> bool {
+        if self.system.factorise(0.0) {
+            self.record.shift = 0.0;
+            return true;
+        }
+        let first = self.shift == 0.0;
+        let mut shift = if first { FIRST_SHIFT } else { (FALL * self.shift).max(LEAST_SHIFT) };
+        while shift <= LARGEST_SHIFT {
+            if self.system.factorise(shift) {
+                self.shift = shift;
+                self.record.shift = shift;
+                return true;
+            }
+            shift *= if first { FIRST_FACTOR } else { FACTOR };
+        }
+        false
+    }
+
+    /// The direction that removes the residuals `step.r` and `step.c`, with the present factors;
+    /// false if it is not finite.
+    pub(super) fn solve_direction(&mut self) -> bool {
+        let (sides, step, mu) = (&self.sides, &mut self.step, self.mu);
+        step.right.fill(0.0);
+        for (k, side) in sides.side.iter().enumerate() {
+            let (w, z) = (sides.w[k], sides.z[k]);
+            step.right[side.of] += side.sign * (mu / w - z - z / w * step.r[k]);
+        }
+        for ((of, _), c) in sides.equality.iter().zip(&step.c) {
+            step.right[*of] = -c / PROXIMAL;
+        }
+        self.split_border();
+        self.system.gradient(&self.step.right, &mut self.step.x);
+        self.step.x.iter_mut().zip(&self.descent).for_each(|(x, descent)| *x += descent);
+        let n = self.x.len() - 1;
+        self.system.solve(&mut self.step.x[..n], &mut self.step.border);
+        self.step.x[n] = 0.0;
+        self.system.along(&self.step.x, &mut self.step.along);
+        self.step.y.fill(0.0);
+        self.refine_equalities();
+        let (sides, step) = (&self.sides, &mut self.step);
+        for (k, side) in sides.side.iter().enumerate() {
+            let (w, z) = (sides.w[k], sides.z[k]);
+            step.w[k] = side.sign * step.along[side.of] + step.r[k];
+            step.z[k] = mu / w - z - z / w * step.w[k];
+        }
+        let sum: f64 = step.x.iter().chain(&step.z).chain(&step.y).sum();
+        sum.is_finite()
+    }
+
+    /// Moves the right-hand sides of the border's rows to where they belong (11.4).
+    fn split_border(&mut self) {
+        let step = &mut self.step;
+        for (border, &row) in self.system.order.bordered.iter().enumerate() {
+            step.border[border] = step.right[row] / step.sigma[row].max(WEIGHTLESS);
+            step.right[row] = 0.0;
+        }
+    }
+
+    /// The method of multipliers for the equalities (11.5): the residual that the proximal term leaves
+    /// is removed with the same factors.
+    fn refine_equalities(&mut self) {
+        let n = self.x.len() - 1;
+        let size = self.step.c.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let mut before = f64::INFINITY;
+        for round in 0..=REFINEMENTS {
+            self.step.right.fill(0.0);
+            let mut left = 0.0_f64;
+            for (k, (of, _)) in self.sides.equality.iter().enumerate() {
+                let rest = -self.step.c[k] - self.step.along[*of];
+                self.step.y[k] += rest / PROXIMAL;
+                self.step.right[*of] = rest / PROXIMAL;
+                left = left.max(rest.abs());
+            }
+            if round == REFINEMENTS || left <= REFINED * size || left > 0.5 * before || left < f64::EPSILON {
+                return;
+            }
+            before = left;
+            self.split_border();
+            self.system.gradient(&self.step.right, &mut self.step.more_x);
+            self.system.solve(&mut self.step.more_x[..n], &mut self.step.border);
+            self.step.more_x[n] = 0.0;
+            self.system.along(&self.step.more_x, &mut self.step.more_along);
+            let step = &mut self.step;
+            step.x.iter_mut().zip(&step.more_x).for_each(|(x, more)| *x += more);
+            step.along.iter_mut().zip(&step.more_along).for_each(|(along, more)| *along += more);
+        }
+    }
+
+    /// Multipliers of equalities by least squares (11.7): those that come nearest to a stationary
+    /// point, given the multipliers of sides. Before: derivatives at the present point.
+    pub(super) fn estimate_multipliers(&mut self) {
+        self.sides.y.fill(0.0);
+        if self.sides.equality.is_empty() {
+            return;
+        }
+        self.step.sigma.fill(0.0);
+        for (of, _) in &self.sides.equality {
+            self.step.sigma[*of] = 1.0 / PROXIMAL;
+        }
+        self.assemble(false);
+        if !self.system.factorise(1.0) {
+            return;
+        }
+        let n = self.x.len() - 1;
+        self.sides.multipliers(self.system.objective(), &mut self.multipliers);
+        self.system.gradient(&self.multipliers, &mut self.step.x);
+        self.step.border.fill(0.0);
+        self.system.solve(&mut self.step.x[..n], &mut self.step.border);
+        self.step.x[n] = 0.0;
+        self.system.along(&self.step.x, &mut self.step.along);
+        for ((of, _), y) in self.sides.equality.iter().zip(&mut self.sides.y) {
+            *y = -self.step.along[*of] / PROXIMAL;
+        }
+        let largest = self.sides.y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+        if !(largest <= LARGEST_ESTIMATE) {
+            self.sides.y.fill(0.0);
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The structured primal-dual Newton method (docs/maths.md, section 11).
+//!
+//! Takes any [`Nlp`], a start and [`Settings`]; gives an [`Outcome`], by the same test as the
+//! sequential quadratic program. An interior-point method with exact second derivatives, whose
+//! linear systems are condensed element by element into a band with an arrow: the cost of an
+//! iteration grows linearly with the number of intervals. In one iteration:
+//!
+//! 1. the gradient of the Lagrangian, and the end if all residuals are small;
+//! 2. a lower barrier, if the present one is reached;
+//! 3. the matrix, its factors, and the primal-dual direction;
+//! 4. a search by a filter, with second-order corrections; else restoration of feasibility.
+//!
+//! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006).
+
+mod core;
+mod direction;
+mod elements;
+mod ending;
+mod factor;
+mod filter;
+mod map;
+mod order;
+mod pack;
+mod restore;
+mod search;
+mod shape;
+mod sides;
+mod system;
+mod warm;
+
+use crate::nlp::Nlp;
+use crate::outcome::{Multipliers, Outcome};
+use crate::settings::Settings;
+use crate::status::Status;
+use core::Core;
+use search::Searched;
+use std::time::Instant;
+
+/// Steps without effect in a row that end a solve.
+const TINY_STEPS: usize = 3;
+
+/// Solves `nlp` from `start`, which is first moved to within the bounds of the variables, with
+/// multipliers to start from where they are known.
+///
+/// The answer is deterministic: the same program, start and settings give the same bits (a time
+/// limit apart).
+pub fn solve<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, settings: &Settings) -> Outcome {
+    let begin = Instant::now();
+    if let Some(status) = crate::sqp::refused(nlp, start) {
+        return Outcome::failed(nlp, start, status);
+    }
+    let from = from.filter(|from| from.rows.len() == nlp.rows() && from.bounds.len() == nlp.variables());
+    match Core::new(nlp, start, from, settings, begin) {
+        Ok(core) => iterate(core),
+        Err(what) => Outcome::failed(nlp, start, Status::NotFinite(what)),
+    }
+}
+
+/// The method. Each line is a step of docs/maths.md, section 11.
+fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
+    let mut tiny = 0;
+    loop {
+        core.measure();
+        if let Some(status) = core.stops() {
+            return core.outcome(status);
+        }
+        core.lower_barrier();
+        let searched = if core.direction() { core.search() } else { Searched::Stuck };
+        tiny = if searched == Searched::Tiny { tiny + 1 } else { 0 };
+        let ended = match searched {
+            Searched::Tiny if tiny >= TINY_STEPS => Some(Status::StepTooSmall),
+            Searched::Stuck => core.restore(),
+            Searched::Tiny | Searched::Accepted => None,
+        };
+        if let Some(status) = ended {
+            return core.outcome(status);
+        }
+        if let Err(what) = core.advance() {
+            return core.outcome(Status::NotFinite(what));
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Who is in the band and who in the border (docs/maths.md, section 11.3).
+//!
+//! Variables that the program calls global go to the border, and so do variables that second
+//! derivatives connect with variables far away in time. Rows that several elements add to
+//! (integrals), or whose variables are far apart, are unknowns of the border; all other rows are
+//! condensed into the second derivatives of their one element.
+
+use super::map::BlockMap;
+use super::pack::LANES;
+use crate::nlp::{Block, Nlp, Target};
+
+/// A reach beyond this multiple of the typical one is far.
+const FAR: usize = 4;
+/// A reach up to this is never far.
+const NEAR: usize = 24;
+
+/// The place of every variable and of every row that has one.
+#[derive(Clone, Debug)]
+pub(super) struct Order {
+    /// The unknown that each variable is.
+    pub(super) unknown: Vec<u32>,
+    /// Unknowns of the band.
+    pub(super) band: usize,
+    /// Variables of the border.
+    pub(super) border: usize,
+    /// For each row its number among the rows of the border; none for a condensed row.
+    pub(super) border_row: Vec<Option<u32>>,
+    /// The rows of the border.
+    pub(super) bordered: Vec<usize>,
+}
+
+impl Order {
+    /// Sorts the unknowns of a program.
+    pub(super) fn new<N: Nlp>(nlp: &N, maps: &[BlockMap]) -> Self {
+        let n = nlp.variables();
+        let mut in_border = vec![false; n];
+        in_border[nlp.globals()..].fill(true);
+        let limit = limit(nlp.blocks(), &in_border);
+        for (block, map) in nlp.blocks().iter().zip(maps) {
+            far_variables(block, map, limit, &mut in_border);
+        }
+        let (mut unknown, mut band) = (vec![0; n], 0);
+        for j in (0..n).filter(|&j| !in_border[j]) {
+            unknown[j] = band;
+            band += 1;
+        }
+        for (next, j) in (0..n).filter(|&j| in_border[j]).enumerate() {
+            unknown[j] = band + next as u32;
+        }
+        let mut border_row = vec![None; nlp.rows()];
+        let mut bordered = vec![];
+        for (row, _) in far_rows(nlp, limit, &in_border).iter().enumerate().filter(|(_, far)| **far) {
+            border_row[row] = Some(bordered.len() as u32);
+            bordered.push(row);
+        }
+        let border = n - band as usize;
+        Self { unknown, band: band as usize, border, border_row, bordered }
+    }
+}
+
+/// The reach that counts as far: a multiple of the median over elements.
+fn limit(blocks: &[Block], in_border: &[bool]) -> usize {
+    let mut reaches: Vec<usize> = blocks
+        .iter()
+        .flat_map(|block| (0..block.elements).map(|e| reach(block.variables(e).iter().copied(), in_border)))
+        .filter(|reach| *reach > 0)
+        .collect();
+    reaches.sort_unstable();
+    let median = reaches.get(reaches.len() / 2).copied().unwrap_or(0);
+    (FAR * median).max(NEAR)
+}
+
+/// How far apart the variables of the band among these are.
+fn reach(variables: impl Iterator<Item = u32>, in_border: &[bool]) -> usize {
+    let inside = variables.filter(|&j| !in_border[j as usize]);
+    let (low, high) = inside.fold((u32::MAX, 0), |(low, high), j| (low.min(j), high.max(j)));
+    high.saturating_sub(low) as usize
+}
+
+/// Moves variables to the border that second derivatives connect with others far before them.
+fn far_variables(block: &Block, map: &BlockMap, limit: usize, in_border: &mut [bool]) {
+    for e in 0..block.elements {
+        if reach(block.variables(e).iter().copied(), in_border) <= limit {
+            continue;
+        }
+        for &(i, j) in &block.hessian {
+            let of = |slot: usize| map.carrier[slot].map(|c| map.carriers[c].first..map.carriers[c].last);
+            let (Some(a), Some(b)) = (of(i), of(j)) else { continue };
+            let variables = || {
+                let packs = map.variables(e / LANES);
+                let both = packs[a.clone()].iter().chain(&packs[b.clone()]);
+                both.map(|lanes| lanes[e % LANES]).filter(|&v| (v as usize) < in_border.len())
+            };
+            if reach(variables(), in_border) <= limit {
+                continue;
+            }
+            let low = variables().filter(|&j| !in_border[j as usize]).min().unwrap_or(0);
+            let far: Vec<u32> = variables().filter(|&j| (j - low.min(j)) as usize > limit).collect();
+            far.into_iter().for_each(|j| in_border[j as usize] = true);
+        }
+    }
+}
+
+/// Whether each row belongs to the border.
+fn far_rows<N: Nlp>(nlp: &N, limit: usize, in_border: &[bool]) -> Vec<bool> {
+    let mut makers = vec![0_usize; nlp.rows()];
+    let mut far = vec![false; nlp.rows()];
+    for block in nlp.blocks() {
+        for e in 0..block.elements {
+            let wide = reach(block.variables(e).iter().copied(), in_border) > limit;
+            for row in 0..block.rows {
+                if let Target::Row(i) = block.target[row * block.elements + e] {
+                    makers[i as usize] += 1;
+                    far[i as usize] |= wide || makers[i as usize] > 1;
+                }
+            }
+        }
+    }
+    far
+}

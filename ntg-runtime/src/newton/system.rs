@@ -1,0 +1,255 @@
+//! The whole program in scaled variables, with its elements ready for work and its condensed matrix
+//! (docs/maths.md, sections 5 and 11).
+//!
+//! ```text
+//! x = D s,   rows = R c,   objective = w f
+//! ```
+//!
+//! A list with one entry for each *quantity* holds the rows, the objective (at [`System::objective`]),
+//! one entry that nobody reads, and the variables (from [`System::first_variable`] on): a bound on a
+//! variable is a row whose derivative is 1.
+
+use super::elements::{BlockPlan, Buffers, Weights};
+use super::factor::Factor;
+use super::map::BlockMap;
+use super::order::Order;
+use super::shape::Shape;
+use crate::nlp::{Evaluation, Nlp, NotFinite, Scales, Slopes};
+use crate::settings::Scaling;
+
+/// A program, its plans, and its derivatives at the latest point.
+pub(super) struct System<N: Nlp> {
+    blocks: Vec<BlockPlan>,
+    pub(super) order: Order,
+    pub(super) shape: Shape,
+    pub(super) scales: Scales,
+    /// The unfactorised matrix.
+    pub(super) matrix: Vec<f64>,
+    pub(super) factor: Factor,
+    buffers: Buffers,
+    work: N::Workspace,
+    /// Element derivatives at the latest point.
+    at: Evaluation,
+    /// Values at a trial point.
+    trial: Evaluation,
+    /// A point in the program's own units.
+    x: Vec<f64>,
+    /// Multipliers of rows in the program's own units.
+    weights: Vec<f64>,
+    /// Right-hand side and solution, by unknown.
+    side: Vec<f64>,
+}
+
+impl<N: Nlp> System<N> {
+    /// Plans a program whose limits have their scales.
+    pub(super) fn new(nlp: &N) -> Self {
+        let (n, m) = (nlp.variables(), nlp.rows());
+        let sizes = Scales::sizes(nlp.limits());
+        let maps: Vec<BlockMap> = nlp.blocks().iter().map(|block| BlockMap::new(block, &sizes, n as u32)).collect();
+        let order = Order::new(nlp, &maps);
+        let plans = nlp.blocks().iter().zip(maps).map(|(block, map)| BlockPlan::new(block, map, &order, m));
+        let mut blocks: Vec<BlockPlan> = plans.collect();
+        let mut cliques: Vec<u32> = vec![];
+        let mut ends = vec![0];
+        for block in &blocks {
+            block.cliques(&order, |list| {
+                cliques.extend_from_slice(list);
+                ends.push(cliques.len());
+            });
+        }
+        let lists = ends.windows(2).map(|range| &cliques[range[0]..range[1]]);
+        let shape = Shape::new(order.band, [order.border, order.bordered.len()], lists);
+        let mut buffers = Buffers::default();
+        for block in &mut blocks {
+            block.place(&order, &shape);
+            buffers.fit(block);
+        }
+        let (work, at) = nlp.workspace();
+        Self {
+            blocks,
+            scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0 },
+            matrix: vec![0.0; shape.len],
+            factor: Factor::new(&shape),
+            side: vec![0.0; shape.unknowns()],
+            buffers,
+            work,
+            trial: at.clone(),
+            at,
+            x: vec![0.0; n],
+            weights: vec![0.0; m],
+            order,
+            shape,
+        }
+    }
+
+    /// The quantity that is the objective.
+    pub(super) fn objective(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// The quantity that is the first variable.
+    pub(super) fn first_variable(&self) -> usize {
+        self.weights.len() + 2
+    }
+
+    /// How many quantities there are.
+    pub(super) fn quantities(&self) -> usize {
+        self.first_variable() + self.x.len()
+    }
+
+    /// Chooses the scales of rows and objective by the slopes at a scaled point.
+    pub(super) fn rescale(&mut self, nlp: &N, scaled: &[f64], scaling: Scaling) -> Result<(), NotFinite> {
+        self.unscale(nlp, scaled);
+        self.weights.fill(0.0);
+        nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.work, &mut self.at)?;
+        let plain = Scales { rows: vec![1.0; self.weights.len()], objective: 1.0, ..self.scales.clone() };
+        self.set_scales(nlp, plain);
+        let slopes = self.slopes();
+        self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
+        Ok(())
+    }
+
+    fn set_scales(&mut self, nlp: &N, scales: Scales) {
+        for (plan, block) in self.blocks.iter_mut().zip(nlp.blocks()) {
+            plan.scale(block, &scales);
+        }
+        self.scales = scales;
+    }
+
+    /// The slopes at the latest point, with row factors of 1.
+    fn slopes(&mut self) -> Slopes {
+        let (m, n) = (self.weights.len(), self.x.len());
+        let mut rows = vec![0.0; m + 2];
+        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
+            block.slopes(at, &mut rows);
+        }
+        rows.truncate(m);
+        let mut multipliers = vec![0.0; self.quantities()];
+        self.assemble(Weights { sigma: &multipliers, curvature: true });
+        let columns = (0..n).map(|j| self.order.unknown[j] as usize);
+        let curvature = columns.map(|u| self.matrix[self.shape.position(u, u)].abs()).fold(0.0, f64::max);
+        for (row, slope) in rows.iter_mut().enumerate() {
+            let Some(border) = self.order.border_row[row] else { continue };
+            let unknown = self.order.band + self.order.border + border as usize;
+            *slope = self.shape.row(unknown).map(|at| self.matrix[at].abs()).fold(0.0, f64::max);
+        }
+        multipliers[m] = 1.0;
+        let mut gradient = vec![0.0; n + 1];
+        self.gradient(&multipliers, &mut gradient);
+        let objective = gradient[..n].iter().fold(0.0, |most: f64, g| most.max(g.abs()));
+        Slopes { rows, objective, curvature }
+    }
+
+    /// Writes a point in the program's own units, within the bounds to the last bit.
+    fn unscale(&mut self, nlp: &N, scaled: &[f64]) {
+        let limits = nlp.limits();
+        for (j, x) in self.x.iter_mut().enumerate() {
+            *x = (scaled[j] * self.scales.variables[j]).max(limits.lower[j]).min(limits.upper[j]);
+        }
+    }
+
+    /// A scaled point in the program's own units.
+    pub(super) fn point(&mut self, nlp: &N, scaled: &[f64]) -> &[f64] {
+        self.unscale(nlp, scaled);
+        &self.x
+    }
+
+    /// Writes all quantities at a scaled point.
+    pub(super) fn values(&mut self, nlp: &N, scaled: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
+        self.unscale(nlp, scaled);
+        nlp.values(&self.x, &mut self.work, &mut self.trial)?;
+        self.copy_quantities(&self.trial, scaled, out);
+        Ok(())
+    }
+
+    /// Moves to a scaled point with multipliers of all quantities: all quantities, and derivatives
+    /// for the methods below.
+    pub(super) fn derivatives(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        multipliers: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), NotFinite> {
+        self.unscale(nlp, scaled);
+        for ((weight, multiplier), factor) in self.weights.iter_mut().zip(multipliers).zip(&self.scales.rows) {
+            *weight = -multiplier * factor;
+        }
+        nlp.derivatives(&self.x, self.scales.objective, &self.weights, &mut self.work, &mut self.at)?;
+        self.copy_quantities(&self.at, scaled, out);
+        Ok(())
+    }
+
+    fn copy_quantities(&self, at: &Evaluation, scaled: &[f64], out: &mut [f64]) {
+        for ((out, row), factor) in out.iter_mut().zip(&at.rows).zip(&self.scales.rows) {
+            *out = row * factor;
+        }
+        out[self.objective()] = self.scales.objective * at.objective;
+        out[self.first_variable()..].copy_from_slice(&scaled[..self.x.len()]);
+    }
+
+    /// Writes `sum over quantities of multiplier * gradient`; `out` has an entry for each variable
+    /// and one for nobody.
+    pub(super) fn gradient(&mut self, multipliers: &[f64], out: &mut [f64]) {
+        let n = self.x.len();
+        out[..n].copy_from_slice(&multipliers[self.first_variable()..]);
+        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
+            block.gradient(at, multipliers, &mut self.buffers, out);
+        }
+        out[n] = 0.0;
+    }
+
+    /// Writes the change of all quantities along a direction, which ends with a 0 for nobody.
+    pub(super) fn along(&mut self, direction: &[f64], out: &mut [f64]) {
+        let first = self.first_variable();
+        out[..first].fill(0.0);
+        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
+            block.along(at, direction, &mut self.buffers, out);
+        }
+        out[first..].copy_from_slice(&direction[..self.x.len()]);
+    }
+
+    /// Builds the matrix at the latest point. Rows of the border need [`System::set_border`] besides.
+    pub(super) fn assemble(&mut self, weights: Weights<'_>) {
+        self.matrix.fill(0.0);
+        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
+            block.assemble(at, weights, &mut self.buffers, &mut self.matrix);
+        }
+        for (weight, &unknown) in weights.sigma[self.first_variable()..].iter().zip(&self.order.unknown) {
+            let at = self.shape.position(unknown as usize, unknown as usize);
+            self.matrix[at] += weight;
+        }
+    }
+
+    /// Sets the diagonal of a row of the border to `-compliance`.
+    pub(super) fn set_border(&mut self, border: usize, compliance: f64) {
+        let unknown = self.order.band + self.order.border + border;
+        let at = self.shape.position(unknown, unknown);
+        self.matrix[at] = -compliance;
+    }
+
+    /// Factorises the matrix with a shift of the variables; whether it has the signs of a minimum.
+    pub(super) fn factorise(&mut self, shift: f64) -> bool {
+        self.factor.factorise(&self.shape, &self.matrix, shift) == Some(self.order.bordered.len())
+    }
+
+    /// Solves with the factors: `right` by variable and by row of the border; gives the solution the
+    /// same way.
+    pub(super) fn solve(&mut self, variables: &mut [f64], rows: &mut [f64]) {
+        for (value, &unknown) in variables.iter().zip(&self.order.unknown) {
+            self.side[unknown as usize] = *value;
+        }
+        let first = self.order.band + self.order.border;
+        self.side[first..].copy_from_slice(rows);
+        self.factor.solve(&self.shape, &mut self.side);
+        for (value, &unknown) in variables.iter_mut().zip(&self.order.unknown) {
+            *value = self.side[unknown as usize];
+        }
+        rows.copy_from_slice(&self.side[first..]);
+    }
+
+    /// The element derivatives and rows of the latest point, in the program's own units.
+    pub(super) fn latest(&self) -> &Evaluation {
+        &self.at
+    }
+}
