@@ -44,6 +44,8 @@ pub(super) struct Core<'a, N: Nlp> {
     pub(super) multipliers: Vec<f64>,
     pub(super) mu: f64,
     pub(super) filter: Filter,
+    /// Set once bounds are elastic.
+    pub(super) elastic: Option<super::elastic::Elastic>,
     pub(super) step: super::direction::Direction,
     /// A trial point: variables, quantities, distances.
     pub(super) trial: Trial,
@@ -92,6 +94,7 @@ impl<'a, N: Nlp> Core<'a, N> {
             multipliers: vec![0.0; count],
             mu: FIRST_BARRIER,
             filter: Filter::default(),
+            elastic: None,
             step,
             trial: Trial { x: x.clone(), quantities: vec![0.0; count], w: rows, failure: None },
             shift: 0.0,
@@ -104,6 +107,7 @@ impl<'a, N: Nlp> Core<'a, N> {
             system,
         };
         core.start(from)?;
+        if std::env::var("NTG_ELASTIC").is_ok() { core.enter_elastic(); }
         Ok(core)
     }
 
@@ -206,21 +210,28 @@ impl<'a, N: Nlp> Core<'a, N> {
     }
 
     /// Lowers the barrier as long as its problem is solved well enough (11.6).
-    pub(super) fn lower_barrier(&mut self) {
+    pub(super) fn lower_barrier(&mut self) -> Option<Status> {
         let last = LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance);
         let (relax, dual) = (self.relaxation(), self.dual());
         let before = self.mu;
         while self.mu > last {
-            let apart = self.sides.residual(&self.quantities);
+            let apart = match &self.elastic {
+                Some(elastic) => elastic.deviation(&self.sides, self.mu) / relax,
+                None => self.sides.residual(&self.quantities),
+            };
             let error = (dual / relax).max(self.sides.deviation(self.mu) / relax).max(apart);
             if error > ENOUGH * self.mu {
                 break;
+            }
+            if let Some(status) = self.reconsider_price() {
+                return Some(status);
             }
             self.mu = (DECREASE * self.mu).min(self.mu.powf(POWER)).max(last);
         }
         if self.mu != before {
             self.filter.clear();
         }
+        None
     }
 }
 

@@ -48,6 +48,10 @@ pub(super) struct Direction {
     pub(super) r: Vec<f64>,
     /// Residuals of equalities that the direction removes.
     pub(super) c: Vec<f64>,
+    /// How much a side gives way for one unit of its multiplier.
+    compliance: Vec<f64>,
+    /// How much an equality gives way; 0 unless it is elastic.
+    softness: Vec<f64>,
     /// Weight of each quantity in the matrix.
     sigma: Vec<f64>,
     /// Weights on the right.
@@ -70,6 +74,8 @@ impl Direction {
             y: vec![0.0; equalities],
             r: vec![0.0; bounds],
             c: vec![0.0; equalities],
+            compliance: vec![0.0; bounds],
+            softness: vec![0.0; equalities],
             sigma: vec![0.0; quantities],
             right: vec![0.0; quantities],
             more_x: vec![0.0; n + 1],
@@ -82,13 +88,20 @@ impl Direction {
 impl<N: Nlp> Core<'_, N> {
     /// The direction from the present point; false where the matrix cannot be made that of a minimum.
     pub(super) fn direction(&mut self) -> bool {
+        match &self.elastic {
+            Some(elastic) => elastic.compliances(&self.sides, &mut self.step.compliance, &mut self.step.softness),
+            None => {
+                let both = self.sides.w.iter().zip(&self.sides.z);
+                self.step.compliance.iter_mut().zip(both).for_each(|(compliance, (w, z))| *compliance = w / z);
+            }
+        }
         let sigma = &mut self.step.sigma;
         sigma.fill(0.0);
-        for (side, (w, z)) in self.sides.side.iter().zip(self.sides.w.iter().zip(&self.sides.z)) {
-            sigma[side.of] += z / w;
+        for (side, compliance) in self.sides.side.iter().zip(&self.step.compliance) {
+            sigma[side.of] += 1.0 / compliance;
         }
-        for (of, _) in &self.sides.equality {
-            sigma[*of] = 1.0 / PROXIMAL;
+        for ((of, _), softness) in self.sides.equality.iter().zip(&self.step.softness) {
+            sigma[*of] = 1.0 / (softness + PROXIMAL);
         }
         self.assemble(true);
         if !self.factorise() {
@@ -99,6 +112,9 @@ impl<N: Nlp> Core<'_, N> {
         }
         for (c, (of, value)) in self.step.c.iter_mut().zip(&self.sides.equality) {
             *c = self.quantities[*of] - value;
+        }
+        if let Some(elastic) = &self.elastic {
+            elastic.residuals(&self.sides, self.mu, &mut self.step.r, &mut self.step.c);
         }
         self.solve_direction()
     }
@@ -139,11 +155,10 @@ impl<N: Nlp> Core<'_, N> {
         let (sides, step, mu) = (&self.sides, &mut self.step, self.mu);
         step.right.fill(0.0);
         for (k, side) in sides.side.iter().enumerate() {
-            let (w, z) = (sides.w[k], sides.z[k]);
-            step.right[side.of] += side.sign * (mu / w - z - z / w * step.r[k]);
+            step.right[side.of] += side.sign * (mu / sides.z[k] - sides.w[k] - step.r[k]) / step.compliance[k];
         }
-        for ((of, _), c) in sides.equality.iter().zip(&step.c) {
-            step.right[*of] = -c / PROXIMAL;
+        for (k, (of, _)) in sides.equality.iter().enumerate() {
+            step.right[*of] = -step.c[k] / (step.softness[k] + PROXIMAL);
         }
         self.split_border();
         self.system.gradient(&self.step.right, &mut self.step.x);
@@ -156,9 +171,8 @@ impl<N: Nlp> Core<'_, N> {
         self.refine_equalities();
         let (sides, step) = (&self.sides, &mut self.step);
         for (k, side) in sides.side.iter().enumerate() {
-            let (w, z) = (sides.w[k], sides.z[k]);
             step.w[k] = side.sign * step.along[side.of] + step.r[k];
-            step.z[k] = mu / w - z - z / w * step.w[k];
+            step.z[k] = (mu / sides.z[k] - sides.w[k] - step.w[k]) / step.compliance[k];
         }
         let sum: f64 = step.x.iter().chain(&step.z).chain(&step.y).sum();
         sum.is_finite()
@@ -183,9 +197,11 @@ impl<N: Nlp> Core<'_, N> {
             self.step.right.fill(0.0);
             let mut left = 0.0_f64;
             for (k, (of, _)) in self.sides.equality.iter().enumerate() {
-                let rest = -self.step.c[k] - self.step.along[*of];
-                self.step.y[k] += rest / PROXIMAL;
-                self.step.right[*of] = rest / PROXIMAL;
+                let softness = self.step.softness[k];
+                let rest = -self.step.c[k] - self.step.along[*of] - softness * self.step.y[k];
+                self.step.y[k] += rest / (softness + PROXIMAL);
+                let rest = -self.step.c[k] - self.step.along[*of] - softness * self.step.y[k];
+                self.step.right[*of] = rest / (softness + PROXIMAL);
                 left = left.max(rest.abs());
             }
             if round == REFINEMENTS || left <= REFINED * size || left > 0.5 * before || left < f64::EPSILON {

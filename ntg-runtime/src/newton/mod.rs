@@ -14,6 +14,7 @@
 
 mod core;
 mod direction;
+mod elastic;
 mod elements;
 mod ending;
 mod factor;
@@ -64,12 +65,15 @@ fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
         if let Some(status) = core.stops() {
             return core.outcome(status);
         }
-        core.lower_barrier();
-        let searched = if core.direction() { core.search() } else { Searched::Stuck };
+        if let Some(status) = core.lower_barrier() {
+            return core.outcome(status);
+        }
+        let searched = core.next();
         tiny = if searched == Searched::Tiny { tiny + 1 } else { 0 };
         let ended = match searched {
             Searched::Tiny if tiny >= TINY_STEPS => Some(Status::StepTooSmall),
-            Searched::Stuck => core.restore(),
+            Searched::Stuck if core.elastic.is_some() => Some(core.stuck()),
+            Searched::Stuck => core.rescue(),
             Searched::Tiny | Searched::Accepted => None,
         };
         if let Some(status) = ended {
@@ -78,5 +82,22 @@ fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
         if let Err(what) = core.advance() {
             return core.outcome(Status::NotFinite(what));
         }
+    }
+}
+
+impl<N: Nlp> Core<'_, N> {
+    /// The step of one iteration.
+    fn next(&mut self) -> Searched {
+        if self.elastic.is_some() {
+            self.place_elastic();
+            return if self.direction() { self.elastic_search() } else { Searched::Stuck };
+        }
+        if self.direction() { self.search() } else { Searched::Stuck }
+    }
+
+    fn rescue(&mut self) -> Option<Status> {
+        if std::env::var("NTG_LM").is_ok() { return self.restore(); }
+        self.enter_elastic();
+        None
     }
 }

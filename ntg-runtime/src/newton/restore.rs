@@ -62,7 +62,7 @@ impl<N: Nlp> Core<'_, N> {
         Some(self.stuck())
     }
 
-    fn stuck(&mut self) -> Status {
+    pub(super) fn stuck(&mut self) -> Status {
         self.trial.failure.take().map_or(Status::StepTooSmall, Status::NotFinite)
     }
 

@@ -84,12 +84,12 @@ impl<N: Nlp> Core<'_, N> {
         limits.fold(1.0, f64::min)
     }
 
-    fn is_tiny(&self) -> bool {
+    pub(super) fn is_tiny(&self) -> bool {
         self.step.x.iter().zip(&self.x).all(|(d, x)| d.abs() <= TINY * (1.0 + x.abs()))
     }
 
     /// Evaluates the trial point; false where it has no value.
-    fn try_step(&mut self, alpha: f64) -> bool {
+    pub(super) fn try_step(&mut self, alpha: f64) -> bool {
         for (to, (x, d)) in self.trial.x.iter_mut().zip(self.x.iter().zip(&self.step.x)) {
             *to = x + alpha * d;
         }

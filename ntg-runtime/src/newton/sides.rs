@@ -38,12 +38,14 @@ pub(super) struct Sides {
     pub(super) z: Vec<f64>,
     /// Multipliers of equalities.
     pub(super) y: Vec<f64>,
+    /// The first quantity that is a variable.
+    pub(super) first_variable: usize,
 }
 
 impl Sides {
     /// The sides of scaled limits; variables come after `first_variable`.
     pub(super) fn new(scaled: &Limits, first_variable: usize) -> Self {
-        let mut all = Self::default();
+        let mut all = Self { first_variable, ..Self::default() };
         all.add(&scaled.row_lower, &scaled.row_upper, 0);
         all.add(&scaled.lower, &scaled.upper, first_variable);
         all.w = vec![1.0; all.side.len()];
