@@ -5,6 +5,7 @@ use crate::outcome::{Multipliers, Outcome};
 use crate::settings::{Method, Settings};
 use crate::status::Status;
 use crate::{newton, sqp};
+use std::time::Instant;
 
 /// Solves a program by the method of the settings, from a start and, where they are known, from
 /// multipliers.
@@ -16,16 +17,21 @@ pub fn solve<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, sett
     }
 }
 
-/// The Newton method; where it fails, the sequential quadratic program from the same start.
+/// The Newton method; where it fails, the same with elastic bounds from the start; where that fails,
+/// the sequential quadratic program from the start.
 fn automatic<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, settings: &Settings) -> Outcome {
-    let first = newton::solve(nlp, start, from, settings);
-    if is_final(&first.status) {
-        return first;
+    let began = Instant::now();
+    let mut best = newton::solve(nlp, start, from, settings);
+    for attempt in [newton::solve_elastic, sqp::solve] {
+        if is_final(&best.status) {
+            break;
+        }
+        let next = attempt(nlp, start, &settings.after(began.elapsed()));
+        let iterations = best.iterations + next.iterations;
+        // Where nothing was solved, the last one has the best-founded reason why.
+        best = Outcome { iterations, ..next };
     }
-    let second = sqp::solve_from(nlp, start, from, settings);
-    let mut best = if second.status.is_solved() || !first.status.is_solved() { second } else { first.clone() };
-    best.iterations += first.iterations;
-    best.seconds += first.seconds;
+    best.seconds = began.elapsed().as_secs_f64();
     best
 }
 

@@ -63,6 +63,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// The multipliers, for a solve that starts from here.
+    pub fn multipliers(&self) -> Multipliers<'_> {
+        Multipliers { rows: &self.row_multipliers, bounds: &self.bound_multipliers }
+    }
+
     /// The outcome of a solve that did not begin.
     pub(crate) fn failed<N: Nlp>(nlp: &N, start: &[f64], status: Status) -> Self {
         Self {

@@ -145,6 +145,12 @@ impl fmt::Display for InvalidSetting {
 impl std::error::Error for InvalidSetting {}
 
 impl Settings {
+    /// The same with what is left of the time limit after some time.
+    pub(crate) fn after(&self, elapsed: Duration) -> Self {
+        let time_limit = self.time_limit.map(|limit| limit.saturating_sub(elapsed).max(Duration::from_nanos(1)));
+        Self { time_limit, ..self.clone() }
+    }
+
     /// Checks every field against its range.
     ///
     /// # Errors

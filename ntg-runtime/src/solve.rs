@@ -8,17 +8,17 @@
 
 use crate::guess::continuation::{Setting, set, steps};
 use crate::guess::{Guess, start};
+use crate::method;
+use crate::outcome::Outcome;
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, user};
 use crate::settings::{InvalidSetting, Settings};
 use crate::solution::Value;
-use crate::method;
-use crate::outcome::Outcome;
 use crate::status::Status;
 use crate::transcribe::{SetupError, Transcription};
 use ntg_structure::Structure;
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Why nothing could be solved at all. That no solution was *found* is no error: the report's
 /// status says so.
@@ -83,17 +83,18 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
     let structure = problem.structure();
     let steps = steps(&structure);
     let mut history: Vec<StepReport> = vec![];
-    let mut last: Option<Vec<f64>> = None;
+    let mut last: Option<Outcome> = None;
     for (i, step) in steps.iter().enumerate() {
         let step_began = Instant::now();
         let mut nlp = Transcription::with(problem, set(&structure, step))?;
         // The layout is the same in every step: only parameters change.
         let first = match &last {
-            Some(x) => start(&nlp, Some(&Guess::raw(x.clone())))?,
+            Some(last) => start(&nlp, Some(&Guess::raw(last.x.clone())))?,
             None => start(&nlp, guess)?,
         };
         nlp.set_scales(&first, settings)?;
-        let outcome = method::solve(&nlp, &first, None, &remaining(settings, began));
+        let from = last.as_ref().filter(|last| last.status.is_solved()).map(Outcome::multipliers);
+        let outcome = method::solve(&nlp, &first, from, &settings.after(began.elapsed()));
         let stop = i + 1 == steps.len() || matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
         history.push(record(&nlp, &structure, step, &outcome, step_began));
         if stop {
@@ -102,16 +103,10 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
             return Ok(report);
         }
         // A step that failed has still moved; the next one may recover from there.
-        last = Some(if outcome.x.iter().all(|v| v.is_finite()) { outcome.x } else { first });
+        let finite = outcome.x.iter().all(|v| v.is_finite());
+        last = Some(if finite { outcome } else { Outcome { x: first, ..outcome } });
     }
     Err(SetupError::Malformed { message: "a continuation has no step".into() }.into())
-}
-
-/// The settings with what is left of the time limit.
-fn remaining(settings: &Settings, began: Instant) -> Settings {
-    let time_limit =
-        settings.time_limit.map(|limit| limit.saturating_sub(began.elapsed()).max(Duration::from_nanos(1)));
-    Settings { time_limit, ..settings.clone() }
 }
 
 fn record(

@@ -16,8 +16,12 @@ use super::sides::{Sides, log_sum};
 use crate::nlp::Nlp;
 use crate::status::Status;
 
-/// The first price, and the factor by which it rises.
-const FIRST_PRICE: f64 = 1e2;
+/// The first price after the filter was stuck.
+pub(super) const PRICE: f64 = 1e2;
+/// The first price of a solve that is elastic from its start: so low that the objective may first
+/// straighten what the constraints would tangle up.
+pub(super) const LOW_PRICE: f64 = 1.0;
+/// The factor by which the price rises.
 const RAISE: f64 = 10.0;
 /// The highest price (scaled).
 const LARGEST_PRICE: f64 = 1e8;
@@ -61,9 +65,9 @@ fn split_equality(c: f64, price: f64, mu: f64) -> (f64, f64) {
 }
 
 impl Elastic {
-    fn new(sides: &Sides) -> Self {
+    fn new(sides: &Sides, price: f64) -> Self {
         let (n, below) = (vec![0.0; sides.side.len()], vec![0.0; sides.equality.len()]);
-        Self { price: FIRST_PRICE, n, above: below.clone(), below }
+        Self { price, n, above: below.clone(), below }
     }
 
     /// The best slacks at a point, and the distances that belong to them; the penalty and barrier.
@@ -118,8 +122,8 @@ impl Elastic {
 
 impl<N: Nlp> Core<'_, N> {
     /// Enters elastic mode at the present point.
-    pub(super) fn enter_elastic(&mut self) {
-        let mut elastic = Elastic::new(&self.sides);
+    pub(super) fn enter_elastic(&mut self, price: f64) {
+        let mut elastic = Elastic::new(&self.sides, price);
         let most = 0.5 * elastic.price;
         self.sides.z.iter_mut().for_each(|z| *z = z.min(most));
         self.sides.y.iter_mut().for_each(|y| *y = y.clamp(-most, most));
@@ -190,7 +194,13 @@ impl<N: Nlp> Core<'_, N> {
         let price = self.elastic.as_ref().map_or(0.0, |e| e.price);
         let fraction = 0.99_f64.max(1.0 - self.mu);
         let room = |value: f64, d: f64, low: f64, high: f64| {
-            if d < 0.0 { fraction * (value - low) / -d } else if d > 0.0 { fraction * (high - value) / d } else { 1.0 }
+            if d < 0.0 {
+                fraction * (value - low) / -d
+            } else if d > 0.0 {
+                fraction * (high - value) / d
+            } else {
+                1.0
+            }
         };
         let mut dual = 1.0_f64;
         for (k, side) in self.sides.side.iter().enumerate() {
@@ -207,6 +217,11 @@ impl<N: Nlp> Core<'_, N> {
         self.record.step = alpha;
         self.record.elastic = true;
         how
+    }
+
+    /// Why there is no step at all.
+    pub(super) fn stuck(&mut self) -> Status {
+        self.trial.failure.take().map_or(Status::StepTooSmall, Status::NotFinite)
     }
 
     /// Raises the price where multipliers come near to it and something is violated; a status where

@@ -262,13 +262,7 @@ impl BlockPlan {
 
     /// Adds `E^T (K + sum over condensed rows of sigma * gradient gradient^T) E` and the rows of the
     /// border to the matrix.
-    pub(super) fn assemble(
-        &self,
-        at: &BlockValues,
-        weights: Weights<'_>,
-        buffers: &mut Buffers,
-        matrix: &mut [f64],
-    ) {
+    pub(super) fn assemble(&self, at: &BlockValues, weights: Weights<'_>, buffers: &mut Buffers, matrix: &mut [f64]) {
         for pack in 0..self.map.packs {
             if !self.pairs.is_empty() {
                 self.second(at, pack, weights, buffers);
@@ -298,11 +292,7 @@ impl BlockPlan {
             for (k, &(entry, i)) in entries.iter().enumerate() {
                 let scaled = product(&factor, &self.jacobian(at, entry, pack));
                 for &(other, j) in &entries[..=k] {
-                    add_product(
-                        &mut second[i.max(j) * n + i.min(j)],
-                        &scaled,
-                        &self.jacobian(at, other, pack),
-                    );
+                    add_product(&mut second[i.max(j) * n + i.min(j)], &scaled, &self.jacobian(at, other, pack));
                 }
             }
         }
@@ -350,14 +340,7 @@ impl BlockPlan {
         }
     }
 
-    fn border_row(
-        &self,
-        at: &BlockValues,
-        pack: usize,
-        border: &BorderRow,
-        buffers: &mut Buffers,
-        matrix: &mut [f64],
-    ) {
+    fn border_row(&self, at: &BlockValues, pack: usize, border: &BorderRow, buffers: &mut Buffers, matrix: &mut [f64]) {
         let slots = &mut buffers.slot[..self.slots];
         slots.fill([0.0; LANES]);
         for &(entry, slot) in &self.row_entries[border.row] {

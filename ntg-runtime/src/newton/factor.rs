@@ -247,8 +247,15 @@ mod tests {
 
     /// Two components of a band, two variables and one row in the border.
     fn example() -> (Shape, Vec<f64>, Vec<Vec<f64>>) {
-        let cliques: Vec<Vec<u32>> =
-            vec![vec![0, 1, 2, 9], vec![2, 3, 9, 11], vec![1, 3], vec![4, 5, 6, 10], vec![6, 7, 8], vec![8, 10, 11], vec![9, 10]];
+        let cliques: Vec<Vec<u32>> = vec![
+            vec![0, 1, 2, 9],
+            vec![2, 3, 9, 11],
+            vec![1, 3],
+            vec![4, 5, 6, 10],
+            vec![6, 7, 8],
+            vec![8, 10, 11],
+            vec![9, 10],
+        ];
         let shape = Shape::new(9, [2, 1], cliques.iter().map(Vec::as_slice));
         let (mut value, mut dense) = (vec![0.0; shape.len], vec![vec![0.0; 12]; 12]);
         let mut seed = 7;

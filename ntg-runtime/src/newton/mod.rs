@@ -8,7 +8,8 @@
 //! 1. the gradient of the Lagrangian, and the end if all residuals are small;
 //! 2. a lower barrier, if the present one is reached;
 //! 3. the matrix, its factors, and the primal-dual direction;
-//! 4. a search by a filter, with second-order corrections; else restoration of feasibility.
+//! 4. a search by a filter, with second-order corrections; where that is stuck, and from then on, a
+//!    search by an exact penalty with elastic bounds.
 //!
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006).
 
@@ -22,7 +23,6 @@ mod filter;
 mod map;
 mod order;
 mod pack;
-mod restore;
 mod search;
 mod shape;
 mod sides;
@@ -46,13 +46,32 @@ const TINY_STEPS: usize = 3;
 /// The answer is deterministic: the same program, start and settings give the same bits (a time
 /// limit apart).
 pub fn solve<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, settings: &Settings) -> Outcome {
+    run(nlp, start, from, settings, |_| {})
+}
+
+/// As [`solve`] from the start alone, with elastic bounds from the first iteration on, at a low price:
+/// slower, and harder to trap.
+pub fn solve_elastic<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Outcome {
+    run(nlp, start, None, settings, |core| core.enter_elastic(elastic::LOW_PRICE))
+}
+
+fn run<N: Nlp>(
+    nlp: &N,
+    start: &[f64],
+    from: Option<Multipliers<'_>>,
+    settings: &Settings,
+    prepare: impl Fn(&mut Core<'_, N>),
+) -> Outcome {
     let begin = Instant::now();
     if let Some(status) = crate::sqp::refused(nlp, start) {
         return Outcome::failed(nlp, start, status);
     }
     let from = from.filter(|from| from.rows.len() == nlp.rows() && from.bounds.len() == nlp.variables());
     match Core::new(nlp, start, from, settings, begin) {
-        Ok(core) => iterate(core),
+        Ok(mut core) => {
+            prepare(&mut core);
+            iterate(core)
+        }
         Err(what) => Outcome::failed(nlp, start, Status::NotFinite(what)),
     }
 }
@@ -73,7 +92,10 @@ fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
         let ended = match searched {
             Searched::Tiny if tiny >= TINY_STEPS => Some(Status::StepTooSmall),
             Searched::Stuck if core.elastic.is_some() => Some(core.stuck()),
-            Searched::Stuck => core.rescue(),
+            Searched::Stuck => {
+                core.enter_elastic(elastic::PRICE);
+                None
+            }
             Searched::Tiny | Searched::Accepted => None,
         };
         if let Some(status) = ended {
@@ -93,11 +115,5 @@ impl<N: Nlp> Core<'_, N> {
             return if self.direction() { self.elastic_search() } else { Searched::Stuck };
         }
         if self.direction() { self.search() } else { Searched::Stuck }
-    }
-
-    fn rescue(&mut self) -> Option<Status> {
-        if std::env::var("NTG_LM").is_ok() { return self.restore(); }
-        self.enter_elastic();
-        None
     }
 }

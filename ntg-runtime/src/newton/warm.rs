@@ -8,7 +8,7 @@ use crate::outcome::Multipliers;
 /// How far inside their bounds the first point lies, relative to bound and room.
 pub(super) const INSIDE: f64 = 1e-6;
 /// The first barrier parameter.
-const BARRIER: f64 = 1e-4;
+const BARRIER: f64 = 1e-5;
 
 impl<N: Nlp> Core<'_, N> {
     /// Distances and multipliers from those of a solution nearby.
@@ -19,7 +19,11 @@ impl<N: Nlp> Core<'_, N> {
         let first = self.system.first_variable();
         let scales = &self.system.scales;
         let scaled = |of: usize| {
-            if of >= first { w * from.bounds[of - first] * scales.variables[of - first] } else { w * from.rows[of] / scales.rows[of] }
+            if of >= first {
+                w * from.bounds[of - first] * scales.variables[of - first]
+            } else {
+                w * from.rows[of] / scales.rows[of]
+            }
         };
         for ((of, _), y) in self.sides.equality.iter().zip(&mut self.sides.y) {
             *y = scaled(*of);

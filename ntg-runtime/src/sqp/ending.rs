@@ -1,8 +1,8 @@
 //! How far a solve has come, whether it is over, and what it gives back.
 
-use crate::outcome::{IterationRecord, Outcome};
 use super::run::Run;
 use crate::nlp::{Nlp, kkt};
+use crate::outcome::{IterationRecord, Outcome};
 use crate::settings::{Control, Progress};
 use crate::status::{Bounded, Status, Violation};
 
