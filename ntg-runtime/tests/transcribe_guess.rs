@@ -11,7 +11,12 @@ use transcribe_support::*;
 
 /// The solution at the first point: the callback stops before any step.
 fn first(problem: &Double, guess: &Guess) -> Solution {
-    let settings = Settings { on_iteration: Some(Arc::new(|_| Control::Cancel)), ..Settings::default() };
+    let settings = Settings {
+        // The interior-point method begins a little inside the bounds.
+        method: Method::Sqp,
+        on_iteration: Some(Arc::new(|_| Control::Cancel)),
+        ..Settings::default()
+    };
     solve_from(problem, guess, &settings).expect("a sound problem").solution
 }
 
