@@ -245,7 +245,7 @@ impl<N: Nlp> Core<'_, N> {
             *y = -self.step.along[*of] / PROXIMAL;
         }
         let largest = self.sides.y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
-        if !(largest <= LARGEST_ESTIMATE) {
+        if largest.is_nan() || largest > LARGEST_ESTIMATE {
             self.sides.y.fill(0.0);
         }
     }

@@ -302,7 +302,7 @@ mod tests {
         let (shape, value, dense) = example();
         let mut factor = Factor::new(&shape);
         factor.factorise(&shape, &value, 2.5);
-        let mut b: Vec<f64> = (0..12).map(|i| dense[i][11] + if i == 11 { 0.0 } else { 0.0 }).collect();
+        let mut b: Vec<f64> = dense.iter().map(|row| row[11]).collect();
         // Column 11 of the shifted matrix is that of the matrix, since 11 is a row.
         factor.solve(&shape, &mut b);
         for (i, entry) in b.iter().enumerate() {

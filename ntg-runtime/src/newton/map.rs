@@ -61,8 +61,8 @@ impl BlockMap {
             coefficient_of,
             stride,
         };
-        for e in 0..block.elements {
-            map.fill(block, sizes, e, &lists[e]);
+        for (e, lists) in lists.iter().enumerate() {
+            map.fill(block, sizes, e, lists);
         }
         map
     }

@@ -124,7 +124,7 @@ impl<N: Nlp> Core<'_, N> {
     /// present point.
     fn acceptable(&mut self, here: Here, alpha: f64) -> bool {
         let (theta, phi) = self.trial_pair();
-        if !(theta.is_finite() && phi.is_finite()) || !self.filter.accepts(theta, phi) {
+        if !(theta.is_finite() && phi.is_finite() && self.filter.accepts(theta, phi)) {
             return false;
         }
         let rounding = 10.0 * f64::EPSILON * here.phi.abs();
