@@ -13,6 +13,9 @@ use std::time::Instant;
 /// The first barrier parameter (scaled): of 1, 0.1, 0.01 and 0.001 the one that took the fewest
 /// iterations on the flights of `examples/robustness.rs`.
 const FIRST_BARRIER: f64 = 0.01;
+/// Where there are more sides than this, the barrier parameter is smaller in proportion: finer points
+/// must not weigh more than coarse ones beside an integral, whose weights become smaller.
+const MANY_SIDES: f64 = 160.0;
 /// The last barrier parameter as a fraction of the tolerance.
 const LAST_BARRIER: f64 = 0.1;
 /// A barrier problem is solved well enough when its error is below this multiple of the parameter.
@@ -44,14 +47,14 @@ pub(super) struct Core<'a, N: Nlp> {
     /// Multipliers of all quantities.
     pub(super) multipliers: Vec<f64>,
     pub(super) mu: f64,
+    /// What barrier parameters are relative to.
+    pub(super) unit: f64,
     pub(super) filter: Filter,
     /// Set once bounds are elastic.
     pub(super) elastic: Option<super::elastic::Elastic>,
     pub(super) step: super::direction::Direction,
     /// A trial point: variables, quantities, distances.
     pub(super) trial: Trial,
-    /// The last shift that the matrix needed.
-    pub(super) shift: f64,
     pub(super) record: IterationRecord,
     pub(super) history: Vec<IterationRecord>,
     pub(super) iterations: usize,
@@ -85,6 +88,7 @@ impl<'a, N: Nlp> Core<'a, N> {
         move_inside(&mut x, nlp.limits(), &sizes, if from.is_some() { super::warm::INSIDE } else { INSIDE });
         system.rescale(nlp, &x, settings.scaling)?;
         let sides = Sides::new(&scaled_limits(nlp.limits(), &system.scales), system.first_variable());
+        let unit = (MANY_SIDES / sides.side.len().max(1) as f64).min(1.0);
         let count = system.quantities();
         let (step, rows) = (super::direction::Direction::new(n, count, &sides, &system), sides.w.clone());
         let mut core = Self {
@@ -93,12 +97,12 @@ impl<'a, N: Nlp> Core<'a, N> {
             quantities: vec![0.0; count],
             descent: vec![0.0; n + 1],
             multipliers: vec![0.0; count],
-            mu: FIRST_BARRIER,
+            mu: FIRST_BARRIER * unit,
+            unit,
             filter: Filter::default(),
             elastic: None,
             step,
             trial: Trial { x: x.clone(), quantities: vec![0.0; count], w: rows, failure: None },
-            shift: 0.0,
             record: IterationRecord::default(),
             history: Vec::with_capacity(settings.max_iterations.min(HISTORY) + 1),
             iterations: 0,
@@ -213,7 +217,7 @@ impl<'a, N: Nlp> Core<'a, N> {
 
     /// Lowers the barrier as long as its problem is solved well enough (11.6).
     pub(super) fn lower_barrier(&mut self) -> Option<Status> {
-        let last = LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance);
+        let last = LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance) * self.unit;
         let (relax, dual) = (self.relaxation(), self.dual());
         let before = self.mu;
         while self.mu > last {
@@ -228,7 +232,8 @@ impl<'a, N: Nlp> Core<'a, N> {
             if let Some(status) = self.reconsider_price() {
                 return Some(status);
             }
-            self.mu = (DECREASE * self.mu).min(self.mu.powf(POWER)).max(last);
+            let relative = self.mu / self.unit;
+            self.mu = (self.unit * (DECREASE * relative).min(relative.powf(POWER))).max(last);
         }
         if self.mu != before {
             self.filter.clear();

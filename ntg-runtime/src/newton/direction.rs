@@ -10,7 +10,7 @@
 //! distances. Equalities are then refined until the proximal term no longer shows.
 
 use super::core::Core;
-use super::elements::Weights;
+use super::elements::{Curvature, Weights};
 use super::sides::Sides;
 use super::system::System;
 use crate::nlp::Nlp;
@@ -23,14 +23,10 @@ const REFINEMENTS: usize = 6;
 const REFINED: f64 = 1e-10;
 /// The weight of a quantity without bounds: none, written so that it may divide.
 const WEIGHTLESS: f64 = 1e-30;
-/// Shifts of the diagonal, equations (IC-1) to (IC-6) of A. Wächter and L. T. Biegler,
-/// *Math. Prog.* 106 (2006), section 3.1: the first, the smallest, the largest, and their factors.
-const FIRST_SHIFT: f64 = 1e-4;
-const LEAST_SHIFT: f64 = 1e-20;
+/// Shifts of the diagonal, where the convex matrix is singular: the first, their factor, the largest.
+const FIRST_SHIFT: f64 = 1e-8;
+const SHIFT_FACTOR: f64 = 100.0;
 const LARGEST_SHIFT: f64 = 1e20;
-const FIRST_FACTOR: f64 = 100.0;
-const FACTOR: f64 = 8.0;
-const FALL: f64 = 1.0 / 3.0;
 /// Multipliers estimated larger than this start at 0 instead.
 const LARGEST_ESTIMATE: f64 = 1e3;
 
@@ -103,7 +99,6 @@ impl<N: Nlp> Core<'_, N> {
         for ((of, _), softness) in self.sides.equality.iter().zip(&self.step.softness) {
             sigma[*of] = 1.0 / (softness + PROXIMAL);
         }
-        self.assemble(true);
         if !self.factorise() {
             return false;
         }
@@ -121,7 +116,7 @@ impl<N: Nlp> Core<'_, N> {
 
     /// The matrix with the weights of `step.sigma`, those of condensed rows inside and those of the
     /// border's rows on its diagonal.
-    fn assemble(&mut self, curvature: bool) {
+    fn assemble(&mut self, curvature: Curvature) {
         let sigma = &self.step.sigma;
         self.system.assemble(Weights { sigma, curvature });
         for border in 0..self.system.order.bordered.len() {
@@ -130,21 +125,23 @@ impl<N: Nlp> Core<'_, N> {
         }
     }
 
-    /// Factorises the matrix with the smallest shift that gives it the signs of a minimum.
+    /// Factorises the matrix with exact second derivatives where it is that of a minimum; else with
+    /// each element's made convex, and the smallest shift that helps.
     fn factorise(&mut self) -> bool {
+        self.assemble(Curvature::Exact);
+        self.record.shift = 0.0;
         if self.system.factorise(0.0) {
-            self.record.shift = 0.0;
             return true;
         }
-        let first = self.shift == 0.0;
-        let mut shift = if first { FIRST_SHIFT } else { (FALL * self.shift).max(LEAST_SHIFT) };
+        self.assemble(Curvature::Convex);
+        self.record.mixed = true;
+        let mut shift = 0.0;
         while shift <= LARGEST_SHIFT {
             if self.system.factorise(shift) {
-                self.shift = shift;
                 self.record.shift = shift;
                 return true;
             }
-            shift *= if first { FIRST_FACTOR } else { FACTOR };
+            shift = if shift == 0.0 { FIRST_SHIFT } else { SHIFT_FACTOR * shift };
         }
         false
     }
@@ -230,7 +227,7 @@ impl<N: Nlp> Core<'_, N> {
         for (of, _) in &self.sides.equality {
             self.step.sigma[*of] = 1.0 / PROXIMAL;
         }
-        self.assemble(false);
+        self.assemble(Curvature::None);
         if !self.system.factorise(1.0) {
             return;
         }

@@ -8,12 +8,14 @@ use super::map::BlockMap;
 use super::order::Order;
 use super::pack::{LANES, Pack, add_product, load, product};
 use super::shape::Shape;
-use crate::nlp::{Block, BlockValues, Scales, Target};
+use crate::nlp::{Block, BlockValues, Convexifier, Scales, Target};
 
 /// One block, ready for work.
 #[derive(Clone, Debug)]
 pub(super) struct BlockPlan {
     pub(super) map: BlockMap,
+    /// Its number.
+    block: usize,
     elements: usize,
     slots: usize,
     rows: usize,
@@ -47,17 +49,28 @@ struct BorderRow {
     position: Vec<[u32; LANES]>,
 }
 
+/// Second derivatives of elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Curvature {
+    /// None.
+    None,
+    /// As they are.
+    Exact,
+    /// Each element's, with its condensed rows, made positive semidefinite.
+    Convex,
+}
+
 /// What the matrix is made of.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights<'a> {
     /// The weight of the square of each quantity's gradient; 0 for the objective.
     pub(super) sigma: &'a [f64],
-    /// Whether second derivatives are part of it.
-    pub(super) curvature: bool,
+    /// Which second derivatives are part of it.
+    pub(super) curvature: Curvature,
 }
 
 /// Buffers for one pack of the largest block.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Buffers {
     /// One number for each slot.
     slot: Vec<Pack>,
@@ -65,11 +78,20 @@ pub(super) struct Buffers {
     second: Vec<Pack>,
     /// `K E`.
     half: Vec<Pack>,
+    /// Second derivatives of one element.
+    element: Vec<f64>,
+    convexifier: Convexifier,
 }
 
 impl Buffers {
+    /// Without room.
+    pub(super) fn new(convexifier: Convexifier) -> Self {
+        Self { slot: vec![], second: vec![], half: vec![], element: vec![], convexifier }
+    }
+
     /// Makes room for a block.
     pub(super) fn fit(&mut self, plan: &BlockPlan) {
+        self.element.resize(self.element.len().max(plan.slots * plan.slots), 0.0);
         let grow = |buffer: &mut Vec<Pack>, len: usize| buffer.resize(buffer.len().max(len), [0.0; LANES]);
         grow(&mut self.slot, plan.slots);
         grow(&mut self.second, plan.slots * plan.slots);
@@ -79,7 +101,8 @@ impl Buffers {
 
 impl BlockPlan {
     /// Plans a block once the order of unknowns is known. Positions come by [`BlockPlan::place`].
-    pub(super) fn new(block: &Block, map: BlockMap, order: &Order, rows: usize) -> Self {
+    pub(super) fn new(number: usize, block: &Block, map: BlockMap, order: &Order) -> Self {
+        let rows = order.border_row.len();
         let mut row_entries = vec![vec![]; block.rows];
         for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
             row_entries[row].push((entry, slot));
@@ -103,6 +126,7 @@ impl BlockPlan {
         carrier_pairs.sort_unstable();
         carrier_pairs.dedup();
         Self {
+            block: number,
             elements: block.elements,
             slots: block.slots,
             rows: block.rows,
@@ -266,6 +290,9 @@ impl BlockPlan {
         for pack in 0..self.map.packs {
             if !self.pairs.is_empty() {
                 self.second(at, pack, weights, buffers);
+                if weights.curvature == Curvature::Convex {
+                    self.convexify(buffers);
+                }
                 self.scatter(pack, buffers, matrix);
             }
             for border in &self.border {
@@ -282,7 +309,7 @@ impl BlockPlan {
         for &(i, j) in &self.pairs {
             second[i * n + j] = [0.0; LANES];
         }
-        for (entry, &(i, j)) in self.hessian.iter().enumerate().filter(|_| weights.curvature) {
+        for (entry, &(i, j)) in self.hessian.iter().enumerate().filter(|_| weights.curvature != Curvature::None) {
             second[i.max(j) * n + i.min(j)] =
                 load(&at.hessian, entry * self.elements + pack * LANES, (entry + 1) * self.elements);
         }
@@ -294,6 +321,24 @@ impl BlockPlan {
                 for &(other, j) in &entries[..=k] {
                     add_product(&mut second[i.max(j) * n + i.min(j)], &scaled, &self.jacobian(at, other, pack));
                 }
+            }
+        }
+    }
+
+    /// Makes the second derivatives of every lane positive semidefinite.
+    fn convexify(&self, buffers: &mut Buffers) {
+        let n = self.slots;
+        let Buffers { second, element, convexifier, .. } = buffers;
+        let element = &mut element[..n * n];
+        for lane in 0..LANES {
+            element.fill(0.0);
+            for &(i, j) in &self.pairs {
+                element[i * n + j] = second[i * n + j][lane];
+                element[j * n + i] = second[i * n + j][lane];
+            }
+            convexifier.clip(element, self.block);
+            for &(i, j) in &self.pairs {
+                second[i * n + j][lane] = element[i * n + j];
             }
         }
     }

@@ -9,12 +9,12 @@
 //! one entry that nobody reads, and the variables (from [`System::first_variable`] on): a bound on a
 //! variable is a row whose derivative is 1.
 
-use super::elements::{BlockPlan, Buffers, Weights};
+use super::elements::{BlockPlan, Buffers, Curvature, Weights};
 use super::factor::Factor;
 use super::map::BlockMap;
 use super::order::Order;
 use super::shape::Shape;
-use crate::nlp::{Evaluation, Nlp, NotFinite, Scales, Slopes};
+use crate::nlp::{Convexifier, Evaluation, Nlp, NotFinite, Scales, Slopes};
 use crate::settings::Scaling;
 
 /// A program, its plans, and its derivatives at the latest point.
@@ -47,7 +47,8 @@ impl<N: Nlp> System<N> {
         let sizes = Scales::sizes(nlp.limits());
         let maps: Vec<BlockMap> = nlp.blocks().iter().map(|block| BlockMap::new(block, &sizes, n as u32)).collect();
         let order = Order::new(nlp, &maps);
-        let plans = nlp.blocks().iter().zip(maps).map(|(block, map)| BlockPlan::new(block, map, &order, m));
+        let plans = nlp.blocks().iter().zip(maps).enumerate();
+        let plans = plans.map(|(number, (block, map))| BlockPlan::new(number, block, map, &order));
         let mut blocks: Vec<BlockPlan> = plans.collect();
         let mut cliques: Vec<u32> = vec![];
         let mut ends = vec![0];
@@ -59,7 +60,7 @@ impl<N: Nlp> System<N> {
         }
         let lists = ends.windows(2).map(|range| &cliques[range[0]..range[1]]);
         let shape = Shape::new(order.band, [order.border, order.bordered.len()], lists);
-        let mut buffers = Buffers::default();
+        let mut buffers = Buffers::new(Convexifier::new(nlp.blocks(), &sizes));
         for block in &mut blocks {
             block.place(&order, &shape);
             buffers.fit(block);
@@ -125,7 +126,7 @@ impl<N: Nlp> System<N> {
         }
         rows.truncate(m);
         let mut multipliers = vec![0.0; self.quantities()];
-        self.assemble(Weights { sigma: &multipliers, curvature: true });
+        self.assemble(Weights { sigma: &multipliers, curvature: Curvature::Exact });
         let columns = (0..n).map(|j| self.order.unknown[j] as usize);
         let curvature = columns.map(|u| self.matrix[self.shape.position(u, u)].abs()).fold(0.0, f64::max);
         for (row, slope) in rows.iter_mut().enumerate() {

@@ -15,7 +15,7 @@ impl<N: Nlp> Core<'_, N> {
     pub(super) fn start_warm(&mut self, from: Multipliers<'_>) {
         let w = self.system.scales.objective;
         self.sides.place(&self.quantities, INSIDE);
-        self.mu = BARRIER;
+        self.mu = BARRIER * self.unit;
         let first = self.system.first_variable();
         let scales = &self.system.scales;
         let scaled = |of: usize| {

@@ -13,12 +13,14 @@
 //! (convexify each, eliminate each, order by time) because the program has not forgotten them.
 
 mod assemble;
+mod convexify;
 mod csc;
 pub mod kkt;
 mod scales;
 mod structure;
 
 pub use assemble::Assembly;
+pub(crate) use convexify::Convexifier;
 pub use csc::Csc;
 pub use scales::{Scales, Slopes};
 pub use structure::Pattern;

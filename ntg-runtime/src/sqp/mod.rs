@@ -11,7 +11,6 @@
 //! merit function. The end is decided by the residuals of the program itself.
 
 mod clarabel;
-mod convexify;
 mod elastic;
 mod ending;
 mod exact;

@@ -6,8 +6,7 @@
 //!
 //! Everything in `sqp` but this file sees scaled numbers only.
 
-use super::convexify::Convexifier;
-use crate::nlp::{Assembly, Csc, Evaluation, Limits, Nlp, NotFinite, Scales, kkt};
+use crate::nlp::{Assembly, Convexifier, Csc, Evaluation, Limits, Nlp, NotFinite, Scales, kkt};
 use crate::settings::Scaling;
 use crate::status::Residuals;
 

@@ -7,7 +7,7 @@
 //! `S` holds a typical size of each slot, so that the answer does not depend on units. A sum of
 //! such elements is convex, and differs from the Hessian only where an element is not convex.
 
-use crate::nlp::Block;
+use super::Block;
 
 /// Off-diagonal entries below this fraction of the diagonal's size count as zero.
 const NEGLIGIBLE: f64 = 1e-15;
@@ -16,7 +16,7 @@ const SWEEPS: usize = 30;
 
 /// Clips elements, with buffers for the largest.
 #[derive(Clone, Debug)]
-pub(super) struct Convexifier {
+pub(crate) struct Convexifier {
     /// Slot sizes of each block.
     sizes: Vec<Vec<f64>>,
     matrix: Vec<f64>,
@@ -25,7 +25,7 @@ pub(super) struct Convexifier {
 
 impl Convexifier {
     /// For elements of `blocks` whose variables have these sizes.
-    pub(super) fn new(blocks: &[Block], variables: &[f64]) -> Self {
+    pub(crate) fn new(blocks: &[Block], variables: &[f64]) -> Self {
         let sizes: Vec<Vec<f64>> = blocks.iter().map(|block| slot_sizes(block, variables)).collect();
         let largest = blocks.iter().map(|block| block.slots).max().unwrap_or(0);
         Self { sizes, matrix: vec![0.0; largest * largest], vectors: vec![0.0; largest * largest] }
@@ -33,7 +33,7 @@ impl Convexifier {
 
     /// Replaces the symmetric matrix `k` of an element of `block` by the nearest positive
     /// semidefinite one, in the norm of scaled slots; exact where it is already.
-    pub(super) fn clip(&mut self, k: &mut [f64], block: usize) {
+    pub(crate) fn clip(&mut self, k: &mut [f64], block: usize) {
         let sizes = &self.sizes[block];
         let n = sizes.len();
         let (matrix, vectors) = (&mut self.matrix[..n * n], &mut self.vectors[..n * n]);
