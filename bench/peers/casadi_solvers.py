@@ -55,7 +55,7 @@ def expressions(program, kind, sizes):
         cost, constraints = group.formula(u, q)
         outputs = ([cost] if cost is not None else []) + ([ca.vertcat(*constraints)] if constraints else [])
         function = ca.Function(f"group{number}", [u, q], outputs)
-        at = ca.mtimes(sparse(group.matrix(program.variables) @ sp.diags(sizes)), x)
+        at = ca.mtimes(sparse(group.matrix(program.variables) @ sp.diags(sizes)), x) + ca.DM(group.offset())
         if kind == "sx":
             found = [function.call([at[i * slots : (i + 1) * slots], p]) for i in range(points)]
             found = [ca.horzcat(*parts) for parts in zip(*found)]

@@ -3,6 +3,7 @@
 import statistics
 
 from .casadi_solvers import Solver
+from .control_solver import LaneChange
 from .server import Asked
 
 
@@ -21,6 +22,8 @@ def solvers(row, server, options):
     if "sqp" in options.by and row.sqp:
         program = row.program()
         found["sqp"] = Solver(program, "sqp", better_scaling(program))
+    if "control" in options.by and row.control:
+        found["control"] = LaneChange()
     return found
 
 
@@ -44,6 +47,7 @@ def measure(row, server, options):
     """Everything known about a row: for each solver its answer, and medians of batches in seconds."""
     asked = solvers(row, server, options)
     answers, batches = {}, {name: {"wall": [], "cpu": []} for name in asked}
+    shares = {name: [] for name in asked}
     for _ in range(options.repeat):
         for name, solver in list(asked.items()):
             try:
@@ -54,15 +58,25 @@ def measure(row, server, options):
                 del asked[name]
                 continue
             answers[name] = answer
+            shares[name].append(solver_share(answer))
             for clock in ("wall", "cpu"):
                 batches[name][clock].append(statistics.median(answer[clock]))
-    return {name: summary(answer, batches[name]) for name, answer in answers.items()}
+    return {name: summary(answer, batches[name], shares[name]) for name, answer in answers.items()}
 
 
-def summary(answer, batches):
+def solver_share(answer):
+    """What part of a solve by ntg its solver takes; the rest is transcription and report."""
+    parts = answer.get("parts") or {}
+    whole = sum(parts.values())
+    return parts.get("solver", 0) / whole if whole else 1.0
+
+
+def summary(answer, batches, shares):
     kept = {key: value for key, value in answer.items() if key not in ("wall", "cpu")}
     for clock, values in batches.items():
         if values:
             kept[clock] = statistics.median(values)
             kept[clock + "_batches"] = values
+    if shares:
+        kept["solver_share"] = statistics.median(shares)
     return kept

@@ -16,7 +16,7 @@ class Group:
     """`formula(u, p)` gives the cost (or None) and a list of rows, from the slots `u` of one point."""
 
     formula: object
-    slots: list  # One sparse matrix (points x variables) a slot.
+    slots: list  # One sparse matrix (points x variables) a slot, or an array of fixed numbers, one a point.
     weights: np.ndarray  # Of the cost, one a point.
     lower: list  # One a row.
     upper: list
@@ -26,15 +26,22 @@ class Group:
         return self.slots[0].shape[0]
 
     def matrix(self, variables):
-        """Slots of the first point, then those of the second, and so on."""
+        """The linear part: slots of the first point, then those of the second, and so on."""
         count, slots = self.points, len(self.slots)
         stacked = sp.vstack([widened(slot, variables) for slot in self.slots]).tocsr()
         order = np.arange(count * slots).reshape(slots, count).T.ravel()
         return stacked[order]
 
+    def offset(self):
+        """The fixed part, likewise."""
+        fixed = [slot if isinstance(slot, np.ndarray) else np.zeros(self.points) for slot in self.slots]
+        return np.array(fixed).T.ravel()
+
 
 def widened(slot, variables):
     """The matrix with as many columns as the program has variables."""
+    if isinstance(slot, np.ndarray):
+        return sp.coo_matrix((len(slot), variables))
     slot = slot.tocoo()
     return sp.coo_matrix((slot.data, (slot.row, slot.col)), shape=(slot.shape[0], variables))
 
@@ -63,22 +70,26 @@ class Program:
     start: list = field(default_factory=list)
     lower: list = field(default_factory=list)
     upper: list = field(default_factory=list)
+    units: list = field(default_factory=list)  # Of each variable, in SI.
+    outputs: list = field(default_factory=list)  # Where the coefficients of each begin and end.
 
     @property
     def variables(self):
         return len(self.start)
 
     def sizes(self):
-        """A typical size of each variable: the largest guessed coefficient of all outputs, and every
+        """A typical size of each variable: the largest guessed coefficient of an output, and every
         other variable's own guess."""
-        start = np.abs(self.start)
-        coefficients = np.isinf(self.lower) & np.isinf(self.upper)
-        largest = start[coefficients].max(initial=0.0) or 1.0
-        return np.where(coefficients, largest, np.where(start > 0, start, 1.0))
+        sizes = np.abs(self.start)
+        for first, last in self.outputs:
+            sizes[first:last] = sizes[first:last].max()
+        return np.where(sizes > 0, sizes, 1.0)
 
-    def output(self, spline, guess):
-        """A spline whose coefficients are fitted to a function of scaled time."""
+    def output(self, spline, guess, unit=1.0):
+        """A spline whose coefficients are fitted to a function of scaled time; `unit` in SI."""
         output = Output(spline, self.variables)
+        self.outputs.append((self.variables, self.variables + spline.size))
+        self.units.extend([unit] * spline.size)
         self.start.extend(spline.fit(guess))
         self.lower.extend([-np.inf] * spline.size)
         self.upper.extend([np.inf] * spline.size)
@@ -87,6 +98,7 @@ class Program:
     def variable(self, guess, lower, upper):
         """A number; gives its index."""
         self.start.append(guess)
+        self.units.append(1.0)
         self.lower.append(lower)
         self.upper.append(upper)
         return self.variables - 1
@@ -94,6 +106,10 @@ class Program:
     def everywhere(self, index, points):
         """The slot of a variable: the same at all points."""
         return sp.coo_matrix((np.ones(points), (np.arange(points), np.full(points, index))), shape=(points, index + 1))
+
+    @property
+    def rows(self):
+        return sum(len(group.lower) * group.points for group in self.groups)
 
     def add(self, formula, slots, weights=None, lower=(), upper=()):
         """A group; without weights its cost, if any, counts once."""

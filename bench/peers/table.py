@@ -27,13 +27,6 @@ def ratio(result, peer):
     return theirs["cpu"] / ours["cpu"]
 
 
-def solver_share(answer):
-    """What part of a solve by ntg its solver takes; the rest is transcription and report."""
-    parts = answer.get("parts") or {}
-    whole = sum(parts.values())
-    return parts.get("solver", 0) / whole if whole else 1.0
-
-
 def against(value, target):
     if value is None:
         return "–"
@@ -60,7 +53,7 @@ def line(row, variables, result):
     ours, name = result.get("ntg"), best_ipopt(result)
     theirs = result.get(name)
     ratios = [ratio(result, peer) for peer in (name, "sqp", "ripopt")]
-    alone = ratios[0] / solver_share(ours) if ratios[0] else None
+    alone = ratios[0] / ours["solver_share"] if ratios[0] else None
     cells = [
         row.name,
         str(variables),
@@ -80,11 +73,23 @@ def line(row, variables, result):
     return "| " + " | ".join(cells) + " |"
 
 
+def notes(row, result):
+    """Lines below the table: what python-control takes, and why a solver found nothing."""
+    if result.get("control", {}).get("solved"):
+        times = ratio(result, "control")
+        beside = f", {times:.3g} times ntg's time" if times else ""
+        yield f"{row.name}: python-control takes {milliseconds(result['control'])} ms{beside}."
+    for name, answer in result.items():
+        if not answer["solved"]:
+            yield f"{row.name}: {IPOPT.get(name, name)} ends with “{answer['status']}”."
+
+
 def growth(rows, results, solver):
     """The exponent of time over intervals from B1/l=..., by least squares in logarithms; none for fewer than three."""
     points = []
     for row in rows:
-        answer = results.get(row.name, {}).get("solvers", {}).get(solver)
+        solvers = results.get(row.name, {}).get("solvers", {})
+        answer = solvers.get(best_ipopt(solvers) if solver == "ipopt" else solver)
         if row.name.startswith("B1/l=") and answer and answer.get("solved"):
             points.append((math.log(int(row.name[5:])), math.log(answer["cpu"])))
     if len(points) < 3:

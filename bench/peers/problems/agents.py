@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..program import Program, widened
-from ..splines import Spline, uniform
+from ..splines import Spline, polygon, uniform
 from .flight import State
 
 APART = 5.0
@@ -27,7 +27,7 @@ def vehicle(u, p):
     return 1e-4 * state.duration * 3e4 * state.speed**2, rows
 
 
-def fleet(n, times, guess, intervals=8):
+def fleet(n, times, guess=600, intervals=8):
     """`times` is free, equal or later (by 30 .. 60 s each); all durations start at `guess`."""
     program = Program()
     tau, weights = uniform(5 * intervals + 1)
@@ -46,11 +46,11 @@ def fleet(n, times, guess, intervals=8):
     return program
 
 
-def separated(n, guess, intervals=8, bow=5.0):
+def separated(n, guess=600, intervals=8, bow=5.0):
     """One clock for all, every pair apart at every point; guesses bow sideways, alternately."""
     program = Program()
     tau, weights = uniform(5 * intervals + 1)
-    made = [positions(program, i, n, intervals, (-1) ** (i + 1) * bow) for i in range(n)]
+    made = [positions(program, i, n, intervals, (-1) ** i * bow) for i in range(n)]
     duration = program.variable(guess, 100, 3000)
     for i in range(n):
         add_vehicle(program, made[i], duration, (tau, weights), ends_of(i, n)[1])
@@ -66,10 +66,9 @@ def separated(n, guess, intervals=8, bow=5.0):
 def positions(program, i, n, intervals, bow):
     """The two outputs of vehicle `i`, guessed straight, or bowed to one side."""
     (x0, y0), (x1, y1) = ends_of(i, n)
-    spline = Spline(5, 3, intervals)
-    x = program.output(spline, lambda s: x0 + (x1 - x0) * s)
-    y = program.output(spline, lambda s: y0 + (y1 - y0) * s + bow * math.sin(math.pi * s))
-    return x, y
+    half = [((x0 + x1) / 2, (y0 + y1) / 2 + bow)] if bow else []
+    way = polygon([(x0, y0), *half, (x1, y1)])
+    return [program.output(Spline(5, 3, intervals), f, unit=1000) for f in way]
 
 
 def add_vehicle(program, outputs, duration, points, target):

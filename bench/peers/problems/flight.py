@@ -10,6 +10,7 @@ from ..splines import Spline, gauss, polygon, uniform
 
 START, TARGET, ALTITUDE = (-100.0, -100.0), (5.0, -15.0), 12.0
 V_MIN, V_MAX, RHO_MIN = 0.10, 0.25, 5.0
+ROOM = 1e-6  # What the cosine form holds between the signature's least value and its limit.
 CONTINUATION = [[20.0], [10.0], [5.0], [2.0], [1.0]]
 ROUTE_A, ROUTE_B = (-100.0, -15.0), (0.0, -100.0)
 NOSE_IN = np.polyfit([0, 20, 45, 90], [1.5, 2.5, 3.5, 6.5], 3)  # The cubic through the nose-in column.
@@ -57,10 +58,10 @@ class Seen(State):
         return logistic(-margin / 0.0634)
 
     def cosine(self, limit):
-        """At least 0 where the signature is at most `limit`."""
-        room = ca.fmax(limit - self.nose_in, 1e-6)
-        widest = 30.5 + self.width * ca.log(room / (self.nose_out - limit))
-        return self.ahead / self.ground - ca.cos(widest * math.pi / 180)
+        """Two rows: at least 0 and 1e-6 where the signature is at most `limit`."""
+        room = limit - self.nose_in
+        widest = 30.5 + self.width * ca.log(ca.fmax(room, ROOM) / (self.nose_out - limit))
+        return [self.ahead / self.ground - ca.cos(widest * math.pi / 180), room]
 
 
 def stretch(limit, cosine, detection):
@@ -72,13 +73,13 @@ def stretch(limit, cosine, detection):
         cost = cost + detection * state.detection() if detection else cost
         rows, _, _ = state.limits()
         if limit is not None:
-            rows.append(state.cosine(limit) if cosine else state.signature)
+            rows += state.cosine(limit) if cosine else [state.signature]
         return 1e-4 * state.duration * cost, rows
 
     lower, upper = [V_MIN, -1], [V_MAX, 1]
     if limit is not None:
-        lower.append(0 if cosine else -np.inf)
-        upper.append(np.inf if cosine else limit)
+        lower += [0, ROOM] if cosine else [-np.inf]
+        upper += [np.inf, np.inf] if cosine else [limit]
     return formula, lower, upper
 
 
@@ -91,7 +92,7 @@ def flight(phases, route=(ROUTE_A,), intervals=8, cosine=False, detection=0, rul
     whole, begun, made = sum(phase[2] for phase in phases), 0.0, []
     for _, _, guess, _ in phases:
         place = lambda s, f, begun=begun, guess=guess: f(min((begun + s * guess) / whole, 1.0))
-        made.append([program.output(Spline(5, 3, intervals), lambda s, f=f: place(s, f)) for f in way])
+        made.append([program.output(Spline(5, 3, intervals), lambda s, f=f: place(s, f), unit=1000) for f in way])
         begun += guess
     durations = [program.variable(guess, shortest, longest) for shortest, longest, guess, _ in phases]
     for (x, y), duration, (_, _, _, limit) in zip(made, durations, phases):
@@ -142,7 +143,7 @@ def b2(**options):
 def b3(**options):
     """Nothing is above 6.5, so in the cosine form the second limit has no counterpart and is left out."""
     second = None if options.get("cosine") else 6.5
-    return flight([(100, 1000, 870, 4.2), (20, 40, 30, second)], **options)
+    return flight([(100, 1000, 600, 4.2), (20, 40, 30, second)], **options)
 
 
 def b4(**options):

@@ -7,7 +7,7 @@ use ntg::runtime::nlp::Nlp;
 use ntg::runtime::transcribe::Transcription;
 use serde_json::{Value, json};
 
-/// Size, objective and largest violation at the first point, for each step of the continuation (all of them
+/// Size, first point (SI) and objective there, for each step of the continuation (all of them
 /// at the first step's point).
 pub fn describe(problem: &Adapted<'_>, guess: Option<&Guess>) -> Result<Value, String> {
     let mut steps = vec![];
@@ -20,6 +20,7 @@ pub fn describe(problem: &Adapted<'_>, guess: Option<&Guess>) -> Result<Value, S
             "variables": nlp.variables(),
             "rows": nlp.rows(),
             "objective": problem.in_its_unit(at.objective),
+            "start": first,
         }));
     }
     Ok(Value::Array(steps))

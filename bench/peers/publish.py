@@ -1,0 +1,64 @@
+"""Writes what was measured to bench/results.json and to the section of docs/performance.md that it owns."""
+
+import json
+from pathlib import Path
+
+from . import table
+from .rows import all_rows
+
+HERE = Path(__file__).resolve().parent.parent
+RESULTS = HERE / "results.json"
+PAGE = HERE.parent / "docs" / "performance.md"
+BEGIN, END = "<!-- written by bench/run --publish: begin -->", "<!-- written by bench/run --publish: end -->"
+
+TEXT = """
+Median processor time in milliseconds, and how many times slower the peers are beside what ntg is meant to reach.
+bench/README.md says what is timed; `bench/results.json` holds every batch, on the processor and on the wall.
+"""
+
+
+def publish(found):
+    """Rows of this run replace those of earlier ones; each keeps its machine and date."""
+    known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {"rows": {}, "routes": {}}
+    for kind in ("rows", "routes"):
+        for name, what in found.get(kind, {}).items():
+            known[kind][name] = {"machine": found["machine"], **what}
+    RESULTS.write_text(json.dumps(known, indent=1) + "\n")
+    before, rest = PAGE.read_text().split(BEGIN)
+    after = rest.split(END)[1]
+    PAGE.write_text(before + BEGIN + "\n" + section(known) + END + after)
+
+
+def section(known):
+    rows = [row for row in all_rows() if row.name in known["rows"]]
+    lines = [TEXT, table.HEAD]
+    lines += [table.line(row, known["rows"][row.name]["variables"], known["rows"][row.name]["solvers"]) for row in rows]
+    lines.append("")
+    for row in rows:
+        lines += [f"- {note}" for note in table.notes(row, known["rows"][row.name]["solvers"])]
+    lines += growths(rows, known["rows"])
+    lines += ["", places(known["rows"].values())]
+    if known["routes"]:
+        from . import robustness
+
+        lines += ["", "From the 50 random coarse routes of `specs/data/routes.csv`:", "", robustness.HEAD]
+        lines += robustness.lines(known["routes"])
+        lines += ["", places(known["routes"].values())]
+    return "\n".join(lines) + "\n\n"
+
+
+def growths(rows, results):
+    found = {name: table.growth(rows, results, name) for name in ("ntg", "ipopt", "ripopt")}
+    words = {"ntg": "ntg", "ipopt": "IPOPT", "ripopt": "ripopt"}
+    said = [f"{words[name]} as l^{exponent:.2f}" for name, exponent in found.items() if exponent is not None]
+    return [f"- Time of B1 over the number of intervals l grows: {', '.join(said)}."] if said else []
+
+
+def places(measured):
+    """Where and when, once for each machine."""
+    seen = {}
+    for one in measured:
+        machine = one["machine"]
+        seen.setdefault((machine["cores"], machine["cpu"], machine["date"]), []).append(machine["load"])
+    words = [f"{cores} cores of an {cpu}, {date}, load {min(load)} to {max(load)}" for (cores, cpu, date), load in seen.items()]
+    return "Measured on " + "; ".join(words) + "."
