@@ -25,6 +25,7 @@ def arguments():
     parser.add_argument("--seconds", type=float, default=0.05, help="length of a turn, at least one solve (default 0.05)")
     parser.add_argument("--solves", type=int, default=50, help="most solves of a turn (default 50)")
     parser.add_argument("--skip-compiled", action="store_true", help="leave out the variants that gcc has to compile")
+    parser.add_argument("--scalar", action="store_true", help="also compile each whole program as one expression: minutes each")
     parser.add_argument("--check", action="store_true", help="only hold the programs against ntg's and the known optima")
     parser.add_argument("--robustness", action="store_true", help="from 50 routes instead; --only B1/l=8 and so on")
     parser.add_argument("--publish", action="store_true", help="also write results.json and docs/performance.md")

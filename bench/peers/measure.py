@@ -31,7 +31,7 @@ def ipopt_kinds(row, options):
     yield "sx"
     if not options.skip_compiled:
         yield "mc"
-        if row.scalar:
+        if row.scalar or options.scalar:
             yield "c"
 
 
@@ -58,17 +58,17 @@ def measure(row, server, options):
                 del asked[name]
                 continue
             answers[name] = answer
-            shares[name].append(solver_share(answer))
+            shares[name].append(parts_of_a_whole(answer))
             for clock in ("wall", "cpu"):
                 batches[name][clock].append(statistics.median(answer[clock]))
     return {name: summary(answer, batches[name], shares[name]) for name, answer in answers.items()}
 
 
-def solver_share(answer):
-    """What part of a solve by ntg its solver takes; the rest is transcription and report."""
+def parts_of_a_whole(answer):
+    """What share of a solve each of its parts takes, where the solver says so."""
     parts = answer.get("parts") or {}
     whole = sum(parts.values())
-    return parts.get("solver", 0) / whole if whole else 1.0
+    return {name: value / whole for name, value in parts.items()} if whole else {}
 
 
 def summary(answer, batches, shares):
@@ -77,6 +77,6 @@ def summary(answer, batches, shares):
         if values:
             kept[clock] = statistics.median(values)
             kept[clock + "_batches"] = values
-    if shares:
-        kept["solver_share"] = statistics.median(shares)
+    kept.pop("parts", None)
+    kept["shares"] = {name: statistics.median(share[name] for share in shares) for name in (shares or [{}])[0]}
     return kept

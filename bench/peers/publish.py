@@ -37,7 +37,8 @@ def section(known):
     for row in rows:
         lines += [f"- {note}" for note in table.notes(row, known["rows"][row.name]["solvers"])]
     lines += growths(rows, known["rows"])
-    lines += ["", places(known["rows"].values())]
+    lines += ["", places(known["rows"].values()), "", "Where the time goes, in the same runs:", "", table.PARTS_HEAD]
+    lines += [table.parts(row, known["rows"][row.name]["solvers"]) for row in rows]
     if known["routes"]:
         from . import robustness
 

@@ -43,17 +43,17 @@ def small_rows():
 
 def flight_rows():
     kinds = [
-        ("B1", "b1", flight.b1, {}, 128.252905291, True),
-        ("B2", "b2", flight.b2, {}, 130.907227498, False),
-        ("B2cos", "b2_cosine", flight.b2, {"cosine": True}, 130.907227498, False),
-        ("B3", "b3", flight.b3, {}, 128.347970733, False),
-        ("B3cos", "b3_cosine", flight.b3, {"cosine": True}, 128.347970733, False),
+        ("B1", "b1", flight.b1, {}, 128.252905291),
+        ("B2", "b2", flight.b2, {}, 130.907227498),
+        ("B2cos", "b2_cosine", flight.b2, {"cosine": True}, 130.907227498),
+        ("B3", "b3", flight.b3, {}, 128.347970733),
+        ("B3cos", "b3_cosine", flight.b3, {"cosine": True}, 128.347970733),
     ]
-    for name, case, make, options, reference, scalar in kinds:
+    for name, case, make, options, reference in kinds:
         for letter, way in ROUTES.items():
             program = lambda make=make, options=options, way=way: make(route=[way], **options)
             ask = {"case": case, "route": route(way)}
-            yield Row(f"{name}/{letter}", program, ask, reference, ipopt=25, scalar=scalar, sqp=0 if name in ("B2", "B3") else 1)
+            yield Row(f"{name}/{letter}", program, ask, reference, ipopt=25, sqp=0 if name in ("B2", "B3") else 1)
     for intervals, reference in INTERVALS.items():
         program = lambda intervals=intervals: flight.b1(intervals=intervals)
         ask = {"case": "b1", "intervals": intervals}

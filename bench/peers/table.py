@@ -53,7 +53,7 @@ def line(row, variables, result):
     ours, name = result.get("ntg"), best_ipopt(result)
     theirs = result.get(name)
     ratios = [ratio(result, peer) for peer in (name, "sqp", "ripopt")]
-    alone = ratios[0] / ours["solver_share"] if ratios[0] else None
+    alone = ratios[0] / ours["shares"]["solver"] if ratios[0] else None
     cells = [
         row.name,
         str(variables),
@@ -71,6 +71,17 @@ def line(row, variables, result):
         agreement(row, result),
     ]
     return "| " + " | ".join(cells) + " |"
+
+
+PARTS_HEAD = "| problem | ntg's transcription | solver | report | ripopt's evaluations | solver |\n|---|---|---|---|---|---|"
+
+
+def parts(row, result):
+    """Where the time goes in the two solvers that run ntg's own functions."""
+    ours, theirs = (result.get(name, {}).get("shares", {}) for name in ("ntg", "ripopt"))
+    shares = [ours.get(name) for name in ("transcription", "solver", "report")]
+    shares += [theirs.get(name) for name in ("evaluation", "solver")]
+    return f"| {row.name} | " + " | ".join("–" if s is None else f"{100 * s:.0f} %" for s in shares) + " |"
 
 
 def notes(row, result):

@@ -5,11 +5,12 @@ import math
 import casadi as ca
 import numpy as np
 
-from ..program import Program
+from ..program import Program, widened
 from ..splines import Spline, gauss, polygon, uniform
 
 START, TARGET, ALTITUDE = (-100.0, -100.0), (5.0, -15.0), 12.0
 V_MIN, V_MAX, RHO_MIN = 0.10, 0.25, 5.0
+SHORTEST, LONGEST = 100, 3000  # Of the whole flight.
 ROOM = 1e-6  # What the cosine form holds between the signature's least value and its limit.
 CONTINUATION = [[20.0], [10.0], [5.0], [2.0], [1.0]]
 ROUTE_A, ROUTE_B = (-100.0, -15.0), (0.0, -100.0)
@@ -109,7 +110,10 @@ def ends(program, made, durations):
         program.fix(output.at(0), start)
     arrival = lambda u, p: (None, [(u[0] - TARGET[0]) ** 2 + (u[1] - TARGET[1]) ** 2])
     program.add(arrival, [output.at(1) for output in made[-1]], None, [-np.inf], [1])
-    program.add(lambda u, p: (1e-4 * u[0] ** 2, []), [sum_of(program, durations)])
+    whole = sum_of(program, durations)
+    program.add(lambda u, p: (1e-4 * u[0] ** 2, []), [whole])
+    if len(durations) > 1:
+        program.add(lambda u, p: (None, [u[0]]), [whole], None, [SHORTEST], [LONGEST])
     for before, after, one, two in zip(made, made[1:], durations, durations[1:]):
         times = [program.everywhere(one, 1), program.everywhere(two, 1)]
         for left, right in zip(before, after):
@@ -120,24 +124,20 @@ def ends(program, made, durations):
 
 
 def minus(a, b):
-    from ..program import widened
-
     width = max(a.shape[1], b.shape[1])
     return widened(a, width) - widened(b, width)
 
 
 def sum_of(program, indices):
-    from ..program import widened
-
     return sum(widened(program.everywhere(index, 1), program.variables) for index in indices)
 
 
 def b1(**options):
-    return flight([(100, 3000, 900, None)], **options)
+    return flight([(SHORTEST, LONGEST, 900, None)], **options)
 
 
 def b2(**options):
-    return flight([(100, 3000, 900, 4.2)], **options)
+    return flight([(SHORTEST, LONGEST, 900, 4.2)], **options)
 
 
 def b3(**options):

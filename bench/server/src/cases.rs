@@ -16,7 +16,13 @@ mod specs {
         ntg::ntg_file!("../specs/free.ntg");
     }
     pub(super) mod cosine {
-        ntg::ntg_file!("../specs/cosine.ntg");
+        ntg::ntg_file!("../specs/low_observable_cosine.ntg");
+    }
+    pub(super) mod phases {
+        ntg::ntg_file!("../specs/low_observable_phases.ntg");
+    }
+    pub(super) mod phases_cosine {
+        ntg::ntg_file!("../specs/low_observable_phases_cosine.ntg");
     }
     pub(super) mod intercept {
         ntg::ntg_file!("../../specs/missile_intercept.ntg");
@@ -37,7 +43,9 @@ pub fn problem(name: &str) -> Option<Box<dyn Problem>> {
         "kinematic_car" => Box::new(specs::kinematic_car::KinematicCar::default()),
         "b1" => Box::new(specs::free::Free::default()),
         "b2" => Box::new(specs::flight::LowObservable::default()),
-        "b2_cosine" => Box::new(specs::cosine::Cosine::default()),
+        "b2_cosine" => Box::new(specs::cosine::LowObservableCosine::default()),
+        "b3" => Box::new(specs::phases::LowObservablePhases::default()),
+        "b3_cosine" => Box::new(specs::phases_cosine::LowObservablePhasesCosine::default()),
         "intercept_right" => Box::new(MissileIntercept::default()),
         "intercept_left" => Box::new(MissileIntercept { y_via: 0.0, ..MissileIntercept::default() }),
         "boost_coast_300" => Box::new(MissileBoostCoast::default()),
