@@ -23,6 +23,7 @@ fn named(name: &str, domain: Domain, loops: usize, family: Option<Family>) -> Na
         doc: String::new(),
         unit: unit("km/s", 1000.0),
         family,
+        agent: 0,
         loops: vec![Loop::default(); loops],
         domain,
         call: Call::default(),

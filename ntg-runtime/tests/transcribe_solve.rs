@@ -174,6 +174,7 @@ fn named_expressions_are_functions_of_time() {
         doc: String::new(),
         unit: Unit { symbol: "km/s".into(), factor: 1000.0 },
         family: None,
+        agent: 0,
         loops: vec![],
         domain: Domain::Path { phase: here, points: 0 },
         call,

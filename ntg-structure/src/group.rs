@@ -132,6 +132,8 @@ pub struct Named {
     pub unit: Unit,
     /// Its members, when it is a family; the family's index is the last of `loops`.
     pub family: Option<Family>,
+    /// Whose it is, as an index into `Structure::agents`.
+    pub agent: usize,
     /// The loops over agents and phases, then the family's.
     pub loops: Vec<Loop>,
     /// [`Domain::Path`] for an expression along a phase (whatever its point set), or

@@ -110,7 +110,7 @@ structs! {
     Guess { loops, scope, kind }
     Integral { loops, place }
     Loop { first, last }
-    Named { name, doc, unit, family, loops, domain, call }
+    Named { name, doc, unit, family, agent, loops, domain, call }
     Output { name, doc, unit, family, spline }
     Parameter { name, doc, unit, array, value }
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }

@@ -44,7 +44,7 @@ impl<'a> Scope<'a> {
 
 /// The scope of the whole problem.
 pub(super) fn scopes(structure: &Structure) -> Scope<'_> {
-    let mut root = Scope { named: numbers(structure), ..Scope::new(Kind::Problem, vec![]) };
+    let mut root = Scope::new(Kind::Problem, vec![]);
     for (agent, declared) in structure.agents.iter().enumerate() {
         match &declared.name {
             None => fill(&mut root, structure, agent),
@@ -58,21 +58,12 @@ pub(super) fn scopes(structure: &Structure) -> Scope<'_> {
     root
 }
 
-/// Named expressions that are numbers; they belong to the problem.
-fn numbers(structure: &Structure) -> Vec<&Named> {
-    let mission =
-        structure.named.iter().filter(|named| named.domain == Domain::Mission && named.loops.len() == own_loops(named));
-    mission.collect()
-}
-
-/// How many of an expression's loops are its own.
-fn own_loops(named: &Named) -> usize {
-    usize::from(named.family.is_some())
-}
-
 /// Puts an agent's things into its scope, and its named phases below.
 fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
     scope.durations.extend(structure.agents[agent].duration_name.as_deref());
+    // Numbers belong to the agent as a whole.
+    let numbers = structure.named.iter().filter(|named| named.domain == Domain::Mission && named.agent == agent);
+    scope.named.extend(numbers);
     let phases: Vec<usize> = (0..structure.phases.len()).filter(|p| structure.phases[*p].agent == agent).collect();
     let along = |phase: usize| structure.named.iter().filter(move |named| phase_of(named) == Some(phase));
 

@@ -92,7 +92,7 @@ impl<'a> Elaborator<'a> {
         match self.memo.get(&key) {
             Some(Memo::Done(value, event)) => {
                 let (value, event) = (value.clone(), *event);
-                return self.used(definition, value, event, span);
+                return self.used(value, event, span);
             }
             Some(Memo::InProgress) => return self.cycle(cx, definition, span),
             None => {}
@@ -103,7 +103,7 @@ impl<'a> Elaborator<'a> {
         let value = self.elaborate_definition(cx, definition, argument, allow);
         let event = std::mem::replace(&mut self.event, outer_event).is_some_and(|mark| !mark.is_time);
         self.memo.insert(key, Memo::Done(value.clone(), event));
-        self.used(definition, value, event, span)
+        self.used(value, event, span)
     }
 
     fn elaborate_definition(
@@ -157,8 +157,8 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A definition's value where it is used: what is misplaced in it is misplaced here.
-    fn used(&mut self, definition: usize, mut value: Value, event: bool, span: Span) -> Value {
-        let name = &self.definitions[definition].name.text;
+    fn used(&mut self, mut value: Value, event: bool, span: Span) -> Value {
+        let name = self.text(span);
         if let Some(Flaw::Misplaced(inner)) = &value.flaw {
             let because = (inner.span, format!("because of `{}` here", inner.text));
             let because = inner.because.clone().unwrap_or(because);
@@ -166,8 +166,7 @@ impl<'a> Elaborator<'a> {
             value.flaw = Some(Flaw::Misplaced(Rc::new(misplaced)));
         }
         if event {
-            let text = name.clone();
-            self.mark_event(span, text, false);
+            self.mark_event(span, name, false);
         }
         value.at(span)
     }

@@ -2,22 +2,37 @@
 //!
 //! Takes the definitions, fills `Problem::named`.
 //! A definition that no point of the trajectory enters, and that is the same in all phases, is one
-//! number; the others are expressions along each phase. So is what several phases define, each for
-//! itself: a thrust that is one number while the motor burns and another afterwards.
+//! number; the others are expressions along each phase. Definitions of one name in several phases
+//! of an agent are one function of its time, shown in one unit.
+//! Finds: definitions of one name that are different kinds of quantities in two phases.
 
-use super::elaborator::{Definition, Elaborator};
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
 use super::kinds::Kind;
 use super::problem::{Domain, Form, Loop, Named};
-use super::scope::{Allow, Context, Point};
+use super::scope::{Allow, Context, Point, ScopeId};
 use super::units;
 use super::value::{Flaw, Value};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
+use ntg_structure::Unit;
+
+/// How the first definition of a name in an agent is shown: the others of that name follow it.
+pub(super) struct Shown {
+    agent: usize,
+    name: String,
+    dimension: Dimension,
+    unit: Unit,
+    span: Span,
+}
 
 impl<'a> Elaborator<'a> {
     /// All definitions that are no constants, in the order of the spec.
     pub(super) fn named(&mut self) {
+        let mut shown: Vec<Shown> = Vec::new();
         for definition in 0..self.definitions.len() {
             if !self.definitions[definition].is_const {
-                self.named_definition(definition);
+                self.named_definition(definition, &mut shown);
             }
         }
         // Constants that nobody uses are looked at too.
@@ -30,11 +45,24 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn named_definition(&mut self, definition: usize) {
+    fn named_definition(&mut self, definition: usize, shown: &mut Vec<Shown>) {
         let scope = self.definitions[definition].scope;
         let Some(agent) = self.scopes[scope].agent else { return };
         let own = self.scopes[scope].phase;
-        let phases = own.map_or_else(|| self.agents[agent].phases.clone(), |phase| vec![phase]);
+        let name = self.definitions[definition].name.text.as_str();
+        let overridden =
+            |phase: &usize| self.phases[*phase].scope != scope && self.has(self.phases[*phase].scope, name);
+        // A template has no value where a phase says something else.
+        let phases = match own {
+            Some(phase) => vec![phase],
+            None => self.agents[agent].phases.iter().copied().filter(|phase| !overridden(phase)).collect(),
+        };
+        let others = self.agents[agent].phases.iter().any(|phase| {
+            let home = self.phases[*phase].scope;
+            home != scope && self.has(home, name)
+        });
+        let template = own.is_some() && self.agents[agent].scope != scope && self.has(self.agents[agent].scope, name);
+        let shared = others || template;
         let mut along: Vec<(Context<'a>, Option<Loop>, Value)> = Vec::new();
         for phase in phases {
             let cx = self.phase_context(phase, Allow::All, Point::Path);
@@ -48,7 +76,7 @@ impl<'a> Elaborator<'a> {
             nodes.into_iter().all(|node| !self.kinds(node).meets(Kind::POINT))
         };
         let in_family = along.first().is_some_and(|(cx, ..)| cx.phase.is_some());
-        if numbers && same && !in_family && !self.in_other_phases(definition) {
+        if numbers && !shared && (same || own.is_some()) && !in_family {
             let outer = match own {
                 Some(phase) => self.phase_context(phase, Allow::All, Point::Nowhere),
                 None => self.agent_context(agent, Allow::All),
@@ -56,28 +84,22 @@ impl<'a> Elaborator<'a> {
             if let Some((cx, over, value)) = self.in_context(&outer, definition)
                 && value.is_sound()
             {
-                self.push_named(definition, &cx, over, &value);
+                self.push_named(definition, (agent, &cx, over), &value, shown);
                 return;
             }
         }
         for (cx, over, value) in along {
             if value.is_sound() {
-                self.push_named(definition, &cx, over, &value);
+                self.push_named(definition, (agent, &cx, over), &value, shown);
             } else if let Some(Flaw::Misplaced(_)) = value.flaw {
                 self.settle(value, super::settle::Use::Point);
             }
         }
     }
 
-    /// Whether another phase of the same agent has a definition of the same name.
-    fn in_other_phases(&self, definition: usize) -> bool {
-        let declared = &self.definitions[definition];
-        let scope = &self.scopes[declared.scope];
-        let rival = |other: &Definition<'_>| {
-            let theirs = &self.scopes[other.scope];
-            other.name.text == declared.name.text && theirs.agent == scope.agent && theirs.phase != scope.phase
-        };
-        scope.phase.is_some() && self.definitions.iter().any(rival)
+    /// Whether a scope itself defines a name.
+    fn has(&self, scope: ScopeId, name: &str) -> bool {
+        self.scopes[scope].names.contains_key(name)
     }
 
     /// The value of a definition, for its own index where it is a family.
@@ -94,21 +116,47 @@ impl<'a> Elaborator<'a> {
         Some((inner, Some(over), value))
     }
 
-    fn push_named(&mut self, definition: usize, cx: &Context<'a>, over: Option<Loop>, value: &Value) {
+    fn push_named(
+        &mut self,
+        definition: usize,
+        (agent, cx, over): (usize, &Context<'a>, Option<Loop>),
+        value: &Value,
+        shown: &mut Vec<Shown>,
+    ) {
         let declared = &self.definitions[definition];
-        let unit = match (declared.unit, &value.unit) {
+        let dimension = value.dimension_or_none();
+        let own = match (declared.unit, &value.unit) {
             (Some(_), Some(unit)) => (**unit).clone(),
-            _ => units::si(&value.dimension_or_none()),
+            _ => units::si(&dimension),
+        };
+        let (name, span) = (declared.name.text.clone(), declared.name.span);
+        let unit = match shown.iter().find(|first| first.agent == agent && first.name == name) {
+            Some(first) if first.dimension != dimension => {
+                let (this, that) = (dimension.describe(), first.dimension.describe());
+                let message = format!("`{name}` is {that} in one phase, and {this} in another");
+                let finding = Diagnostic::new(Code::DimensionMismatch, span, message)
+                    .label(span, format!("here it is {this}"))
+                    .label(first.span, format!("here it is {that}"));
+                self.report(finding.help("give one of them another name: a named expression is one function of time"));
+                return;
+            }
+            Some(first) => first.unit.clone(),
+            None => {
+                shown.push(Shown { agent, name: name.clone(), dimension, unit: own.clone(), span });
+                own
+            }
         };
         let domain = match self.domain(cx) {
             Domain::Path(phase) => Domain::Path(phase),
             _ => Domain::Mission,
         };
+        let declared = &self.definitions[definition];
         let named = Named {
-            name: declared.name.text.clone(),
+            name,
             doc: declared.doc.clone(),
             unit,
             span: declared.span,
+            agent,
             loops: (*cx.loops).clone(),
             family: over.is_some(),
             domain,

@@ -28,12 +28,28 @@ impl<'a> Elaborator<'a> {
             return self.misplaced_value(What::Mission, path.span, &text, None);
         }
         let Some(inner) = self.enter_path(cx, outer) else { return self.poison(path.span) };
-        // Inside another scope only its own names are meant, as numbers of the mission.
+        // Inside another scope its own names are meant, as numbers of the mission.
         let inner = Context { lexical: inner.scope, point: Point::Nowhere, ..inner };
-        match self.scopes[inner.scope].names.get(last.name.text.as_str()).map(|d| d.entity) {
+        match self.inside(inner.scope, last.name.text.as_str()) {
             Some(entity) => self.entity(&inner, entity, last, path.span),
             None => self.unknown(inner.scope, last, false),
         }
+    }
+
+    /// What a name means inside a phase or agent that a path leads to: its own names, in a phase also
+    /// the definitions and outputs of its agent, which are templates of each phase.
+    fn inside(&self, scope: ScopeId, name: &str) -> Option<Entity> {
+        let own = self.scopes[scope].names.get(name).map(|declared| declared.entity);
+        own.or_else(|| {
+            let outer = self.scopes[scope].parent.filter(|_| self.scopes[scope].phase.is_some())?;
+            let template = self.scopes[outer].names.get(name).map(|declared| declared.entity)?;
+            let constant = |d: usize| self.definitions[d].is_const;
+            match template {
+                Entity::Definition(definition) if !constant(definition) => Some(template),
+                Entity::Output => Some(template),
+                _ => None,
+            }
+        })
     }
 
     fn name(&mut self, cx: &Context<'a>, segment: &'a Segment) -> Value {

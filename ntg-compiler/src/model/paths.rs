@@ -16,6 +16,7 @@ impl<'a> Elaborator<'a> {
     /// The context inside a path, `uav[2].strike`; what is wrong with it is told.
     pub(super) fn enter_path(&mut self, cx: &Context<'a>, segments: &'a [Segment]) -> Option<Context<'a>> {
         let mut inner: Option<Context<'a>> = None;
+        let mut outer: Option<&'a Segment> = None;
         for segment in segments {
             let text = segment.name.text.as_str();
             let entity = match &inner {
@@ -23,7 +24,8 @@ impl<'a> Elaborator<'a> {
                 Some(inner) => self.scopes[inner.scope].names.get(text).map(|declared| declared.entity),
             };
             let around = inner.unwrap_or_else(|| cx.clone());
-            inner = Some(self.enter_segment(cx, around, entity, segment)?);
+            inner = Some(self.enter_segment(cx, around, entity, (outer, segment))?);
+            outer = Some(segment);
         }
         inner
     }
@@ -33,7 +35,7 @@ impl<'a> Elaborator<'a> {
         cx: &Context<'a>,
         around: Context<'a>,
         entity: Option<Entity>,
-        segment: &'a Segment,
+        (outermost, segment): (Option<&'a Segment>, &'a Segment),
     ) -> Option<Context<'a>> {
         let (scope, family, agent) = match entity {
             Some(Entity::Phase(phase)) => {
@@ -45,7 +47,7 @@ impl<'a> Elaborator<'a> {
                 (self.agents[agent].scope, family, true)
             }
             other => {
-                self.no_path(around.scope, other, segment);
+                self.no_path(around.scope, other, segment, outermost);
                 return None;
             }
         };
@@ -90,19 +92,27 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn no_path(&mut self, scope: ScopeId, entity: Option<Entity>, segment: &Segment) {
+    /// Tells of a segment that is no phase or agent; `outer` is the segment before it.
+    fn no_path(&mut self, scope: ScopeId, entity: Option<Entity>, segment: &Segment, outer: Option<&Segment>) {
         let name = &segment.name.text;
         let is_path = |entity: &Entity| matches!(entity, Entity::Phase(_) | Entity::Agent(_));
-        let names = visible(&self.scopes, scope);
+        let names = match outer {
+            Some(_) => self.scopes[scope].order.iter().map(|n| (*n, self.scopes[scope].names[n].entity)).collect(),
+            None => visible(&self.scopes, scope),
+        };
         let paths: Vec<&str> = names.iter().filter(|(_, entity)| is_path(entity)).map(|(name, _)| *name).collect();
-        let message = match entity {
-            Some(entity) => format!("`{name}` is {}, not a phase or agent", entity.describe()),
-            None => format!("unknown phase or agent `{name}`"),
+        let message = match (entity, outer) {
+            (Some(entity), _) => format!("`{name}` is {}, not a phase or agent", entity.describe()),
+            (None, Some(outer)) => format!("there is no phase `{name}` in `{}`", outer.name.text),
+            (None, None) => format!("unknown phase or agent `{name}`"),
         };
         let finding = Diagnostic::new(Code::UnknownPhase, segment.name.span, message);
         let finding = match nearest(name, paths.iter().copied()) {
             Some(near) => finding.help(format!("did you mean `{near}`?")),
-            None if paths.is_empty() => finding.help("this problem has one phase: leave the name out"),
+            None if paths.is_empty() => match outer {
+                Some(outer) => finding.help(format!("`{0}` has no phases: write `{0}` alone", outer.name.text)),
+                None => finding.help("this problem has one phase: leave the name out"),
+            },
             None => finding.help(format!("phases and agents are `{}`", paths.join("`, `"))),
         };
         self.report(finding);

@@ -301,6 +301,8 @@ pub struct Named {
     pub unit: Unit,
     /// Where it stands.
     pub span: Span,
+    /// Whose it is, as an index into `Problem::agents`.
+    pub agent: usize,
     /// The loops around it: agent, phase, then its own family's.
     pub loops: Vec<Loop>,
     /// Whether the last loop is a family of the `let` itself.

@@ -214,7 +214,13 @@ impl<'a> Elaborator<'a> {
             let mut dimension = joined.as_ref().and_then(|value| value.dimension);
             let mut unit = joined.and_then(|value| value.unit).map(|unit| (*unit).clone());
             if let Some((quantity, shown)) = declared {
-                dimension = dimension.or(Some(quantity.dimension));
+                if let Some(found) = dimension.filter(|found| *found != quantity.dimension) {
+                    let (this, that) = (quantity.dimension.describe(), found.describe());
+                    let message = format!("`{name}` is {this}, but its bounds are {that}");
+                    let finding = Diagnostic::new(Code::WrongUnit, variable.name.span, message);
+                    self.report(finding.help(format!("give the bounds the unit: `[{}]`", shown.symbol)));
+                }
+                dimension = Some(quantity.dimension);
                 unit = Some(shown);
             }
             let dimension = dimension.unwrap_or(Dimension::NONE);

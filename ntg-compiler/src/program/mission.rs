@@ -140,6 +140,7 @@ pub(super) fn named(lowering: &mut Lowering<'_>) -> Vec<out::Named> {
                 doc: n.doc,
                 unit: n.unit,
                 family: last,
+                agent: n.agent,
                 loops: positions(&n.loops),
                 domain,
                 call,

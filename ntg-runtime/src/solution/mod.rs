@@ -104,8 +104,8 @@ impl Solution {
         (0..layout.phases.len()).map(phase).collect()
     }
 
-    /// Durations and event times in seconds, by name: the names of durations as declared, and
-    /// `start(path)`, `end(path)`, `duration(path)` of every named phase and agent.
+    /// Durations and event times in seconds, by name: the names of durations with the path of
+    /// their agent and phase (`T`, `boost.burn`, `uav[2].T`), and `start(path)`, `end(path)`, `duration(path)` of every named phase and agent.
     pub fn event_times(&self) -> Vec<(String, f64)> {
         let (model, x) = (&self.inner.model, &self.inner.x);
         let (structure, layout) = (&model.structure, &model.layout);
@@ -122,14 +122,20 @@ impl Solution {
             let path = names::agent(structure, layout, agent);
             let whole: f64 = member.phases.clone().map(|p| layout.duration(p, x)).sum();
             events(&path, member.start.at(x), whole);
-            if let Some(name) = &structure.agents[member.agent].duration_name {
-                durations.push((names::join(&path, name), whole));
+            match &structure.agents[member.agent].duration_name {
+                Some(name) => durations.push((names::join(&path, name), whole)),
+                // The one timeline without a name: its duration is called what a guess calls it.
+                None if path.is_empty() && self.is_nameless(member.phases.clone()) => {
+                    durations.push(("duration".to_owned(), whole));
+                }
+                None => {}
             }
             for phase in member.phases.clone() {
                 let (own, duration) = (&layout.phases[phase], layout.duration(phase, x));
-                events(&names::phase(structure, layout, phase), layout.start(phase, x), duration);
+                let path = names::phase(structure, layout, phase);
+                events(&path, layout.start(phase, x), duration);
                 if let Some(name) = &structure.phases[own.phase].duration_name {
-                    durations.push((names::join(&path, &names::indexed(name, own.index)), duration));
+                    durations.push((names::join(&path, name), duration));
                 }
             }
         }
@@ -142,6 +148,13 @@ impl Solution {
             }
         }
         times
+    }
+
+    /// Whether no phase of a stretch has a name for its duration.
+    fn is_nameless(&self, phases: std::ops::Range<usize>) -> bool {
+        let (structure, layout) = (self.structure(), &self.inner.model.layout);
+        let mut phases = phases;
+        phases.all(|phase| structure.phases[layout.phases[phase].phase].duration_name.is_none())
     }
 
     /// All declared variables, members of arrays one by one.

@@ -135,13 +135,12 @@ impl Solution {
                 }
             };
             let agent = phase.map(|phase| layout.phases[phase].agent);
-            let path = agent.map_or_else(String::new, |agent| names::agent(structure, layout, agent));
             let index = declared.family.and_then(|_| indices.last().copied());
-            // A number of an agent family is told apart by the loops around it.
-            let name = match (phase, declared.family, declared.loops.len()) {
-                (None, None, 1..) => names::indexed(&declared.name, indices.last().copied()),
-                _ => names::join(&path, &names::indexed(&declared.name, index)),
-            };
+            // A number's loops are that over its agent's members, if it is a family, and its own.
+            let member = structure.agents[declared.agent].family.and_then(|_| indices.first().copied());
+            let owner = structure.agents[declared.agent].name.as_deref();
+            let path = owner.map_or_else(String::new, |owner| names::indexed(owner, member));
+            let name = names::join(&path, &names::indexed(&declared.name, index));
             let phases = agent.map(|agent| layout.agents[agent].phases.clone());
             let piece = Piece { phase, named, indices };
             match found.iter_mut().find(|signal| signal.name == name && signal.phases == phases) {

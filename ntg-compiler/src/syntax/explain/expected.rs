@@ -174,9 +174,14 @@ fn kind(rule: Rule) -> Kind {
         | R::function_word
         | R::event
         | R::event_word => Kind::Expression,
-        R::name | R::segment | R::axis | R::output_name | R::objective_name | R::constraint_name | R::index_range => {
-            Kind::Name
-        }
+        R::name
+        | R::segment
+        | R::axis
+        | R::axis_name
+        | R::output_name
+        | R::objective_name
+        | R::constraint_name
+        | R::index_range => Kind::Name,
         R::unit
         | R::unit_product
         | R::unit_operator

@@ -33,7 +33,7 @@ impl Build {
     fn axis(&mut self, pair: Pair<'_>) -> Axis {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let name = self.name(&parts.required(Rule::name));
+        let name = self.name(&parts.required(Rule::axis_name));
         let symmetry = parts.optional(Rule::symmetry).map(|pair| match pair.as_str() {
             "even" => Symmetry::Even,
             _ => Symmetry::Periodic,
