@@ -15,7 +15,7 @@ use crate::report::{Report, StepReport, user};
 use crate::settings::{InvalidSetting, Settings};
 use crate::solution::Value;
 use crate::status::Status;
-use crate::transcribe::{SetupError, Transcription};
+use crate::transcribe::{SetupError, Transcription, singular};
 use ntg_structure::Structure;
 use std::fmt;
 use std::time::Instant;
@@ -84,6 +84,7 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
     let steps = steps(&structure);
     let mut history: Vec<StepReport> = vec![];
     let mut last: Option<Outcome> = None;
+    let mut at_guess = vec![];
     for (i, step) in steps.iter().enumerate() {
         let step_began = Instant::now();
         let mut nlp = Transcription::with(problem, set(&structure, step))?;
@@ -92,6 +93,9 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
             Some(last) => start(&nlp, Some(&Guess::raw(last.x.clone())))?,
             None => start(&nlp, guess)?,
         };
+        if i == 0 {
+            at_guess = singular(&nlp, &first);
+        }
         nlp.set_scales(&first, settings)?;
         let from = last.as_ref().filter(|last| last.status.is_solved()).map(Outcome::multipliers);
         let outcome = method::solve(&nlp, &first, from, &settings.after(began.elapsed()));
@@ -99,6 +103,7 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
         history.push(record(&nlp, &structure, step, &outcome, step_began));
         if stop {
             let mut report = Report::new(&nlp, outcome, settings, history)?;
+            report.singular = at_guess;
             report.seconds = began.elapsed().as_secs_f64();
             return Ok(report);
         }

@@ -32,6 +32,9 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "outputs": outputs(solved),
         "lets": lets(solved),
         "constraints": report.constraints.iter().map(constraint).collect::<Vec<_>>(),
+        "warnings": report.singular.iter().map(|s| json!({
+            "message": s.to_string(), "expression": s.place.text, "line": s.place.line, "column": s.place.column,
+        })).collect::<Vec<_>>(),
         "history": history(report),
     })
 }

@@ -11,7 +11,7 @@ use ntg_structure::Block;
 
 use super::constants::extremes;
 use super::elaborator::Elaborator;
-use super::problem::{Constraint, Domain, Duration, Form, Leaf, Loop};
+use super::problem::{Constraint, Domain, Duration, Leaf, Loop};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Binary, InputId, Node, NodeId, Unary};
 use crate::source::Span;
@@ -36,14 +36,14 @@ impl Elaborator<'_> {
             self.check_rows(phase);
         }
         for k in 0..self.problem.constraints.len() {
-            if self.problem.constraints[k].domain == Domain::Mission {
-                self.check_against(&Fixed::new(), k);
+            if self.problem.constraints[k].domain == Domain::Mission && !self.check_against(&Fixed::new(), k) {
+                self.check_windows(k);
             }
         }
         self.check_objective();
     }
 
-    fn at_end(&self, phase: usize, block: Block) -> Vec<usize> {
+    pub(super) fn at_end(&self, phase: usize, block: Block) -> Vec<usize> {
         let here = |constraint: &Constraint| match (&constraint.domain, block) {
             (Domain::Start(at), Block::Initial) | (Domain::End(at), Block::Final) => at.phase == phase,
             _ => false,
@@ -105,27 +105,29 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Tells when the fixed values put the body of a constraint outside its constant bounds.
-    fn check_against(&mut self, fixed: &Fixed, k: usize) {
+    /// Tells, and says, when the fixed values put the body of a constraint outside its constant bounds.
+    fn check_against(&mut self, fixed: &Fixed, k: usize) -> bool {
         let constraint = self.problem.constraints[k].clone();
         let inputs = self.problem.dag.inputs_of(&[constraint.body]);
         let mut values: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.
         let mut by: Option<Span> = None;
         for input in &inputs {
-            let Some((value, span)) = fixed.get(input).copied().or_else(|| self.fixed_duration(*input)) else { return };
+            let Some((value, span)) = fixed.get(input).copied().or_else(|| self.fixed_duration(*input)) else {
+                return false;
+            };
             values.insert(*input, self.problem.dag.constant(value));
             by = by.or(Some(span).filter(|span| *span != constraint.span));
         }
-        let Some(by) = by else { return };
+        let Some(by) = by else { return false };
         let body = self.problem.dag.substitute(&[constraint.body], |input| values.get(&input).copied())[0];
         let scale = self.scale(constraint.body, &values);
         let known = |node: Option<NodeId>| node.and_then(|node| self.problem.dag.is_constant(node));
-        let Some(value) = known(Some(body)) else { return };
+        let Some(value) = known(Some(body)) else { return false };
         let (lower, upper) = (known(constraint.bounds.lower), known(constraint.bounds.upper));
         let below = lower.is_some_and(|lower| value < lower && !close(value, lower, scale));
         let above = upper.is_some_and(|upper| value > upper && !close(value, upper, scale));
         if !below && !above {
-            return;
+            return false;
         }
         let shown = (value / constraint.unit.factor * 1e6).round() / 1e6;
         let unit = match constraint.unit.symbol.as_str() {
@@ -140,6 +142,7 @@ impl Elaborator<'_> {
             .label(constraint.span, format!("what is bounded is {shown}{unit}{here}"))
             .label(by, "fixed here");
         self.report(finding.help("loosen the bound, or change what is fixed"));
+        true
     }
 
     /// The size of the largest summand of a body: what its rounding errors are relative to.
@@ -167,75 +170,6 @@ impl Elaborator<'_> {
         let value = self.problem.dag.is_constant(node)?;
         let (_, span) = self.own_duration(self.phases[phase].scope)?;
         Some((value, span))
-    }
-
-    /// Tells when one output has more boundary conditions than it can meet.
-    fn check_rows(&mut self, phase: usize) {
-        let mut all: Vec<(usize, Option<Form>, Vec<Span>)> = Vec::new();
-        for block in [Block::Initial, Block::Final] {
-            let mut here: Vec<(usize, Option<Form>, Vec<Span>)> = Vec::new();
-            let mut bodies: Vec<NodeId> = Vec::new();
-            for k in self.at_end(phase, block) {
-                let constraint = &self.problem.constraints[k];
-                let equality = constraint.bounds.lower.is_some() && constraint.bounds.lower == constraint.bounds.upper;
-                // A row that is there twice demands nothing more.
-                if !equality || bodies.contains(&constraint.body) {
-                    continue;
-                }
-                bodies.push(constraint.body);
-                let span = constraint.span;
-                if let Some((output, index)) = self.only_output(constraint.body) {
-                    add_row(&mut here, output, &index, span);
-                    add_row(&mut all, output, &index, span);
-                }
-            }
-            let orders: Vec<usize> = self.problem.phases[phase].outputs.iter().map(|o| o.spline.order).collect();
-            let end = if block == Block::Initial { "start" } else { "end" };
-            let too_many: Vec<_> = here.into_iter().filter(|(output, _, rows)| rows.len() > orders[*output]).collect();
-            for (output, _, rows) in too_many {
-                let k = orders[output];
-                let what = format!("a spline of order {k} can meet {k} of them at one point");
-                self.too_many(phase, output, &rows, &format!("at the {end}"), &what);
-            }
-        }
-        for (output, _, rows) in all {
-            let count = coefficients(&self.problem.phases[phase].outputs[output].spline);
-            if rows.len() > count {
-                let what = format!("its spline has {count} coefficients");
-                self.too_many(phase, output, &rows, "at both ends", &what);
-            }
-        }
-    }
-
-    /// The output whose value or derivatives are all that a body depends on.
-    fn only_output(&self, body: NodeId) -> Option<(usize, Option<Form>)> {
-        let mut only: Option<(usize, Option<Form>)> = None;
-        for input in self.problem.dag.inputs_of(&[body]) {
-            match self.problem.leaves.leaf(input) {
-                Leaf::Flat { output, index, .. } => {
-                    let this = (*output, index.clone());
-                    if only.as_ref().is_some_and(|other| *other != this) {
-                        return None;
-                    }
-                    only = Some(this);
-                }
-                Leaf::Parameter { .. } | Leaf::Index(_) => {}
-                _ => return None,
-            }
-        }
-        only
-    }
-
-    fn too_many(&mut self, phase: usize, output: usize, rows: &[Span], place: &str, what: &str) {
-        let output = &self.problem.phases[phase].outputs[output];
-        let message = format!("`{}` has {} conditions {place}, more than it can meet", output.name, rows.len());
-        let span = rows[rows.len() - 1];
-        let finding = Diagnostic::new(Code::TooManyRows, span, message)
-            .label(span, "one condition too many")
-            .label(output.span, what.to_owned());
-        self.report(
-            finding.help("remove a condition, or declare the output with more `intervals` or a higher `order`"),
-        );
     }
 
     /// Tells when nothing says which of many trajectories is wanted.
@@ -267,19 +201,12 @@ impl Elaborator<'_> {
     }
 }
 
-fn close(a: f64, b: f64, scale: f64) -> bool {
+pub(super) fn close(a: f64, b: f64, scale: f64) -> bool {
     (a - b).abs() <= SLACK * a.abs().max(b.abs()).max(scale)
 }
 
-fn add_row(rows: &mut Vec<(usize, Option<Form>, Vec<Span>)>, output: usize, index: &Option<Form>, span: Span) {
-    match rows.iter_mut().find(|(o, i, _)| *o == output && i == index) {
-        Some((_, _, spans)) => spans.push(span),
-        None => rows.push((output, index.clone(), vec![span])),
-    }
-}
-
 /// l (k - m) + m.
-fn coefficients(spline: &ntg_structure::Spline) -> usize {
+pub(super) fn coefficients(spline: &ntg_structure::Spline) -> usize {
     let (k, m, l) = (spline.order, spline.smoothness, spline.breakpoints.len().saturating_sub(1));
     l * k.saturating_sub(m) + m
 }

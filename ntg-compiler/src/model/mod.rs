@@ -30,6 +30,7 @@ mod paths;
 pub mod problem;
 mod quantities;
 mod reductions;
+mod rows;
 mod scope;
 mod settle;
 mod suggest;
@@ -40,6 +41,7 @@ mod time;
 mod unitless;
 mod units;
 mod value;
+mod windows;
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::Source;

@@ -39,6 +39,7 @@ impl fmt::Display for Report {
         for variable in self.solution.variables() {
             write!(f, "\n  {:<11} {}{}", variable.name, brief(variable.value), symbol(&variable.unit))?;
         }
+        self.singular.iter().try_for_each(|singular| write!(f, "\n  warning: {singular}"))?;
         self.constraints.iter().try_for_each(|constraint| violated(f, constraint))
     }
 }

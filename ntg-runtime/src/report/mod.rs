@@ -16,7 +16,7 @@ use crate::settings::Settings;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};
 use crate::sqp::Outcome;
 use crate::status::{Residuals, Status};
-use crate::transcribe::{SetupError, Transcription};
+use crate::transcribe::{SetupError, Singular, Transcription};
 use ntg_structure::{Block, Place, Unit};
 use std::sync::Arc;
 
@@ -42,6 +42,9 @@ pub struct Report {
     pub constraints: Vec<ConstraintReport>,
     /// Largest relative violation at the points of the transcription and on the finer grid.
     pub violation: Violations,
+    /// Expressions whose value or derivative is singular at the guess. They stop nothing; where a
+    /// solve ends badly, they are the first to look at.
+    pub singular: Vec<Singular>,
     /// The residuals of the optimality conditions.
     pub residuals: Residuals,
     /// Iterations of all steps of a continuation.
@@ -190,6 +193,7 @@ impl Report {
             terms,
             constraints,
             violation,
+            singular: vec![],
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),
             seconds: history.iter().map(|step| step.seconds).sum(),

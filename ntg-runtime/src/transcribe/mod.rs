@@ -28,12 +28,15 @@ mod reduce;
 pub(crate) mod rows;
 mod scale;
 pub(crate) mod shape;
+mod singular;
 pub(crate) mod slots;
 mod tables;
 pub(crate) mod times;
 
 pub use error::SetupError;
 pub use evaluate::Workspace;
+pub use singular::Singular;
+pub(crate) use singular::singular;
 pub use tables::interpolants;
 
 use crate::nlp::Limits;

@@ -1,0 +1,86 @@
+//! Expressions that are singular at a guess: their value or the factor in their derivative is not
+//! finite there.
+//!
+//! Takes the variables of the guess; evaluates the probes of all kernels at all points. A solve may
+//! still succeed, since the first step leaves the guess; so this is told and stops nothing.
+
+use super::Transcription;
+use super::names;
+use super::node::{Node, NodeWork};
+use ntg_structure::Place;
+use std::fmt;
+
+/// An expression that is singular at the guess.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Singular {
+    /// The expression and where it stands.
+    pub place: Place,
+    /// The first point at which it is: "phase `covert`, t = 12.5 s (tau = 0.25)"; empty without one.
+    pub point: String,
+    /// At how many points and members.
+    pub count: usize,
+}
+
+impl fmt::Display for Singular {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { place, point, count } = self;
+        write!(f, "`{}` (line {}, column {}) is singular at the guess", place.text, place.line, place.column)?;
+        if !point.is_empty() {
+            write!(f, ", {point}")?;
+        }
+        match count {
+            0 | 1 => Ok(()),
+            more => write!(f, " and {} more", more - 1),
+        }
+    }
+}
+
+/// Every expression that is singular for these variables, in the order in which they are evaluated.
+pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
+    let mut found: Vec<Singular> = vec![];
+    if this.model.structure.kernels.iter().all(|kernel| kernel.probes.is_empty()) {
+        return found;
+    }
+    for group in &this.elements.batches {
+        let batch = &group.batch;
+        let mut work = batch.work();
+        batch.values(this.problem, &this.model.tables, x, &mut work);
+        let point =
+            |element: usize| names::point(&this.model.structure, &this.model.layout, &batch.sites[element].point, x);
+        in_node(this, &batch.node, &work.node, &point, &mut found);
+    }
+    found
+}
+
+/// Adds what is singular in a kernel and in the reductions below it.
+fn in_node(
+    this: &Transcription,
+    node: &Node,
+    work: &NodeWork,
+    point: &dyn Fn(usize) -> String,
+    found: &mut Vec<Singular>,
+) {
+    for (edge, below) in node.edges.iter().zip(&work.edges) {
+        in_node(this, &edge.child, &below.child, point, found);
+    }
+    let places = &this.model.structure.kernels[node.kernel].probes;
+    let lanes = node.lanes();
+    if places.is_empty() || lanes == 0 {
+        return;
+    }
+    let mut probes = vec![0.0; places.len() * lanes];
+    this.problem.probes(node.kernel, lanes, &work.inputs, &this.model.tables, &mut probes);
+    for (place, values) in places.iter().zip(probes.chunks_exact(lanes)) {
+        let singular: Vec<usize> = (0..lanes).filter(|lane| !values[*lane].is_finite()).collect();
+        let Some(first) = singular.first() else { continue };
+        match found.iter_mut().find(|known| known.place == *place) {
+            // The value and the derivative of one expression have a probe each.
+            Some(known) => known.count = known.count.max(singular.len()),
+            None => found.push(Singular {
+                place: place.clone(),
+                point: point(first % node.elements),
+                count: singular.len(),
+            }),
+        }
+    }
+}
