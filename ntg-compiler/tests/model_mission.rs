@@ -208,7 +208,7 @@ fn a_family_of_agents_stays_one_and_meets_in_temporal() {
         minimize end(uav[1]) / 1 [s] + sum(i in 1 .. n, integral(uav[i], x)) / 1 [km*s];
         temporal {
             for i in 1 .. n - 1 { end(uav[i]) == end(uav[i + 1]); }
-            start(looker) - uav[2].T in 30 .. 60 [s];
+            start(looker) - uav[2].T in -600 .. -300 [s];
             final(looker.look, x) >= initial(uav[2], x);
         }
         guess { for i in 1 .. n { start(uav[i]) = 10 [s] * i; uav[i].x = from[i] * (1 - tau); } duration(looker.look) = 1 [s]; }

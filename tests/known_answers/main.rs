@@ -10,4 +10,5 @@ mod fleet;
 mod flight;
 mod missile;
 mod oscillator;
+mod phases;
 mod support;

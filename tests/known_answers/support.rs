@@ -43,10 +43,18 @@ impl Shipped {
             assert_eq!(text.matches(old).count(), 1, "`{old}` must stand once in specs/{name}.ntg");
             text = text.replace(old, new);
         }
-        let source = Source::new(format!("specs/{name}.ntg"), text);
-        let compiled = ntg_compiler::compile(&source, &BesideSpecs);
+        Self::compiled(&Source::new(format!("specs/{name}.ntg"), text))
+    }
+
+    /// A spec of a test's own.
+    pub(crate) fn text(text: &str) -> Self {
+        Self::compiled(&Source::new("test.ntg", text))
+    }
+
+    fn compiled(source: &Source) -> Self {
+        let compiled = ntg_compiler::compile(source, &BesideSpecs);
         let compiled = compiled.unwrap_or_else(|found| {
-            panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n"))
+            panic!("{}", found.iter().map(|d| d.render(source)).collect::<Vec<_>>().join("\n"))
         });
         Self(Interpreted::new(&compiled.program))
     }
@@ -60,6 +68,17 @@ impl Shipped {
         let si: Vec<f64> = values.iter().map(|value| value * factor).collect();
         self.0.set(name, &si).unwrap_or_else(|error| panic!("{error}"));
         self
+    }
+
+    /// The problem itself.
+    pub(crate) fn problem(&self) -> &dyn Problem {
+        &self.0
+    }
+
+    /// A named expression of a solution.
+    #[track_caller]
+    pub(crate) fn signal(&self, report: &Report, name: &str) -> Signal<'_> {
+        report.solution.signal(&self.0, name).unwrap_or_else(|| panic!("nothing is called {name}"))
     }
 
     /// Solves from a guess; the solve must succeed.

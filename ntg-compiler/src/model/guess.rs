@@ -129,9 +129,10 @@ impl<'a> Elaborator<'a> {
         }
         let finding = Diagnostic::new(Code::UnknownName, last.name.span, format!("unknown name `{name}`"));
         let names = super::scope::visible(&self.scopes, inner.scope);
-        let finding = match nearest(name, names.iter().map(|(name, _)| *name)) {
-            Some(near) => finding.help(format!("did you mean `{near}`?")),
-            None => finding.help("guess outputs, variables, durations and start times"),
+        let finding = match (self.path_to(name), nearest(name, names.iter().map(|(name, _)| *name))) {
+            (Some(path), _) => finding.help(format!("it belongs to `{path}`: write `{path}.{name}`")),
+            (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
+            (None, None) => finding.help("guess outputs, variables, durations and start times"),
         };
         self.report(finding);
         None

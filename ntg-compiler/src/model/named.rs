@@ -76,13 +76,15 @@ impl<'a> Elaborator<'a> {
             nodes.into_iter().all(|node| !self.kinds(node).meets(Kind::POINT))
         };
         let in_family = along.first().is_some_and(|(cx, ..)| cx.phase.is_some());
-        if numbers && !shared && (same || own.is_some()) && !in_family {
+        if numbers && !shared && (same || own.is_some()) && !(in_family && own.is_some()) {
             let outer = match own {
                 Some(phase) => self.phase_context(phase, Allow::All, Point::Nowhere),
                 None => self.agent_context(agent, Allow::All),
             };
             if let Some((cx, over, value)) = self.in_context(&outer, definition)
                 && value.is_sound()
+                // What depends on the member of a family of phases is no single number.
+                && (!in_family || along.iter().all(|(_, _, member)| member.node == value.node))
             {
                 self.push_named(definition, (agent, &cx, over), &value, shown);
                 return;

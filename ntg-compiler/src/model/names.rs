@@ -14,7 +14,7 @@ use super::suggest::nearest;
 use super::value::{Flaw, Misplaced, Value, What};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{Path, Segment};
+use crate::syntax::ast::{Ident, Path, Segment};
 
 impl<'a> Elaborator<'a> {
     /// The meaning of a path as a value.
@@ -82,12 +82,47 @@ impl<'a> Elaborator<'a> {
             let help = format!("`{text}` is an index: it has a value only inside its `for`, its sum or its family");
             return self.refuse(finding.label(*bound, "bound here").help(help), segment.span);
         }
-        let finding = match nearest(text, names.iter().copied()) {
-            Some(near) => finding.help(format!("did you mean `{near}`?")),
-            None if names.is_empty() => finding.help("nothing is declared here"),
-            None => finding.help(format!("known names are {}", listed(&names))),
+        let finding = match (self.elsewhere(text), nearest(text, names.iter().copied())) {
+            (Some(help), _) => finding.help(help),
+            (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
+            (None, None) if names.is_empty() => finding.help("nothing is declared here"),
+            (None, None) => finding.help(format!("known names are {}", listed(&names))),
         };
         self.refuse(finding, segment.span)
+    }
+
+    /// What to write for a name that an agent or phase declares.
+    fn elsewhere(&self, name: &str) -> Option<String> {
+        let path = self.path_to(name)?;
+        let (_, scope) = self.declared_within(name)?;
+        Some(match self.scopes[scope].names[name].entity {
+            Entity::Output => {
+                format!(
+                    "it is an output of `{path}`: write `initial({path}, {name})`, `final({path}, {name})` or `integral({path}, {name})`"
+                )
+            }
+            _ => format!("it belongs to `{path}`: write `{path}.{name}`"),
+        })
+    }
+
+    /// The path of the first agent or phase that declares a name, with the indices of its families.
+    pub(super) fn path_to(&self, name: &str) -> Option<String> {
+        self.declared_within(name).map(|(path, _)| path)
+    }
+
+    fn declared_within(&self, name: &str) -> Option<(String, ScopeId)> {
+        let scope = (1..self.scopes.len()).find(|scope| self.scopes[*scope].names.contains_key(name))?;
+        let inner = &self.scopes[scope];
+        let segment = |name: &Ident, scope: ScopeId| match self.scopes[scope].index {
+            Some(index) => format!("{}[{}]", name.text, index.text),
+            None => name.text.clone(),
+        };
+        let agent =
+            inner.agent.and_then(|agent| Some(segment(&self.agents[agent].item?.name, self.agents[agent].scope)));
+        let phase =
+            inner.phase.and_then(|phase| Some(segment(&self.phases[phase].item?.name, self.phases[phase].scope)));
+        let path = agent.into_iter().chain(phase).collect::<Vec<_>>().join(".");
+        (!path.is_empty()).then_some((path, scope))
     }
 
     fn entity(&mut self, cx: &Context<'a>, entity: Entity, segment: &'a Segment, span: Span) -> Value {

@@ -106,7 +106,8 @@ impl Elaborator<'_> {
             return;
         }
         let (Some(miss), Some(first)) = (rest.right, conditions.basis.first()) else { return };
-        if !close(miss, 0.0, scale.max(size)) {
+        // Values that single conditions fix were held against the others before.
+        if !close(miss, 0.0, scale.max(size)) && !self.has_failed() {
             let message = "boundary conditions contradict one another";
             let finding = Diagnostic::new(Code::Contradiction, row.span, message)
                 .label(row.span, "the others leave it another value")
