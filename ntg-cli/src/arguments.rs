@@ -75,6 +75,12 @@ pub(crate) enum Command {
     Plot(crate::plot::Arguments),
     Report(crate::report::Arguments),
     Sweep(crate::sweep::Arguments),
+    /// Start the language server on standard input and output; editors run `ntg lsp`.
+    ///
+    /// Example, in Helix's languages.toml:
+    ///   language-server.ntg = { command = "ntg", args = ["lsp"] }
+    #[command(verbatim_doc_comment)]
+    Lsp,
     /// Print a script that completes the command's words in a shell.
     ///
     /// Examples:

@@ -42,7 +42,7 @@ fn check(read: Result<(Source, BesideSpec), Failure>) -> Checked {
             Checked { name: source.name.clone(), problem, found: Some((source, found)), unread: None }
         }
         Err(Failure::NotText(source, finding)) => {
-            Checked { name: source.name.clone(), problem: None, found: Some((source, vec![finding])), unread: None }
+            Checked { name: source.name.clone(), problem: None, found: Some((source, vec![*finding])), unread: None }
         }
         Err(Failure::Unread { name, message }) => Checked { name, problem: None, found: None, unread: Some(message) },
     }

@@ -26,7 +26,7 @@ pub(crate) enum Failure {
     /// There is no such file, or it may not be read.
     Unread { name: String, message: String },
     /// It is not UTF-8; the text has a sign for every byte that is none.
-    NotText(Source, Diagnostic),
+    NotText(Source, Box<Diagnostic>),
 }
 
 impl Failure {
@@ -34,7 +34,7 @@ impl Failure {
     pub(crate) fn show(&self) {
         match self {
             Self::Unread { message, .. } => eprintln!("error: {message}"),
-            Self::NotText(source, finding) => show(source, std::iter::once(finding)),
+            Self::NotText(source, finding) => show(source, std::iter::once(&**finding)),
         }
     }
 }
@@ -72,7 +72,7 @@ fn not_text(name: String, error: &FromUtf8Error) -> Failure {
     let span = Span::new(at, at + char::REPLACEMENT_CHARACTER.len_utf8());
     let message = format!("this is not UTF-8 text: byte 0x{byte:02x}");
     let finding = Diagnostic::new(Code::UnknownCharacter, span, message).help("save the file in the encoding UTF-8");
-    Failure::NotText(source, finding)
+    Failure::NotText(source, Box::new(finding))
 }
 
 /// Reads and compiles a spec. Findings go to standard error; `None` when there are errors.

@@ -11,6 +11,7 @@ mod explain;
 mod files;
 mod fmt;
 mod guess;
+mod lsp;
 mod new;
 mod plot;
 mod report;
@@ -57,6 +58,7 @@ fn main() -> ExitCode {
         Command::Completions(arguments) => completions::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
+        Command::Lsp => lsp::run(),
         Command::New(arguments) => new::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),

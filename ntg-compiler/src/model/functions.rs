@@ -48,7 +48,8 @@ enum Rule {
     SmoothMax,
 }
 
-const BUILTINS: &[Builtin] = &[
+/// Every function of the language.
+pub(super) const BUILTINS: &[Builtin] = &[
     Builtin { name: "sqrt", rule: Rule::Root },
     Builtin { name: "exp", rule: Rule::Pure(Unary::Exp) },
     Builtin { name: "log", rule: Rule::Pure(Unary::Log) },

@@ -38,6 +38,7 @@ mod table_data;
 mod table_report;
 mod tables;
 mod time;
+pub mod tools;
 mod unitless;
 mod units;
 mod value;

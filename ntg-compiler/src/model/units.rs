@@ -22,7 +22,7 @@ pub(super) struct Quantity {
 }
 
 /// A symbol, SI units in one of it, exponents of kg, m, s, A, K, mol, cd.
-type Symbol = (&'static str, f64, [i8; 7]);
+pub(super) type Symbol = (&'static str, f64, [i8; 7]);
 
 const PI: f64 = std::f64::consts::PI;
 const ANGLE: [i8; 7] = [0, 0, 0, 0, 0, 0, 0];
@@ -43,7 +43,7 @@ const VOLTAGE: [i8; 7] = [1, 2, -3, -1, 0, 0, 0];
 
 /// Every symbol. Values: the SI brochure (BIPM, 9th edition); international foot, yard, mile,
 /// nautical mile and pound; conventional standard atmosphere; IAU astronomical unit.
-const SYMBOLS: &[Symbol] = &[
+pub(super) const SYMBOLS: &[Symbol] = &[
     ("rad", 1.0, ANGLE),
     ("mrad", 1e-3, ANGLE),
     ("deg", PI / 180.0, ANGLE),

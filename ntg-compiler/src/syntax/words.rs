@@ -3,7 +3,7 @@
 //! `grammar.pest` holds the same list once more, because a grammar cannot ask; a test compares them.
 
 /// Words that begin a declaration and never an expression.
-pub(crate) const ITEM_WORDS: &[&str] = &[
+pub const ITEM_WORDS: &[&str] = &[
     "agent",
     "collocation",
     "const",
@@ -25,13 +25,13 @@ pub(crate) const ITEM_WORDS: &[&str] = &[
 ];
 
 /// Words with a meaning in expressions, some of which also begin a declaration.
-pub(crate) const EXPRESSION_WORDS: &[&str] = &[
+pub const EXPRESSION_WORDS: &[&str] = &[
     "der", "duration", "end", "final", "for", "in", "initial", "integral", "partial", "pi", "prod", "start", "sum",
     "t", "tau",
 ];
 
 /// Words kept free for later versions of the language.
-pub(crate) const LATER_WORDS: &[&str] = &["at", "if", "import", "piecewise", "scale", "soft", "unit", "use"];
+pub const LATER_WORDS: &[&str] = &["at", "if", "import", "piecewise", "scale", "soft", "unit", "use"];
 
 /// Words that Rust refuses as names even in their raw form.
 pub(crate) const NEVER_NAMES: &[&str] = &["Self", "crate", "self", "super"];

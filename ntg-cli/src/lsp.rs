@@ -1,0 +1,13 @@
+//! `ntg lsp`: the language server.
+
+use crate::Exit;
+
+pub(crate) fn run() -> Exit {
+    match ntg_lsp::run() {
+        Ok(()) => Exit::Done,
+        Err(error) => {
+            eprintln!("error: {error}");
+            Exit::Bad
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! What may be written next: keywords, declared names, functions, and units inside brackets.
+
+use lsp_types::{CompletionItem, CompletionItemKind};
+use ntg_compiler::model::tools;
+use ntg_compiler::syntax::{EXPRESSION_WORDS, ITEM_WORDS};
+
+use crate::analysis::Analysis;
+use crate::names::Kind;
+
+/// Words that begin a statement though other words of their kind do not.
+const STATEMENT_WORDS: &[&str] = &["duration", "final", "for", "initial", "jump", "start"];
+
+/// The proposals at a byte.
+pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
+    let text = &analysis.source.text;
+    let start = analysis.word(byte).start as usize;
+    if is_in_comment(text, byte) || is_in_string(text, byte) {
+        return vec![];
+    }
+    if is_in_unit(text, start) {
+        return tools::unit_symbols().map(unit).collect();
+    }
+    let mut items = names(analysis, byte);
+    if text[..start].trim_end().ends_with([';', '{', '}']) || text[..start].trim().is_empty() {
+        items.extend(ITEM_WORDS.iter().chain(STATEMENT_WORDS).map(|word| keyword(word)));
+    } else {
+        items.extend(EXPRESSION_WORDS.iter().map(|word| keyword(word)));
+        items.extend(["spline", "gauss", "uniform", "after", "through", "from"].map(keyword));
+    }
+    items.extend(tools::functions().map(function));
+    items
+}
+
+fn names(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
+    let mut items: Vec<CompletionItem> = vec![];
+    for declaration in analysis.names.visible(byte) {
+        let label = &declaration.name.text;
+        let is_named = !matches!(declaration.kind, Kind::Problem | Kind::Term | Kind::Constraint);
+        if is_named && items.iter().all(|item| item.label != *label) {
+            items.push(CompletionItem {
+                label: label.clone(),
+                kind: Some(kind(declaration.kind)),
+                detail: Some(analysis.source.snippet(declaration.statement)),
+                documentation: declaration.doc.clone().map(lsp_types::Documentation::String),
+                ..CompletionItem::default()
+            });
+        }
+    }
+    items
+}
+
+fn kind(kind: Kind) -> CompletionItemKind {
+    match kind {
+        Kind::Problem | Kind::Agent | Kind::Phase => CompletionItemKind::MODULE,
+        Kind::Const => CompletionItemKind::CONSTANT,
+        Kind::Param => CompletionItemKind::PROPERTY,
+        Kind::Variable | Kind::Duration | Kind::Index | Kind::Argument => CompletionItemKind::VARIABLE,
+        Kind::Output => CompletionItemKind::FIELD,
+        Kind::Function | Kind::Table => CompletionItemKind::FUNCTION,
+        Kind::Let | Kind::Term | Kind::Constraint => CompletionItemKind::VALUE,
+    }
+}
+
+fn keyword(word: &str) -> CompletionItem {
+    let detail = explained(word);
+    CompletionItem {
+        label: word.to_owned(),
+        kind: Some(CompletionItemKind::KEYWORD),
+        detail,
+        ..CompletionItem::default()
+    }
+}
+
+fn function(name: &str) -> CompletionItem {
+    let detail = explained(name);
+    CompletionItem {
+        label: name.to_owned(),
+        kind: Some(CompletionItemKind::FUNCTION),
+        detail,
+        ..CompletionItem::default()
+    }
+}
+
+fn unit(symbol: &str) -> CompletionItem {
+    let detail = tools::unit(symbol).map(|(words, factor)| format!("{words}: {factor}"));
+    CompletionItem {
+        label: symbol.to_owned(),
+        kind: Some(CompletionItemKind::UNIT),
+        detail,
+        ..CompletionItem::default()
+    }
+}
+
+/// The text of the statement before a byte.
+fn statement(text: &str, byte: usize) -> &str {
+    let before = &text[..text.floor_char_boundary(byte)];
+    before.rfind([';', '{', '}']).map_or(before, |start| &before[start + 1..])
+}
+
+/// Whether a byte stands in a `//` comment, or in a block comment that began before it.
+pub fn is_in_comment(text: &str, byte: usize) -> bool {
+    let mut rest = &text[..text.floor_char_boundary(byte)];
+    loop {
+        let Some(start) = rest.find("//").into_iter().chain(rest.find("/*")).min() else { return false };
+        let end = if rest[start..].starts_with("//") {
+            rest[start..].find('\n')
+        } else {
+            rest[start + 2..].find("*/").map(|end| end + 4)
+        };
+        match end {
+            Some(end) => rest = &rest[start + end..],
+            None => return true,
+        }
+    }
+}
+
+fn is_in_string(text: &str, byte: usize) -> bool {
+    let line = statement(text, byte).rsplit('\n').next().unwrap_or("");
+    line.matches('"').count() % 2 == 1
+}
+
+/// Whether what stands at a byte is in the brackets of a unit: behind a number or a list, or behind a declared name
+/// and a blank, as everyone writes it.
+pub fn is_in_unit(text: &str, byte: usize) -> bool {
+    let before = statement(text, byte);
+    let Some(open) = before.rfind('[') else { return false };
+    let inside = &before[open + 1..];
+    if inside.contains(']') || inside.contains("..") || inside.contains(" in ") {
+        return false;
+    }
+    let outside = before[..open].trim_end();
+    let word: String = outside
+        .chars()
+        .rev()
+        .take_while(|c| c.is_alphanumeric() || matches!(c, '_' | '.'))
+        .collect::<Vec<_>>()
+        .into_iter()
+        .rev()
+        .collect();
+    let is_number = word.starts_with(|c: char| c.is_ascii_digit());
+    let is_declared = outside.len() < open && !before[..open].contains('=');
+    is_number || is_declared || outside.ends_with(')') || outside.ends_with(']')
+}
+
+/// What a word of the language means, in a line.
+pub fn explained(word: &str) -> Option<String> {
+    let words = match word {
+        "agent" => "`agent uav[i in 1 .. 3] { ... }`: an independent timeline, or a family of them",
+        "phase" => "`phase leg after start { ... }`: a stretch of time with its own splines and constraints",
+        "const" => "`const N = 3;`: known when the spec is compiled",
+        "param" => "`param v_max = 0.25 [km/s];`: a value that a program may change without compiling again",
+        "variable" => "`variable m0 in 1 .. 5 [kg];`: a free number, constant in time",
+        "output" => "`output x, y [km]: spline(order = 5, intervals = 8);`: what moves",
+        "fn" => "`fn blend(u, w) = ...;`: a function, written out where it is applied",
+        "let" => "`let speed [km/s] = hypot(der(x), der(y));`: a named expression, also reported and plotted",
+        "table" => "`table thrust(t [s]) [kN] = linear { 0: 18; 6: 0; }`: data",
+        "continuation" => "`continuation width = (20, 10, 5) [deg];`: a parameter solved for in turn",
+        "duration" => "`duration T in 1 .. 9 [s];`, or `duration(phase)` in an expression",
+        "start" => "`start in 0 .. 600 [s];` in an agent, or `start(phase)` in an expression",
+        "end" => "`end(phase)`: the time at which a phase or agent ends",
+        "initial" => "`initial { ... }`: what holds at the start; `initial(e)`: the value there",
+        "trajectory" => "`trajectory { ... }`: what holds all the way",
+        "final" => "`final { ... }`: what holds at the end; `final(e)`: the value there",
+        "temporal" => "`temporal { ... }`: what belongs to no single point, such as event times",
+        "minimize" => "`minimize fuel [kg]: e;`: a term of the objective; terms add up",
+        "maximize" => "`maximize range: e;`: a term of the objective; terms add up",
+        "collocation" => "`collocation gauss(points = 5);`, `collocation uniform(breakpoints = 41);`",
+        "guess" => "`guess { (x, y) through (0, 0), (1, 5) [km];  T = 9 [s]; }`: where to begin",
+        "continuous" => "`continuous x up to 1;`: how smoothly phases meet",
+        "jump" => "`jump m;`: an output that is not continuous at the start of the phase",
+        "der" => "`der(e)`, `der(e, 2)`: derivative in real time, by the chain rule",
+        "partial" => "`partial(f(s, w), s)`: partial derivative of a function or table",
+        "integral" => "`integral(e)`: over real time",
+        "sum" => "`sum(i in 1 .. N, e)`",
+        "prod" => "`prod(i in 1 .. N, e)`",
+        "for" => "`for i in 1 .. N { ... }`: constraints or guesses for every index",
+        "t" => "mission time",
+        "tau" => "scaled time of the phase, from 0 to 1",
+        "pi" => "3.14159...",
+        "hypot" => "`hypot(a, b, ...)`: sqrt(a^2 + b^2 + ...)",
+        "atan2" => "`atan2(y, x)`: the angle of the point (x, y)",
+        "logistic" => "`logistic(u)`: 1 / (1 + exp(-u))",
+        "softplus" => "`softplus(u)`: log(1 + exp(u))",
+        "smooth_abs" => "`smooth_abs(u, width)`: hypot(u, width)",
+        "smooth_max" => "`smooth_max(u, v, width)`",
+        "spline" => "`spline(order = 5, intervals = 8, smoothness = 3)`, or `knots = (0, 0.2, 1)`",
+        "gauss" => "`gauss(points = 5)`: Gauss-Legendre points in every knot interval",
+        "uniform" => "`uniform(breakpoints = 41)`: equally spaced points, trapezoid rule",
+        _ => return None,
+    };
+    Some(words.to_owned())
+}
