@@ -215,7 +215,7 @@ impl<'a, N: Nlp> Core<'a, N> {
         (self.iterations >= self.settings.max_iterations).then_some(Status::IterationLimit)
     }
 
-    /// Lowers the barrier as long as its problem is solved well enough (11.6).
+    /// Lowers the barrier as long as its problem is solved well enough, equation (11.6).
     pub(super) fn lower_barrier(&mut self) -> Option<Status> {
         let last = LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance) * self.unit;
         let (relax, dual) = (self.relaxation(), self.dual());

@@ -1,4 +1,4 @@
-//! The primal-dual direction (docs/maths.md, sections 11.2 to 11.4).
+//! The primal-dual direction (docs/maths.md, sections 11.2 and 11.3).
 //!
 //! ```text
 //! A dx = -grad L + J^T q,   A = H + J^T Sigma J + shift I
@@ -175,7 +175,7 @@ impl<N: Nlp> Core<'_, N> {
         sum.is_finite()
     }
 
-    /// Moves the right-hand sides of the border's rows to where they belong (11.4).
+    /// Moves the right-hand sides of the border's rows to where they belong, equation (11.5).
     fn split_border(&mut self) {
         let step = &mut self.step;
         for (border, &row) in self.system.order.bordered.iter().enumerate() {
@@ -184,7 +184,7 @@ impl<N: Nlp> Core<'_, N> {
         }
     }
 
-    /// The method of multipliers for the equalities (11.5): the residual that the proximal term leaves
+    /// The method of multipliers for the equalities, equation (11.4): the residual that the proximal term leaves
     /// is removed with the same factors.
     fn refine_equalities(&mut self) {
         let n = self.x.len() - 1;
@@ -216,7 +216,7 @@ impl<N: Nlp> Core<'_, N> {
         }
     }
 
-    /// Multipliers of equalities by least squares (11.7): those that come nearest to a stationary
+    /// Multipliers of equalities by least squares (section 11.7): those that come nearest to a stationary
     /// point, given the multipliers of sides. Before: derivatives at the present point.
     pub(super) fn estimate_multipliers(&mut self) {
         self.sides.y.fill(0.0);

@@ -1,4 +1,4 @@
-//! Elastic bounds: an exact penalty instead of the filter (docs/maths.md, section 11.7).
+//! Elastic bounds: an exact penalty instead of the filter (docs/maths.md, section 11.6).
 //!
 //! ```text
 //! minimise   f(x) + rho sum n - mu sum (ln w + ln n),     sign (value - bound) + n = w

@@ -1,5 +1,5 @@
 //! The search along a direction by the filter, with second-order corrections
-//! (docs/maths.md, section 11.6).
+//! (docs/maths.md, section 11.5).
 //!
 //! Reference: A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), sections 2.3 and 2.4, whose
 //! constants these are.
