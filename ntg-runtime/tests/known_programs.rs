@@ -4,9 +4,9 @@
 mod sqp_support;
 
 use ntg_runtime::settings::Settings;
-use ntg_runtime::{method, newton};
 use ntg_runtime::sqp::{Outcome, solve};
 use ntg_runtime::status::Status;
+use ntg_runtime::{method, newton};
 use sqp_support::{FREE, Jet, Program};
 
 const INF: f64 = f64::INFINITY;
@@ -19,7 +19,11 @@ fn solved(program: &Program, start: &[f64], objective: f64) -> Outcome {
     ] {
         println!("{name}: iterations {} {}", outcome.iterations, outcome.status);
         assert_eq!(outcome.status, Status::Solved, "{name}: {:?} after {}", outcome.residuals, outcome.iterations);
-        assert!((outcome.objective - objective).abs() <= 1e-6 * (1.0 + objective.abs()), "{name}: {}", outcome.objective);
+        assert!(
+            (outcome.objective - objective).abs() <= 1e-6 * (1.0 + objective.abs()),
+            "{name}: {}",
+            outcome.objective
+        );
     }
     let outcome = solve(program, start, &Settings::default());
     if std::env::var_os("SQP_TRACE").is_some() {
