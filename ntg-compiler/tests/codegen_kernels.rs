@@ -59,7 +59,7 @@ fn numbers_are_exact_and_signed() {
     let text = values(&program);
     insta::assert_snapshot!(text);
     let written: Vec<f64> =
-        text.lines().filter_map(|line| line.split_once("pow(")?.1.split_once(',')?.0.parse().ok()).collect();
+        text.lines().filter_map(|line| line.split_once("splat(simd, ")?.1.split_once(')')?.0.parse().ok()).collect();
     assert_eq!(written, numbers);
 }
 

@@ -1,13 +1,16 @@
 //! Executes a tape over lanes, a chunk of lanes at a time.
+//!
+//! Each operation runs over the packs of a chunk, with the same functions as generated code, so
+//! that both give the same bits.
 
 use ntg_compiler::expr::{Binary, Unary};
-use ntg_runtime::math;
+use ntg_runtime::math::{self, Pack, Simd, Task, Work, dispatch};
 use ntg_splines::Table;
 
 use crate::tape::{Operation, Step, Tape};
 
-/// Lanes in a chunk: a register is then 512 bytes, and some sixty registers fill a first-level
-/// cache of 32 KiB.
+/// Lanes in a chunk, a multiple of the lanes of every pack: a register is then 512 bytes, and some
+/// sixty registers fill a first-level cache of 32 KiB.
 const CHUNK: usize = 64;
 
 /// The most arguments a table can have here without allocation.
@@ -52,9 +55,7 @@ pub(crate) fn run(
         for (register, column) in &tape.inputs {
             registers[register * CHUNK..][..count].copy_from_slice(input.column(*column, from, count));
         }
-        for step in &tape.steps {
-            execute(step, count, tables, registers);
-        }
+        dispatch(Chunk { tape, count, tables, registers });
         let mut results = tape.results.iter();
         for part in parts.iter_mut() {
             for column in part.chunks_exact_mut(input.lanes) {
@@ -66,91 +67,120 @@ pub(crate) fn run(
     }
 }
 
-fn execute(step: &Step, count: usize, tables: &[Table], registers: &mut [f64]) {
-    let to = step.to;
-    match &step.operation {
-        Operation::Unary(op, a) => unary(*op, registers, to, *a, count),
-        Operation::Binary(op, a, b) => binary(*op, registers, to, (*a, *b), count),
-        Operation::Powi(a, n) => map1(registers, to, *a, count, |x| math::powi(x, *n)),
-        Operation::Select(c, a, b) => {
-            for lane in 0..count {
-                let at = |register: &usize| registers[register * CHUNK + lane];
-                registers[to * CHUNK + lane] = math::select(at(c), at(a), at(b));
-            }
-        }
-        Operation::Table { table, derivative, args } => {
-            for lane in 0..count {
-                let mut point = [0.0; MOST_ARGUMENTS];
-                for (x, register) in point.iter_mut().zip(args) {
-                    *x = registers[register * CHUNK + lane];
-                }
-                registers[to * CHUNK + lane] = tables[*table].eval(&point[..args.len()], derivative);
-            }
+/// The operations of a tape over the lanes of a chunk.
+struct Chunk<'a> {
+    tape: &'a Tape,
+    count: usize,
+    tables: &'a [Table],
+    registers: &'a mut [f64],
+}
+
+impl Task for Chunk<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { tape, count, tables, registers } = self;
+        for step in &tape.steps {
+            simd.vectorize(Execution { simd, step, count, tables, registers: &mut *registers });
         }
     }
 }
 
-/// Chooses the operation once for all lanes.
-fn unary(op: Unary, registers: &mut [f64], to: usize, a: usize, count: usize) {
-    macro_rules! choose {
-        ($($name:ident => $function:expr),+ $(,)?) => {
-            match op { $(Unary::$name => map1(registers, to, a, count, $function)),+ }
-        };
-    }
-    choose! {
-        Neg => |x: f64| -x,
-        Sqrt => math::sqrt,
-        Exp => math::exp,
-        Log => math::log,
-        Sin => math::sin,
-        Cos => math::cos,
-        Tan => math::tan,
-        Asin => math::asin,
-        Acos => math::acos,
-        Atan => math::atan,
-        Sinh => math::sinh,
-        Cosh => math::cosh,
-        Tanh => math::tanh,
-        Abs => math::abs,
-        Sign => math::sign,
-        Logistic => math::logistic,
-        Softplus => math::softplus,
+/// One operation over the lanes of a chunk; lanes beyond `count` up to the end of a pack may hold anything.
+struct Execution<'a, S> {
+    simd: S,
+    step: &'a Step,
+    count: usize,
+    tables: &'a [Table],
+    registers: &'a mut [f64],
+}
+
+impl<S: Simd> Work for Execution<'_, S> {
+    #[inline(always)]
+    fn run(mut self) {
+        match &self.step.operation {
+            Operation::Unary(op, a) => self.unary(*op, *a),
+            Operation::Binary(op, a, b) => self.binary(*op, *a, *b),
+            Operation::Powi(a, n) => self.map([*a], |[x]| math::powi(x, *n)),
+            Operation::Select(c, a, b) => self.map([*c, *a, *b], |[c, a, b]| math::select(c, a, b)),
+            Operation::Table { table, args, results } => self.table(*table, args, results),
+        }
     }
 }
 
-/// Chooses the operation once for all lanes.
-fn binary(op: Binary, registers: &mut [f64], to: usize, operands: (usize, usize), count: usize) {
-    macro_rules! choose {
-        ($($name:ident => $function:expr),+ $(,)?) => {
-            match op { $(Binary::$name => map2(registers, to, operands, count, $function)),+ }
-        };
+impl<S: Simd> Execution<'_, S> {
+    /// Chooses the operation once for all lanes.
+    #[inline(always)]
+    fn unary(&mut self, op: Unary, a: usize) {
+        macro_rules! choose {
+            ($($name:ident => $function:expr),+ $(,)?) => {
+                match op { $(Unary::$name => self.map([a], |[x]| $function(x))),+ }
+            };
+        }
+        choose! {
+            Neg => |x: Pack<S>| -x,
+            Sqrt => math::sqrt,
+            Exp => math::exp,
+            Log => math::log,
+            Sin => math::sin,
+            Cos => math::cos,
+            Tan => math::tan,
+            Asin => math::asin,
+            Acos => math::acos,
+            Atan => math::atan,
+            Sinh => math::sinh,
+            Cosh => math::cosh,
+            Tanh => math::tanh,
+            Abs => math::abs,
+            Sign => math::sign,
+            Logistic => math::logistic,
+            Softplus => math::softplus,
+        }
     }
-    choose! {
-        Add => |a: f64, b: f64| a + b,
-        Sub => |a: f64, b: f64| a - b,
-        Mul => |a: f64, b: f64| a * b,
-        Div => |a: f64, b: f64| a / b,
-        Pow => math::pow,
-        Atan2 => math::atan2,
-        Hypot => math::hypot,
-        Min => math::min,
-        Max => math::max,
-        LessEq => math::less_eq,
-    }
-}
 
-/// `to = f(a)`; the register `to` may be `a` itself.
-fn map1(registers: &mut [f64], to: usize, a: usize, count: usize, f: impl Fn(f64) -> f64) {
-    let (to, a) = (to * CHUNK, a * CHUNK);
-    for lane in 0..count {
-        registers[to + lane] = f(registers[a + lane]);
+    /// Chooses the operation once for all lanes.
+    #[inline(always)]
+    fn binary(&mut self, op: Binary, a: usize, b: usize) {
+        macro_rules! choose {
+            ($($name:ident => $function:expr),+ $(,)?) => {
+                match op { $(Binary::$name => self.map([a, b], |[a, b]| $function(a, b))),+ }
+            };
+        }
+        choose! {
+            Add => |a: Pack<S>, b| a + b,
+            Sub => |a: Pack<S>, b| a - b,
+            Mul => |a: Pack<S>, b| a * b,
+            Div => |a: Pack<S>, b| a / b,
+            Pow => math::pow,
+            Atan2 => math::atan2,
+            Hypot => math::hypot,
+            Min => math::min,
+            Max => math::max,
+            LessEq => math::less_eq,
+        }
     }
-}
 
-/// `to = f(a, b)`; the register `to` may be one of the operands.
-fn map2(registers: &mut [f64], to: usize, (a, b): (usize, usize), count: usize, f: impl Fn(f64, f64) -> f64) {
-    let (to, a, b) = (to * CHUNK, a * CHUNK, b * CHUNK);
-    for lane in 0..count {
-        registers[to + lane] = f(registers[a + lane], registers[b + lane]);
+    /// `to = f(operands)`, pack by pack; the register `to` may be one of the operands.
+    #[inline(always)]
+    fn map<const N: usize>(&mut self, operands: [usize; N], f: impl Fn([Pack<S>; N]) -> Pack<S>) {
+        const { assert!(CHUNK.is_multiple_of(S::LANES)) };
+        let to = self.step.to * CHUNK;
+        for lane in (0..self.count).step_by(S::LANES) {
+            let x = operands.map(|register| Pack::load(self.simd, &self.registers[register * CHUNK + lane..]));
+            f(x).store(&mut self.registers[to + lane..]);
+        }
+    }
+
+    #[inline(always)]
+    fn table(&mut self, table: usize, args: &[usize], results: &[(Vec<u8>, usize)]) {
+        for lane in 0..self.count {
+            let mut point = [0.0; MOST_ARGUMENTS];
+            for (x, register) in point.iter_mut().zip(args) {
+                *x = self.registers[register * CHUNK + lane];
+            }
+            let at = self.tables[table].at(&point[..args.len()]);
+            for (derivative, to) in results {
+                self.registers[to * CHUNK + lane] = at.derivative(derivative);
+            }
+        }
     }
 }

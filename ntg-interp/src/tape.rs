@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use ntg_compiler::expr::{Binary, Dag, Node, NodeId, Unary};
 
-/// One operation: it reads registers and writes the register `to`.
+/// One operation: it reads registers and writes the register `to`, or several for a look-up.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
     pub(crate) to: usize,
@@ -22,7 +22,12 @@ pub(crate) enum Operation {
     Binary(Binary, usize, usize),
     Powi(usize, i32),
     Select(usize, usize, usize),
-    Table { table: usize, derivative: Vec<u8>, args: Vec<usize> },
+    /// Each derivative goes to a register of its own.
+    Table {
+        table: usize,
+        args: Vec<usize>,
+        results: Vec<(Vec<u8>, usize)>,
+    },
 }
 
 /// A straight-line program.
@@ -58,13 +63,36 @@ impl Tape {
             tape.registers += 1;
         }
         for (position, id) in schedule.iter().enumerate() {
-            let Some(operation) = operation(dag.node(*id), |operand| register[&operand]) else { continue };
-            let to = free.pop().unwrap_or_else(|| {
-                tape.registers += 1;
-                tape.registers - 1
-            });
-            register.insert(*id, to);
-            tape.steps.push(Step { to, operation });
+            if dag.is_leaf(*id) {
+                continue;
+            }
+            let mut fresh = || {
+                free.pop().unwrap_or_else(|| {
+                    tape.registers += 1;
+                    tape.registers - 1
+                })
+            };
+            if let Node::Table { table, args, .. } = dag.node(*id) {
+                // One look-up gives all derivatives at the same place, when the first is needed.
+                if !register.contains_key(id) {
+                    let results: Vec<(Vec<u8>, usize)> =
+                        (together(dag, &schedule, (*table, args)).map(|(other, derivative)| {
+                            let to = fresh();
+                            register.insert(other, to);
+                            (derivative, to)
+                        }))
+                        .collect();
+                    let args = args.iter().map(|arg| register[arg]).collect();
+                    tape.steps.push(Step {
+                        to: register[id],
+                        operation: Operation::Table { table: *table as usize, args, results },
+                    });
+                }
+            } else if let Some(operation) = operation(dag.node(*id), |operand| register[&operand]) {
+                let to = fresh();
+                register.insert(*id, to);
+                tape.steps.push(Step { to, operation });
+            }
             let mut operands = dag.node(*id).operands();
             operands.sort_unstable();
             operands.dedup();
@@ -92,20 +120,29 @@ fn last_uses(dag: &Dag, schedule: &[NodeId], roots: &[NodeId]) -> HashMap<NodeId
     last
 }
 
+/// The derivatives of a table at the same arguments, in the order of the schedule.
+fn together<'a>(
+    dag: &'a Dag,
+    schedule: &'a [NodeId],
+    (table, args): (u32, &'a [NodeId]),
+) -> impl Iterator<Item = (NodeId, Vec<u8>)> {
+    schedule.iter().filter_map(move |id| match dag.node(*id) {
+        Node::Table { table: t, derivative, args: a } if (*t, &a[..]) == (table, args) => {
+            Some((*id, derivative.clone()))
+        }
+        _ => None,
+    })
+}
+
 fn operation(node: &Node, register: impl Fn(NodeId) -> usize) -> Option<Operation> {
     Some(match node {
-        Node::Const(_) | Node::Input(_) => return None,
+        Node::Const(_) | Node::Input(_) | Node::Table { .. } => return None,
         Node::Unary(op, a) => Operation::Unary(*op, register(*a)),
         Node::Binary(op, a, b) => Operation::Binary(*op, register(*a), register(*b)),
         Node::Powi(a, n) => Operation::Powi(register(*a), *n),
         Node::Select { condition, then, otherwise } => {
             Operation::Select(register(*condition), register(*then), register(*otherwise))
         }
-        Node::Table { table, derivative, args } => Operation::Table {
-            table: *table as usize,
-            derivative: derivative.clone(),
-            args: args.iter().map(|arg| register(*arg)).collect(),
-        },
         // Lowering has turned every reduction into an input.
         Node::Reduce { .. } => return None,
     })

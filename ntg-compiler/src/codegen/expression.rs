@@ -35,11 +35,24 @@ struct Expression {
 pub(super) trait Names {
     /// The name of a node that is not to be written out in place.
     fn name(&self, id: NodeId) -> Option<&Ident>;
+
+    /// Whether a node is one number for all lanes.
+    fn is_number(&self, id: NodeId) -> bool;
 }
 
 /// The expression of a node; operands without a name are written out in place.
 pub(super) fn write(dag: &Dag, id: NodeId, names: &impl Names) -> TokenStream {
     expression(dag, id, names).tokens
+}
+
+/// A node as a pack: its name, or its expression.
+pub(super) fn packed(dag: &Dag, id: NodeId, names: &impl Names) -> TokenStream {
+    let tokens = operand(dag, id, names).tokens;
+    if names.is_number(id) {
+        quote! { Pack::splat(simd, #tokens) }
+    } else {
+        tokens
+    }
 }
 
 /// A node itself. Recursion ends at named operands, a few operations below.
@@ -60,20 +73,34 @@ fn expression(dag: &Dag, id: NodeId, names: &impl Names) -> Expression {
             None => call(binary(*op), &[*a, *b], dag, names),
         },
         Node::Powi(x, n) => {
+            if let (2 | 3, Some(x)) = (n, names.name(*x)) {
+                let cube = (*n == 3).then(|| quote! { * #x });
+                return Expression { tokens: quote! { #x * #x #cube }, level: Level::Product };
+            }
             let x = operand(dag, *x, names).tokens;
             let n = i64::from(*n).to_rust();
             atom(quote! { math::powi(#x, #n) })
         }
         Node::Select { condition, then, otherwise } => call("select", &[*condition, *then, *otherwise], dag, names),
-        Node::Table { table, derivative, args } => {
-            let table = Literal::u32_unsuffixed(*table);
-            let orders = derivative.iter().map(|order| Literal::u8_unsuffixed(*order));
-            let args = args.iter().map(|x| operand(dag, *x, names).tokens);
-            atom(quote! { tables[#table].eval(&[#(#args),*], &[#(#orders),*]) })
-        }
-        // Inputs have names, and no kernel holds a reduction: its result is an input.
-        Node::Input(_) | Node::Reduce { .. } => atom(quote! { f64::NAN }),
+        // Inputs and look-ups have names, and no kernel holds a reduction: its result is an input.
+        Node::Input(_) | Node::Table { .. } | Node::Reduce { .. } => atom(quote! { f64::NAN }),
     }
+}
+
+/// The look-up of several derivatives of one table at the same arguments: an array of as many.
+pub(super) fn tables(dag: &Dag, ids: &[NodeId], names: &impl Names) -> TokenStream {
+    let nodes = ids.iter().filter_map(|id| match dag.node(*id) {
+        Node::Table { table, derivative, args } => Some((table, derivative, args)),
+        _ => None,
+    });
+    let orders = nodes.clone().map(|(_, derivative, _)| {
+        let orders = derivative.iter().map(|order| Literal::u8_unsuffixed(*order));
+        quote! { [#(#orders),*] }
+    });
+    let Some((table, _, args)) = nodes.clone().next() else { return TokenStream::new() };
+    let table = Literal::u32_unsuffixed(*table);
+    let args = args.iter().map(|x| packed(dag, *x, names));
+    quote! { math::table(simd, &tables[#table], [#(#args),*], [#(#orders),*]) }
 }
 
 /// An operand: its name, or the expression in its place.
@@ -110,9 +137,11 @@ fn atom(tokens: TokenStream) -> Expression {
     Expression { tokens, level: Level::Atom }
 }
 
+/// A call; all arguments are numbers, or all are packs.
 fn call(function: &str, args: &[NodeId], dag: &Dag, names: &impl Names) -> Expression {
     let function = format_ident!("{function}");
-    let args = args.iter().map(|x| operand(dag, *x, names).tokens);
+    let numbers = args.iter().all(|x| names.is_number(*x));
+    let args = args.iter().map(|x| if numbers { operand(dag, *x, names).tokens } else { packed(dag, *x, names) });
     atom(quote! { math::#function(#(#args),*) })
 }
 

@@ -22,7 +22,7 @@ use crate::program::KernelBody;
 const LINE: usize = 6;
 
 /// What is ours in every kernel function.
-const OURS: [&str; 9] = ["z", "w", "tables", "out", "values", "jacobian", "hessian", "math", "f64"];
+const OURS: [&str; 10] = ["simd", "z", "w", "tables", "out", "values", "jacobian", "hessian", "math", "f64"];
 
 /// A kernel's functions, and calls of them from `lanes`.
 pub(super) struct Functions {
@@ -115,11 +115,27 @@ struct Function<'a> {
 #[derive(Default)]
 struct Locals {
     idents: HashMap<NodeId, Ident>, // Looked up, never iterated.
+    numbers: HashSet<NodeId>,       // The same.
+}
+
+impl Locals {
+    /// Notes a node that no input enters; its operands come first.
+    fn add_if_number(&mut self, dag: &Dag, id: NodeId) {
+        let mut number = !matches!(dag.node(id), Node::Input(_) | Node::Table { .. });
+        dag.node(id).for_each_operand(|x| number &= self.numbers.contains(&x));
+        if number {
+            self.numbers.insert(id);
+        }
+    }
 }
 
 impl Names for Locals {
     fn name(&self, id: NodeId) -> Option<&Ident> {
         self.idents.get(&id)
+    }
+
+    fn is_number(&self, id: NodeId) -> bool {
+        self.numbers.contains(&id)
     }
 }
 
@@ -131,6 +147,7 @@ impl<'a> Function<'a> {
         let tables = needed.iter().any(|id| matches!(body.dag.node(*id), Node::Table { .. }));
 
         let mut names = Locals::default();
+        needed.iter().for_each(|id| names.add_if_number(&body.dag, *id));
         let mut inputs = vec![];
         let idents = input_idents(body);
         for id in &needed {
@@ -156,10 +173,10 @@ impl<'a> Function<'a> {
     fn parameters(&self) -> Vec<(Ident, TokenStream)> {
         let array = |length: usize| {
             let length = Literal::usize_unsuffixed(length);
-            quote! { [f64; #length] }
+            quote! { [Pack<S>; #length] }
         };
         let (inputs, rows) = (array(self.body.inputs), array(self.body.values.len()));
-        let mut parameters = vec![(ident("z"), quote! { &#inputs })];
+        let mut parameters = vec![(ident("simd"), quote! { S }), (ident("z"), quote! { &#inputs })];
         if self.outputs.len() > 1 {
             parameters.push((ident("w"), quote! { &#rows }));
         }
@@ -178,24 +195,32 @@ impl<'a> Function<'a> {
         let parameters = self.parameters().into_iter().map(|(name, kind)| quote! { #name: #kind });
         let inputs = self.pattern("z", 0, self.body.inputs);
         let weights = self.pattern("w", self.body.inputs, self.body.values.len());
-        let lets = self.schedule.iter().map(|id| {
-            let (name, value) = (&self.names.idents[id], expression::write(dag, *id, &self.names));
-            quote! { let #name = #value; }
+        let mut done = HashSet::new(); // Asked, never iterated.
+        let lets = self.schedule.iter().filter_map(|id| {
+            let name = &self.names.idents[id];
+            let Some(look_up) = look_up(dag, *id) else {
+                let value = expression::write(dag, *id, &self.names);
+                return Some(quote! { let #name = #value; });
+            };
+            // All derivatives of a table at the same place come from one look-up.
+            let together: Vec<NodeId> =
+                self.schedule.iter().copied().filter(|other| self::look_up(dag, *other) == Some(look_up)).collect();
+            let names = together.iter().map(|id| &self.names.idents[id]);
+            let value = expression::tables(dag, &together, &self.names);
+            done.insert(look_up).then(|| quote! { let [#(#names),*] = #value; })
         });
         let stores = self.outputs.iter().flat_map(|(array, roots)| {
             let array = ident(array);
             roots.iter().enumerate().map(move |(i, root)| {
                 let i = Literal::usize_unsuffixed(i);
-                let value = match self.names.name(*root) {
-                    Some(name) => quote! { #name },
-                    None => expression::write(dag, *root, &self.names),
-                };
+                let value = expression::packed(dag, *root, &self.names);
                 quote! { #array[#i] = #value; }
             })
         });
         quote! {
             #(#[doc = #doc])*
-            pub(super) fn #name(#(#parameters),*) {
+            #[inline(always)]
+            pub(super) fn #name<S: Simd>(#(#parameters),*) {
                 #inputs
                 #weights
                 #(#lets)*
@@ -255,8 +280,16 @@ fn is_operation(dag: &Dag, id: NodeId) -> bool {
     !matches!(dag.node(id), Node::Const(_) | Node::Input(_))
 }
 
+/// Table and arguments of a node that looks a table up.
+fn look_up(dag: &Dag, id: NodeId) -> Option<(u32, &[NodeId])> {
+    match dag.node(id) {
+        Node::Table { table, args, .. } => Some((*table, args)),
+        _ => None,
+    }
+}
+
 /// The operations that are written where they are used: those that are used once, by a result or
-/// by an operation whose line has room for them.
+/// by an operation whose line has room for them. A look-up never is: it may give several results.
 fn in_place(dag: &Dag, operations: &[NodeId], roots: &[NodeId]) -> HashSet<NodeId> {
     let mut uses: HashMap<NodeId, usize> = HashMap::new(); // Looked up, never iterated.
     for id in operations {
@@ -266,13 +299,14 @@ fn in_place(dag: &Dag, operations: &[NodeId], roots: &[NodeId]) -> HashSet<NodeI
         *uses.entry(*root).or_default() += 1;
     }
 
-    let mut in_place: HashSet<NodeId> = roots.iter().copied().filter(|root| uses[root] == 1).collect();
+    let mut in_place: HashSet<NodeId> =
+        roots.iter().copied().filter(|root| uses[root] == 1 && look_up(dag, *root).is_none()).collect();
     let mut length: HashMap<NodeId, usize> = HashMap::new();
     for id in operations {
         let mut line = 1;
         dag.node(*id).for_each_operand(|x| {
             let own = length.get(&x).copied().unwrap_or(0);
-            if own > 0 && uses[&x] == 1 && line + own <= LINE {
+            if own > 0 && uses[&x] == 1 && line + own <= LINE && look_up(dag, x).is_none() {
                 line += own;
                 in_place.insert(x);
             }

@@ -29,16 +29,16 @@ pub(super) fn kernels(program: &Program) -> Kernels {
         let Functions { items: functions, values: of_values, derivatives: of_derivatives, probes: of_probes } =
             function::functions(&name, shape, body);
         items.push(functions);
-        values.push(quote! { #number => lanes::values(lanes, inputs, values, #of_values), });
+        values.push(quote! { #number => lanes::values(simd, point, values, #of_values), });
         derivatives.push(match of_derivatives {
-            Some(call) => quote! { #number => lanes::derivatives(point, out, #call), },
-            None => quote! { #number => lanes::values(point.lanes, point.inputs, out.values, #of_values), },
+            Some(call) => quote! { #number => lanes::derivatives(simd, point, out, #call), },
+            None => quote! { #number => lanes::values(simd, point, out.values, #of_values), },
         });
-        probes.extend(of_probes.map(|call| quote! { #number => lanes::values(lanes, inputs, probes, #call), }));
+        probes.extend(of_probes.map(|call| quote! { #number => lanes::values(simd, point, probes, #call), }));
     }
     let items = quote! {
         mod kernels {
-            use ::ntg::runtime::math;
+            use ::ntg::runtime::math::{self, Pack, Simd};
             use ::ntg::runtime::splines::Table;
 
             #(#items)*

@@ -9,7 +9,7 @@
 //!     pub struct VanDerPol { .. }          problem.rs    parameters in their declared units
 //!     pub struct VanDerPolSolution { .. }  solution.rs   outputs as fields, the rest as methods,
 //!                                          members.rs    each a question to the untyped solution
-//!     mod contract { .. }                  problem.rs    `impl Problem for VanDerPol`
+//!     mod contract { .. }                  problem.rs    `impl Kernels for VanDerPol`
 //!     mod structure { .. }                 data.rs       everything but the formulas
 //!     mod kernels { .. }                   function.rs   the formulas
 //! }

@@ -12,7 +12,7 @@ use super::parameters::{self, doc_lines};
 use super::solution;
 use crate::program::Program;
 
-/// The struct, its `Default`, its methods, and `impl Problem`.
+/// The struct, its `Default`, its methods, and `impl Kernels`.
 pub(super) fn problem(program: &Program, kernels: &Kernels, place_of: &dyn Fn(&str) -> Span) -> TokenStream {
     let structure = &program.structure;
     let fields = parameters::fields(structure, place_of);
@@ -60,31 +60,32 @@ fn contract(program: &Program, kernels: &Kernels, name: &proc_macro2::Ident) -> 
     quote! {
         mod contract {
             use super::{kernels, structure};
-            use ::ntg::runtime::lanes;
-            use ::ntg::runtime::problem::{Derivatives, Lanes, Problem};
+            use ::ntg::runtime::lanes::{self, Kernels};
+            use ::ntg::runtime::math::Simd;
+            use ::ntg::runtime::problem::{Derivatives, Lanes};
             use ::ntg::runtime::splines::Table;
             use ::ntg::runtime::structure::Structure;
 
-            impl Problem for super::#name {
+            impl Kernels for super::#name {
                 fn structure(&self) -> Structure {
                     #structure
                 }
 
-                fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
+                fn values<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], values: &mut [f64]) {
                     match kernel {
                         #(#values)*
                         _ => values.fill(f64::NAN),
                     }
                 }
 
-                fn derivatives(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
+                fn derivatives<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
                     match kernel {
                         #(#derivatives)*
                         _ => out.values.fill(f64::NAN),
                     }
                 }
 
-                fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]) {
+                fn probes<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], probes: &mut [f64]) {
                     match kernel {
                         #(#probes)*
                         _ => probes.fill(f64::NAN),

@@ -1,6 +1,6 @@
 //! Pure algebra: expressions, their exact derivatives, their structure and their meaning.
 //!
-//! This folder imports nothing of ours, knows no language and no target: a leaf is an
+//! This folder imports nothing of ours but the functions of numbers (`ntg-math`), knows no language and no target: a leaf is an
 //! [`InputId`], and what it stands for is the client's affair.
 //! The mathematics is docs/maths.md, section 2.
 
@@ -14,6 +14,7 @@ mod node;
 mod rewrite;
 mod scalar;
 mod simplify;
+mod strength;
 
 #[cfg(test)]
 mod tests;

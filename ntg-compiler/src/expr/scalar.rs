@@ -4,6 +4,8 @@
 //! them, and the arithmetic of the solver follows them in the same order of
 //! operations, so that every way of running a spec gives the same bits.
 
+use ntg_math as math;
+
 use super::node::{Binary, Unary};
 
 /// A kind of number on which a graph can be evaluated.
@@ -32,22 +34,22 @@ impl Scalar for f64 {
         let x = *x;
         match op {
             Unary::Neg => -x,
-            Unary::Sqrt => x.sqrt(),
-            Unary::Exp => x.exp(),
-            Unary::Log => x.ln(),
-            Unary::Sin => x.sin(),
-            Unary::Cos => x.cos(),
-            Unary::Tan => x.tan(),
-            Unary::Asin => x.asin(),
-            Unary::Acos => x.acos(),
-            Unary::Atan => x.atan(),
-            Unary::Sinh => x.sinh(),
-            Unary::Cosh => x.cosh(),
-            Unary::Tanh => x.tanh(),
-            Unary::Abs => x.abs(),
-            Unary::Sign => sign(x),
-            Unary::Logistic => logistic(x),
-            Unary::Softplus => softplus(x),
+            Unary::Sqrt => math::sqrt(x),
+            Unary::Exp => math::exp(x),
+            Unary::Log => math::log(x),
+            Unary::Sin => math::sin(x),
+            Unary::Cos => math::cos(x),
+            Unary::Tan => math::tan(x),
+            Unary::Asin => math::asin(x),
+            Unary::Acos => math::acos(x),
+            Unary::Atan => math::atan(x),
+            Unary::Sinh => math::sinh(x),
+            Unary::Cosh => math::cosh(x),
+            Unary::Tanh => math::tanh(x),
+            Unary::Abs => math::abs(x),
+            Unary::Sign => math::sign(x),
+            Unary::Logistic => math::logistic(x),
+            Unary::Softplus => math::softplus(x),
         }
     }
 
@@ -58,84 +60,20 @@ impl Scalar for f64 {
             Binary::Sub => a - b,
             Binary::Mul => a * b,
             Binary::Div => a / b,
-            Binary::Pow => a.powf(b),
-            // Adding zero turns -0.0 into 0.0: the sign of a zero must not turn the angle around.
-            Binary::Atan2 => (a + 0.0).atan2(b + 0.0),
-            Binary::Hypot => a.hypot(b),
-            // The test for NaN lets one on either side through instead of hiding it.
-            Binary::Min => {
-                if a <= b || a.is_nan() {
-                    a
-                } else {
-                    b
-                }
-            }
-            Binary::Max => {
-                if a >= b || a.is_nan() {
-                    a
-                } else {
-                    b
-                }
-            }
-            Binary::LessEq => {
-                if a <= b {
-                    1.0
-                } else {
-                    0.0
-                }
-            }
+            Binary::Pow => math::pow(a, b),
+            Binary::Atan2 => math::atan2(a, b),
+            Binary::Hypot => math::hypot(a, b),
+            Binary::Min => math::min(a, b),
+            Binary::Max => math::max(a, b),
+            Binary::LessEq => math::less_eq(a, b),
         }
     }
 
     fn integer_power(x: &Self, n: i32) -> Self {
-        let magnitude = power(*x, n.unsigned_abs());
-        if n < 0 { 1.0 / magnitude } else { magnitude }
+        math::powi(*x, n)
     }
 
     fn select(condition: &Self, then: &Self, otherwise: &Self) -> Self {
-        if *condition != 0.0 { *then } else { *otherwise }
+        math::select(*condition, *then, *otherwise)
     }
-}
-
-/// -1, 0 or 1; NaN for NaN.
-fn sign(x: f64) -> f64 {
-    if x > 0.0 {
-        1.0
-    } else if x < 0.0 {
-        -1.0
-    } else if x == 0.0 {
-        0.0
-    } else {
-        x
-    }
-}
-
-/// `1 / (1 + exp(-x))`; the exponential is never that of a positive number, so nothing overflows.
-fn logistic(x: f64) -> f64 {
-    if x >= 0.0 {
-        1.0 / (1.0 + (-x).exp())
-    } else {
-        let e = x.exp();
-        e / (1.0 + e)
-    }
-}
-
-/// `log(1 + exp(x))`; the exponential is never that of a positive number, so nothing overflows.
-fn softplus(x: f64) -> f64 {
-    if x > 0.0 { x + (-x).exp().ln_1p() } else { x.exp().ln_1p() }
-}
-
-/// `x^n` from the highest bit of `n` down: square, then multiply by `x` where the bit is set.
-fn power(x: f64, n: u32) -> f64 {
-    if n == 0 {
-        return 1.0;
-    }
-    let mut result = x;
-    for bit in (0..n.ilog2()).rev() {
-        result *= result;
-        if n >> bit & 1 == 1 {
-            result *= x;
-        }
-    }
-    result
 }

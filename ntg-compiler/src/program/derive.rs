@@ -64,8 +64,19 @@ pub(super) fn derive(formulas: Formulas, slots: usize, data: usize, mode: Mode) 
         degree: degrees,
         probes: Vec::new(),
     };
-    let body = KernelBody { dag, inputs, names: vec![], labels: vec![], values, jacobian, hessian: second, probes };
+    let mut body = KernelBody { dag, inputs, names: vec![], labels: vec![], values, jacobian, hessian: second, probes };
+    strengthen(&mut body);
     (shape, body, spans)
+}
+
+/// Replaces all formulas of a kernel by the same with cheaper operations.
+fn strengthen(body: &mut KernelBody) {
+    let parts = [&mut body.values, &mut body.jacobian, &mut body.hessian, &mut body.probes];
+    let roots: Vec<NodeId> = parts.iter().flat_map(|part| part.iter().copied()).collect();
+    let mut cheaper = body.dag.strengthened(&roots).into_iter();
+    for part in parts {
+        part.iter_mut().zip(&mut cheaper).for_each(|(root, new)| *root = new);
+    }
 }
 
 fn ids(first: usize, count: usize) -> Vec<InputId> {

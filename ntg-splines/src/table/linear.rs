@@ -16,7 +16,7 @@ pub(super) fn linear(axes: &[Axis], values: &Grid) -> (Vec<Piece>, Grid) {
         grid = grid.gather(number, &rows);
         let hats = [0.5, -0.5, 0.5, 0.5];
         let polynomials = hats.repeat(nodes.len() - 1);
-        pieces.push(Piece::new(axis, nodes, Form { order: 2, smoothness: 0, step: 1 }, polynomials));
+        pieces.push(Piece::new(axis, nodes, Form { order: 2, smoothness: 0, step: 1 }, &polynomials));
     }
     (pieces, grid)
 }
@@ -32,7 +32,7 @@ pub(super) fn hermite(axis: &Axis) -> Piece {
         polynomials.extend([0.5, 0.75, 0.0, -0.25]);
         polynomials.extend([-0.25, -0.25, 0.25, 0.25].map(|c| half * c));
     }
-    Piece::new(axis, nodes, Form { order: 4, smoothness: 1, step: 2 }, polynomials)
+    Piece::new(axis, nodes, Form { order: 4, smoothness: 1, step: 2 }, &polynomials)
 }
 
 /// The nodes of an argument, from the cell of 0 on if it is even, and which given ones they copy.

@@ -159,7 +159,7 @@ impl Basis {
             }
         }
         let breaks = self.knots[spans.start..=spans.end].to_vec();
-        Piece::new(axis, breaks, Form { order, smoothness: order - 2, step: 1 }, polynomials)
+        Piece::new(axis, breaks, Form { order, smoothness: order - 2, step: 1 }, &polynomials)
     }
 }
 

@@ -6,6 +6,7 @@ mod graph;
 mod growth;
 mod recipe;
 mod reductions;
+mod strength;
 mod structure;
 
 use super::{Dag, InputId, NodeId, eval};
