@@ -105,7 +105,8 @@ impl<'a> Elaborator<'a> {
         let means = match (own, &index, self.problem.phases[k].family.clone()) {
             (true, Some(form), Some(family)) => form.constant == -1 && form.terms == [(family.index, 1)],
             (false, Some(form), _) => self.phases[k].after.is_some_and(|before| {
-                let family = self.problem.phases[before].family.as_ref();
+                // In a circle of phases the one before is not known yet.
+                let family = self.problem.phases.get(before).and_then(|phase| phase.family.as_ref());
                 family.is_some_and(|family| form.as_number() == Some(family.last.constant))
             }),
             _ => false,
