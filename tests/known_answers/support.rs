@@ -14,8 +14,8 @@ pub(crate) fn close(found: f64, known: f64, relative: f64) {
     assert!(error <= relative, "{found}, but {known} is known: relative error {error:e}");
 }
 
-/// A spec of the folder `specs/`, interpreted.
-pub(crate) struct Shipped(Interpreted);
+/// A spec of the folder `specs/`, interpreted, and how to solve it.
+pub(crate) struct Shipped(Interpreted, Settings);
 
 struct BesideSpecs;
 
@@ -56,7 +56,7 @@ impl Shipped {
         let compiled = compiled.unwrap_or_else(|found| {
             panic!("{}", found.iter().map(|d| d.render(source)).collect::<Vec<_>>().join("\n"))
         });
-        Self(Interpreted::new(&compiled.program))
+        Self(Interpreted::new(&compiled.program), Settings::default())
     }
 
     /// Sets a parameter, in its declared unit.
@@ -81,10 +81,16 @@ impl Shipped {
         report.solution.signal(&self.0, name).unwrap_or_else(|| panic!("nothing is called {name}"))
     }
 
+    /// Constraints to the last digits: for what is checked in a high derivative, whose numbers are large.
+    pub(crate) fn precisely(mut self) -> Self {
+        self.1.constraint_tolerance = 1e-12;
+        self
+    }
+
     /// Solves from a guess; the solve must succeed.
     #[track_caller]
     pub(crate) fn solve_from(&self, guess: &Guess) -> Report {
-        let report = solve_from(&self.0, guess, &Settings::default());
+        let report = solve_from(&self.0, guess, &self.1);
         let report = report.unwrap_or_else(|error| panic!("{error}"));
         assert!(report.is_solved(), "{report}");
         report
@@ -95,4 +101,47 @@ impl Shipped {
     pub(crate) fn solve(&self) -> Report {
         self.solve_from(&Guess::new())
     }
+}
+
+/// By how much a derivative of an output jumps where one phase ends at a time, in declared units.
+///
+/// | `kind`  | meaning                                            |
+/// |---------|----------------------------------------------------|
+/// | `kind.0` | the spline's order: pieces are of one degree less |
+/// | `kind.1` | which derivative                                  |
+///
+/// The value from the left is the polynomial before the join, carried there by its own derivatives.
+#[track_caller]
+pub(crate) fn jump(report: &Report, output: &str, join: f64, kind: (usize, usize)) -> f64 {
+    let (order, derivative) = kind;
+    let curve = report.solution.output(output).unwrap_or_else(|| panic!("no output {output}"));
+    let before = report.phases().iter().find(|phase| phase.end == join).map(|phase| phase.end - phase.start);
+    // Nearer to the join than a knot can be.
+    let step = 1e-3 * before.unwrap_or_else(|| panic!("no phase ends at {join}"));
+    let mut left = 0.0;
+    let mut power = 1.0;
+    for j in derivative..order {
+        left += curve.derivative(join - step, j) * power;
+        power *= step / (j - derivative + 1) as f64;
+    }
+    curve.derivative(join, derivative) - left
+}
+
+/// Asserts that all outputs are continuous up to a derivative where phases meet, to 1e-9 in their
+/// declared units, and that each phase starts where the one before it ends.
+#[track_caller]
+pub(crate) fn joins_hold(report: &Report, order: usize, up_to: usize) {
+    let phases = report.phases();
+    for pair in phases.windows(2) {
+        assert_eq!(pair[0].end.to_bits(), pair[1].start.to_bits(), "{} and {}", pair[0].name, pair[1].name);
+        for curve in report.solution.trajectories() {
+            for derivative in 0..=up_to {
+                let jump = jump(report, curve.name(), pair[0].end, (order, derivative));
+                let what = format!("derivative {derivative} of {} after {}", curve.name(), pair[0].name);
+                assert!(jump.abs() <= 1e-9, "{what} jumps by {jump:e}");
+            }
+        }
+    }
+    let whole: f64 = phases.iter().map(|phase| phase.end - phase.start).sum();
+    assert!((whole - (report.solution.end() - report.solution.start())).abs() <= 1e-9, "durations add up");
 }
