@@ -1,6 +1,6 @@
 //! What the documents show is what the compiler takes.
 //!
-//! Every block of docs/language.md that is marked `ntg` compiles; one marked `ntg,error=E020` is
+//! Every block of docs/language.md, docs/tutorial.md and docs/coming-from.md that is marked `ntg` compiles; one marked `ntg,error=E020` is
 //! refused with that code. The README's spec is a file under specs/, word for word.
 
 use std::fs;
@@ -67,9 +67,10 @@ fn errors(text: &str) -> (Vec<Code>, String) {
 
 #[test]
 fn every_spec_of_the_manual_compiles_or_fails_as_it_says() {
-    let blocks = blocks(&read("docs/language.md"));
-    assert!(blocks.len() > 10, "only {} specs were found", blocks.len());
-    for block in blocks {
+    let pages = ["docs/language.md", "docs/tutorial.md", "docs/coming-from.md"].map(|page| blocks(&read(page)));
+    assert!(pages[0].len() > 10, "only {} specs were found", pages[0].len());
+    assert!(pages.iter().all(|blocks| !blocks.is_empty()));
+    for block in pages.into_iter().flatten() {
         let (codes, words) = errors(&block.text);
         match block.marks.strip_prefix("ntg,error=") {
             None => assert!(codes.is_empty(), "{}\n{words}", block.text),
@@ -94,13 +95,25 @@ fn the_readme_shows_a_spec_of_the_repository() {
 
 #[test]
 fn the_pictures_that_documents_show_exist() {
-    for (document, folder) in [("README.md", ""), ("docs/language.md", "docs/")] {
+    for (document, folder) in [("README.md", ""), ("docs/language.md", "docs/"), ("docs/tutorial.md", "docs/")] {
         let text = read(document);
         for after in text.split("](").skip(1) {
             let target = after.split([')', '#']).next().unwrap_or_default();
-            if target.ends_with(".svg") {
+            if target.ends_with(".svg") || target.ends_with(".png") {
                 assert!(root().join(format!("{folder}{target}")).is_file(), "{document} shows {target}");
             }
         }
     }
+}
+
+#[test]
+fn the_cart_of_those_who_come_from_elsewhere_takes_two_seconds() {
+    let blocks = blocks(&read("docs/coming-from.md"));
+    let source = Source::new("cart.ntg", &blocks[0].text);
+    let compiled = compile(&source, &NoFiles).expect("the page's spec");
+    let problem = ntg_interp::Interpreted::new(&compiled.program);
+    let report = ntg::runtime::solve(&problem, &ntg::prelude::Settings::default()).expect("a solve");
+    assert!(report.is_solved(), "{report}");
+    // Full push for half the way, full brake for the other: 1 = T^2 / 4.
+    assert!((report.objective - 2.0).abs() < 1e-7, "{}", report.objective);
 }

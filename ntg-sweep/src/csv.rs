@@ -19,12 +19,19 @@ pub(crate) fn write(columns: &[(String, Column)]) -> Result<Vec<u8>, String> {
     for row in 0..count {
         let cells = columns.iter().map(|(_, column)| match column {
             Column::Count(values) => values[row].to_string(),
-            Column::Number(values) => values[row].map(|value| value.to_string()).unwrap_or_default(),
+            Column::Number(values) => values[row].map(number).unwrap_or_default(),
             Column::Words(values) => values[row].clone(),
         });
         writer.write_record(cells).map_err(|error| error.to_string())?;
     }
     writer.into_inner().map_err(|error| error.to_string())
+}
+
+/// The shortest text that reads back to the same bits, with an exponent where there would be
+/// many zeros.
+fn number(value: f64) -> String {
+    let plain = value == 0.0 || (1e-5..1e16).contains(&value.abs());
+    if plain { value.to_string() } else { format!("{value:e}") }
 }
 
 fn length(column: &Column) -> usize {

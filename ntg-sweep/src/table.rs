@@ -124,7 +124,7 @@ mod tests {
         let third = 1.0 / 3.0;
         assert_eq!(
             text,
-            format!("row,\"v, max\",status,T,bad\n0,0.1,\"it says \"\"no\"\"\",,\n1,{},solved,{third},\n", f64::MAX)
+            format!("row,\"v, max\",status,T,bad\n0,0.1,\"it says \"\"no\"\"\",,\n1,{:e},solved,{third},\n", f64::MAX)
         );
     }
 

@@ -43,7 +43,7 @@
     const { ctx } = u, { left, top, width, height } = u.bbox, px = devicePixelRatio;
     ctx.save();
     ctx.beginPath(); ctx.rect(left, top, width, height); ctx.clip();
-    ctx.font = `${11 * px}px system-ui, sans-serif`;
+    ctx.font = `${11 * px}px system-ui, sans-serif`; ctx.textAlign = "left"; ctx.textBaseline = "alphabetic";
     ctx.fillStyle = css("--quiet"); ctx.strokeStyle = css("--ink"); ctx.lineWidth = 1.5 * px; ctx.setLineDash([4 * px, 4 * px]);
     for (const [at, name] of chart.limits) {
       const y = u.valToPos(at, "y", true);
@@ -53,6 +53,7 @@
     ctx.strokeStyle = css("--quiet"); ctx.lineWidth = px; ctx.setLineDash([7 * px, 5 * px]);
     chart.marks.forEach(([at, name], i) => {
       const x = u.valToPos(at, "x", true);
+      if (x < left || x > left + 0.97 * width) return; // Its name would not fit.
       ctx.beginPath(); ctx.moveTo(x, top); ctx.lineTo(x, top + height); ctx.stroke();
       ctx.fillText(name, x + 4 * px, top + (12 + 13 * (i % 4)) * px);
     });
