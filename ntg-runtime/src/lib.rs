@@ -10,6 +10,7 @@
 pub mod guess;
 pub mod lanes;
 pub mod math;
+mod meshes;
 pub mod method;
 pub mod newton;
 pub mod nlp;

@@ -7,21 +7,47 @@ use crate::status::Status;
 use crate::{newton, sqp};
 use std::time::Instant;
 
-/// Solves a program by the method of the settings, from a start and, where they are known, from
-/// multipliers.
-pub fn solve<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, settings: &Settings) -> Outcome {
+/// What is known about a start.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Start<'a> {
+    /// A guess.
+    #[default]
+    Cold,
+    /// A point near a solution, without multipliers.
+    Near,
+    /// A point near a solution, with multipliers.
+    Warm(Multipliers<'a>),
+}
+
+impl<'a> Start<'a> {
+    /// The multipliers, where they are known and fit the program.
+    pub(crate) fn multipliers<N: Nlp>(self, nlp: &N) -> Option<Multipliers<'a>> {
+        match self {
+            Self::Warm(from) if from.rows.len() == nlp.rows() && from.bounds.len() == nlp.variables() => Some(from),
+            _ => None,
+        }
+    }
+}
+
+/// Solves a program by the method of the settings, from a guess.
+pub fn solve<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Outcome {
+    solve_from(nlp, start, Start::Cold, settings)
+}
+
+/// As [`solve`], from a start about which more is known.
+pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Settings) -> Outcome {
     match settings.method {
-        Method::Sqp => sqp::solve_from(nlp, start, from, settings),
-        Method::Newton => newton::solve(nlp, start, from, settings),
+        Method::Sqp => sqp::solve_from(nlp, start, from.multipliers(nlp), settings),
+        Method::Newton => newton::solve_from(nlp, start, from, settings),
         Method::Auto => automatic(nlp, start, from, settings),
     }
 }
 
 /// The Newton method; where it fails, the same with elastic bounds from the start; where that fails,
 /// the sequential quadratic program from the start.
-fn automatic<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, settings: &Settings) -> Outcome {
+fn automatic<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Settings) -> Outcome {
     let began = Instant::now();
-    let mut best = newton::solve(nlp, start, from, settings);
+    let mut best = newton::solve_from(nlp, start, from, settings);
     for attempt in [newton::solve_elastic, sqp::solve] {
         if is_final(&best.status) {
             break;

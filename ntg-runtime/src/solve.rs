@@ -8,7 +8,8 @@
 
 use crate::guess::continuation::{Setting, set, steps};
 use crate::guess::{Guess, start};
-use crate::method;
+use crate::meshes::start_from_coarse;
+use crate::method::{self, Start};
 use crate::outcome::Outcome;
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, user};
@@ -84,21 +85,35 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
     let steps = steps(&structure);
     let mut history: Vec<StepReport> = vec![];
     let mut last: Option<Outcome> = None;
+    let mut iterations = 0;
     let mut at_guess = vec![];
     for (i, step) in steps.iter().enumerate() {
         let step_began = Instant::now();
         let mut nlp = Transcription::with(problem, set(&structure, step))?;
         // The layout is the same in every step: only parameters change.
-        let first = match &last {
+        let mut coarse = None;
+        let mut first = match &last {
             Some(last) => start(&nlp, Some(&Guess::raw(last.x.clone())))?,
             None => start(&nlp, guess)?,
         };
         if i == 0 {
             at_guess = singular(&nlp, &first);
+            let level = nlp.model.structure.clone();
+            let (found, spent) = start_from_coarse(problem, &level, guess, &settings.after(began.elapsed()))?;
+            iterations = spent;
+            if let Some(solution) = &found {
+                first = start(&nlp, Some(&Guess::from(solution)))?;
+            }
+            coarse = found;
         }
         nlp.set_scales(&first, settings)?;
-        let from = last.as_ref().filter(|last| last.status.is_solved()).map(Outcome::multipliers);
-        let outcome = method::solve(&nlp, &first, from, &settings.after(began.elapsed()));
+        let from = match last.as_ref().filter(|last| last.status.is_solved()) {
+            Some(last) => Start::Warm(last.multipliers()),
+            None if coarse.is_some() => Start::Near,
+            None => Start::Cold,
+        };
+        let mut outcome = method::solve_from(&nlp, &first, from, &settings.after(began.elapsed()));
+        outcome.iterations += std::mem::take(&mut iterations);
         let stop = i + 1 == steps.len() || matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
         history.push(record(&nlp, &structure, step, &outcome, step_began));
         if stop {

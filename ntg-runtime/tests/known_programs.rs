@@ -14,8 +14,8 @@ const INF: f64 = f64::INFINITY;
 #[track_caller]
 fn solved(program: &Program, start: &[f64], objective: f64) -> Outcome {
     for (name, outcome) in [
-        ("Newton", newton::solve(program, start, None, &Settings::default())),
-        ("automatic", method::solve(program, start, None, &Settings::default())),
+        ("Newton", newton::solve(program, start, &Settings::default())),
+        ("automatic", method::solve(program, start, &Settings::default())),
     ] {
         println!("{name}: iterations {} {}", outcome.iterations, outcome.status);
         assert_eq!(outcome.status, Status::Solved, "{name}: {:?} after {}", outcome.residuals, outcome.iterations);

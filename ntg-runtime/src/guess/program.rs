@@ -56,6 +56,12 @@ impl Guess {
         Self { base: Base::Variables(variables), statements: vec![] }
     }
 
+    /// Whether it is a point near a solution already, and not a rough sketch.
+    pub(crate) fn is_near(&self) -> bool {
+        !matches!(self.base, Base::Spec)
+            || self.statements.iter().any(|statement| matches!(statement, Statement::Coefficients { .. }))
+    }
+
     /// Outputs along a polygon, at constant speed over the agent's whole time, ends exact.
     pub fn route<const N: usize>(self, outputs: &[&str; N], points: &[[f64; N]]) -> Self {
         let outputs = outputs.iter().map(|name| (*name).to_owned()).collect();

@@ -5,7 +5,8 @@ use super::filter::Filter;
 use super::sides::{Sides, log_sum};
 use super::system::System;
 use crate::nlp::{Limits, Nlp, NotFinite, Scales};
-use crate::outcome::{IterationRecord, Multipliers};
+use crate::method::Start;
+use crate::outcome::IterationRecord;
 use crate::settings::{Control, Progress, Settings};
 use crate::status::Status;
 use std::time::Instant;
@@ -76,7 +77,7 @@ impl<'a, N: Nlp> Core<'a, N> {
     pub(super) fn new(
         nlp: &'a N,
         start: &[f64],
-        from: Option<Multipliers<'_>>,
+        from: Start<'_>,
         settings: &'a Settings,
         begin: Instant,
     ) -> Result<Self, NotFinite> {
@@ -85,7 +86,7 @@ impl<'a, N: Nlp> Core<'a, N> {
         let sizes = Scales::sizes(nlp.limits());
         let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();
         x.push(0.0);
-        move_inside(&mut x, nlp.limits(), &sizes, if from.is_some() { super::warm::INSIDE } else { INSIDE });
+        move_inside(&mut x, nlp.limits(), &sizes, if matches!(from, Start::Cold) { INSIDE } else { super::warm::INSIDE });
         system.rescale(nlp, &x, settings.scaling)?;
         let sides = Sides::new(&scaled_limits(nlp.limits(), &system.scales), system.first_variable());
         let unit = (MANY_SIDES / sides.side.len().max(1) as f64).min(1.0);
@@ -116,21 +117,26 @@ impl<'a, N: Nlp> Core<'a, N> {
     }
 
     /// First distances, multipliers and derivatives.
-    fn start(&mut self, from: Option<Multipliers<'_>>) -> Result<(), NotFinite> {
+    fn start(&mut self, from: Start<'_>) -> Result<(), NotFinite> {
         self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.quantities)?;
-        match from {
-            Some(from) => self.start_warm(from),
-            None => {
-                self.sides.place(&self.quantities, INSIDE);
-                for (z, w) in self.sides.z.iter_mut().zip(&self.sides.w) {
-                    *z = self.mu / w;
-                }
-                self.estimate_multipliers();
-            }
+        match (from, from.multipliers(self.nlp)) {
+            (_, Some(from)) => self.start_warm(from),
+            (Start::Cold, None) => self.start_at(FIRST_BARRIER, INSIDE),
+            (Start::Near | Start::Warm(_), None) => self.start_at(super::warm::NEAR_BARRIER, super::warm::INSIDE),
         }
         self.evaluate()?;
         self.reset_filter();
         Ok(())
+    }
+
+    /// Distances and multipliers of a point about which nothing is known but how near it is.
+    fn start_at(&mut self, barrier: f64, inside: f64) {
+        self.mu = barrier * self.unit;
+        self.sides.place(&self.quantities, inside);
+        for (z, w) in self.sides.z.iter_mut().zip(&self.sides.w) {
+            *z = self.mu / w;
+        }
+        self.estimate_multipliers();
     }
 
     /// Derivatives at the present point with the present multipliers.

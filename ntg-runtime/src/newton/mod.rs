@@ -30,7 +30,8 @@ mod system;
 mod warm;
 
 use crate::nlp::Nlp;
-use crate::outcome::{Multipliers, Outcome};
+use crate::method::Start;
+use crate::outcome::Outcome;
 use crate::settings::Settings;
 use crate::status::Status;
 use core::Core;
@@ -40,25 +41,29 @@ use std::time::Instant;
 /// Steps without effect in a row that end a solve.
 const TINY_STEPS: usize = 3;
 
-/// Solves `nlp` from `start`, which is first moved to within the bounds of the variables, with
-/// multipliers to start from where they are known.
+/// Solves `nlp` from `start`, which is first moved to within the bounds of the variables.
 ///
 /// The answer is deterministic: the same program, start and settings give the same bits (a time
 /// limit apart).
-pub fn solve<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, settings: &Settings) -> Outcome {
+pub fn solve<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Outcome {
+    run(nlp, start, Start::Cold, settings, |_| {})
+}
+
+/// As [`solve`], from a start about which more is known.
+pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Settings) -> Outcome {
     run(nlp, start, from, settings, |_| {})
 }
 
-/// As [`solve`] from the start alone, with elastic bounds from the first iteration on, at a low price:
-/// slower, and harder to trap.
+/// As [`solve`], with elastic bounds from the first iteration on, at a low price: slower, and harder to
+/// trap.
 pub fn solve_elastic<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Outcome {
-    run(nlp, start, None, settings, |core| core.enter_elastic(elastic::LOW_PRICE))
+    run(nlp, start, Start::Cold, settings, |core| core.enter_elastic(elastic::LOW_PRICE))
 }
 
 fn run<N: Nlp>(
     nlp: &N,
     start: &[f64],
-    from: Option<Multipliers<'_>>,
+    from: Start<'_>,
     settings: &Settings,
     prepare: impl Fn(&mut Core<'_, N>),
 ) -> Outcome {
@@ -66,7 +71,6 @@ fn run<N: Nlp>(
     if let Some(status) = crate::sqp::refused(nlp, start) {
         return Outcome::failed(nlp, start, status);
     }
-    let from = from.filter(|from| from.rows.len() == nlp.rows() && from.bounds.len() == nlp.variables());
     match Core::new(nlp, start, from, settings, begin) {
         Ok(mut core) => {
             prepare(&mut core);

@@ -1,0 +1,143 @@
+//! Coarse knots first: where the intervals are many, a solution on fewer of them is the start
+//! (docs/maths.md, section 11.10).
+//!
+//! A rough guess (a polygon with corners) asks more of a method the finer the knots are, since corners
+//! are sharper there. On few knots it is mended cheaply, and each finer level begins near its solution.
+
+use crate::guess::{Guess, start};
+use crate::method::{self, Start};
+use crate::outcome::Outcome;
+use crate::problem::Problem;
+use crate::settings::{Control, Settings};
+use crate::solution::{Inner, Solution};
+use crate::transcribe::{SetupError, Transcription};
+use ntg_structure::{Points, Structure};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Up to so many intervals a problem is solved at once.
+const FEW: usize = 24;
+/// How many times more intervals the next level has.
+const FINER: usize = 4;
+/// The tolerance of all levels but the last.
+const ROUGH: f64 = 1e-5;
+
+/// A start near a solution of `structure`, found on coarser knots; none where the knots are few, the
+/// guess is a solution already, or the coarser problem has no solution. The second number is how many
+/// iterations were spent.
+pub(crate) fn start_from_coarse(
+    problem: &dyn Problem,
+    structure: &Structure,
+    guess: Option<&Guess>,
+    settings: &Settings,
+) -> Result<(Option<Solution>, usize), SetupError> {
+    let most = intervals(structure);
+    if most <= FEW || guess.is_some_and(Guess::is_near) {
+        return Ok((None, 0));
+    }
+    let coarse = coarsened(structure, most.div_ceil(FINER));
+    let (earlier, spent) = start_from_coarse(problem, &coarse, guess, settings)?;
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let rough = rough(settings, &cancelled);
+    let mut nlp = Transcription::with(problem, coarse)?;
+    let (first, from) = match &earlier {
+        Some(solution) => (start(&nlp, Some(&Guess::from(solution)))?, Start::Near),
+        None => (start(&nlp, guess)?, Start::Cold),
+    };
+    nlp.set_scales(&first, settings)?;
+    let outcome = method::solve_from(&nlp, &first, from, &rough);
+    let iterations = spent + outcome.iterations;
+    let good = outcome.status.is_solved() && !cancelled.load(Ordering::Relaxed);
+    Ok((good.then(|| solution(&nlp, outcome)), iterations))
+}
+
+/// The most intervals of any output.
+fn intervals(structure: &Structure) -> usize {
+    let outputs = structure.phases.iter().flat_map(|phase| &phase.outputs);
+    outputs.map(|output| output.spline.breakpoints.len() - 1).max().unwrap_or(0)
+}
+
+/// The same problem with at most `most` intervals, on breakpoints that it has already.
+fn coarsened(structure: &Structure, most: usize) -> Structure {
+    let mut coarse = structure.clone();
+    for phase in &mut coarse.phases {
+        let before = phase.outputs.iter().map(|o| o.spline.breakpoints.len() - 1).max().unwrap_or(1);
+        for output in &mut phase.outputs {
+            let breakpoints = &mut output.spline.breakpoints;
+            let count = breakpoints.len() - 1;
+            let stride = count.div_ceil(most.max(1));
+            let kept = (0..count).step_by(stride).chain([count]).map(|i| breakpoints[i]);
+            *breakpoints = kept.collect();
+        }
+        let after = phase.outputs.iter().map(|o| o.spline.breakpoints.len() - 1).max().unwrap_or(1);
+        for points in &mut phase.points {
+            if let Points::Uniform { points } = points {
+                *points = ((*points - 1) * after).div_ceil(before) + 1;
+            }
+        }
+    }
+    coarse
+}
+
+/// The settings of a level that is not the last.
+fn rough(settings: &Settings, cancelled: &Arc<AtomicBool>) -> Settings {
+    let mut rough = settings.clone();
+    rough.tolerance = settings.tolerance.max(ROUGH);
+    rough.constraint_tolerance = settings.constraint_tolerance.max(ROUGH);
+    rough.scales.clone_from(&settings.scales);
+    if let Some(watch) = settings.on_iteration.clone() {
+        let cancelled = cancelled.clone();
+        rough.on_iteration = Some(Arc::new(move |progress| {
+            let answer = watch(progress);
+            cancelled.fetch_or(answer == Control::Cancel, Ordering::Relaxed);
+            answer
+        }));
+    }
+    rough
+}
+
+fn solution(nlp: &Transcription, outcome: Outcome) -> Solution {
+    Solution {
+        inner: Arc::new(Inner {
+            model: nlp.model.clone(),
+            x: outcome.x,
+            rows: nlp.elements.rows.clone(),
+            row_multipliers: outcome.row_multipliers,
+            bound_multipliers: outcome.bound_multipliers,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ntg_structure::{Output, Phase, Spline, Unit};
+
+    fn phase(intervals: usize, points: usize) -> Phase {
+        let breakpoints = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
+        let spline = Spline { order: 5, smoothness: 3, breakpoints };
+        let output = Output { name: "x".into(), doc: String::new(), unit: Unit::default(), family: None, spline };
+        Phase {
+            name: None,
+            agent: 0,
+            family: None,
+            after: None,
+            duration: ntg_structure::Duration::Fixed(ntg_structure::Call::default()),
+            duration_name: None,
+            outputs: vec![output],
+            points: vec![Points::Uniform { points }, Points::Breakpoints],
+            place: ntg_structure::Place::default(),
+        }
+    }
+
+    #[test]
+    fn coarse_breakpoints_are_some_of_the_fine_ones_with_both_ends() {
+        let structure = Structure { phases: vec![phase(100, 501), phase(3, 16)], ..Structure::default() };
+        let coarse = coarsened(&structure, 25);
+        let kept = &coarse.phases[0].outputs[0].spline.breakpoints;
+        assert_eq!(kept.len(), 26);
+        assert_eq!((kept[0], kept[1], kept[25]), (0.0, 0.04, 1.0));
+        assert_eq!(coarse.phases[0].points[0], Points::Uniform { points: 126 });
+        assert_eq!(coarse.phases[1], structure.phases[1], "few intervals stay");
+    }
+}
