@@ -4,8 +4,8 @@
 use super::filter::Filter;
 use super::sides::{Sides, log_sum};
 use super::system::System;
-use crate::nlp::{Limits, Nlp, NotFinite, Scales};
 use crate::method::Start;
+use crate::nlp::{Limits, Nlp, NotFinite, Scales};
 use crate::outcome::IterationRecord;
 use crate::settings::{Control, Progress, Settings};
 use crate::status::Status;
@@ -86,7 +86,12 @@ impl<'a, N: Nlp> Core<'a, N> {
         let sizes = Scales::sizes(nlp.limits());
         let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();
         x.push(0.0);
-        move_inside(&mut x, nlp.limits(), &sizes, if matches!(from, Start::Cold) { INSIDE } else { super::warm::INSIDE });
+        move_inside(
+            &mut x,
+            nlp.limits(),
+            &sizes,
+            if matches!(from, Start::Cold) { INSIDE } else { super::warm::INSIDE },
+        );
         system.rescale(nlp, &x, settings.scaling)?;
         let sides = Sides::new(&scaled_limits(nlp.limits(), &system.scales), system.first_variable());
         let unit = (MANY_SIDES / sides.side.len().max(1) as f64).min(1.0);
@@ -221,9 +226,14 @@ impl<'a, N: Nlp> Core<'a, N> {
         (self.iterations >= self.settings.max_iterations).then_some(Status::IterationLimit)
     }
 
+    /// The barrier parameter that ends the sequence.
+    pub(super) fn last_barrier(&self) -> f64 {
+        LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance) * self.unit
+    }
+
     /// Lowers the barrier as long as its problem is solved well enough, equation (11.6).
     pub(super) fn lower_barrier(&mut self) -> Option<Status> {
-        let last = LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance) * self.unit;
+        let last = self.last_barrier();
         let (relax, dual) = (self.relaxation(), self.dual());
         let before = self.mu;
         while self.mu > last {

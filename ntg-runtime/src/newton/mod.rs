@@ -23,14 +23,15 @@ mod filter;
 mod map;
 mod order;
 mod pack;
+mod polish;
 mod search;
 mod shape;
 mod sides;
 mod system;
 mod warm;
 
-use crate::nlp::Nlp;
 use crate::method::Start;
+use crate::nlp::Nlp;
 use crate::outcome::Outcome;
 use crate::settings::Settings;
 use crate::status::Status;
@@ -86,6 +87,9 @@ fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
     loop {
         core.measure();
         if let Some(status) = core.stops() {
+            if status.is_solved() {
+                core.polish();
+            }
             return core.outcome(status);
         }
         if let Some(status) = core.lower_barrier() {

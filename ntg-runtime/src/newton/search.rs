@@ -78,7 +78,7 @@ impl<N: Nlp> Core<'_, N> {
     }
 
     /// The longest step that keeps positive numbers positive.
-    fn to_boundary(&self, numbers: &[f64], step: &[f64]) -> f64 {
+    pub(super) fn to_boundary(&self, numbers: &[f64], step: &[f64]) -> f64 {
         let fraction = BOUNDARY.max(1.0 - self.mu);
         let limits = numbers.iter().zip(step).filter(|(_, d)| **d < 0.0).map(|(v, d)| -fraction * v / d);
         limits.fold(1.0, f64::min)
@@ -188,7 +188,7 @@ impl<N: Nlp> Core<'_, N> {
     }
 
     /// Makes the trial point the present one, with multipliers.
-    fn move_on(&mut self, alpha: f64, how: Searched) -> Searched {
+    pub(super) fn move_on(&mut self, alpha: f64, how: Searched) -> Searched {
         let dual = self.to_boundary(&self.sides.z, &self.step.z);
         std::mem::swap(&mut self.x, &mut self.trial.x);
         std::mem::swap(&mut self.sides.w, &mut self.trial.w);
