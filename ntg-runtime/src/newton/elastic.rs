@@ -221,6 +221,9 @@ impl<N: Nlp> Core<'_, N> {
 
     /// Why there is no step at all.
     pub(super) fn stuck(&mut self) -> Status {
+        if self.sides.violation(&self.quantities) > self.settings.constraint_tolerance {
+            return Status::Infeasible { rows: self.violations() };
+        }
         self.trial.failure.take().map_or(Status::StepTooSmall, Status::NotFinite)
     }
 

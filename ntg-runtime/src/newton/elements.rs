@@ -336,7 +336,7 @@ impl BlockPlan {
                 element[i * n + j] = second[i * n + j][lane];
                 element[j * n + i] = second[i * n + j][lane];
             }
-            convexifier.clip(element, self.block);
+            convexifier.reflect(element, self.block);
             for &(i, j) in &self.pairs {
                 second[i * n + j][lane] = element[i * n + j];
             }

@@ -34,6 +34,16 @@ impl Convexifier {
     /// Replaces the symmetric matrix `k` of an element of `block` by the nearest positive
     /// semidefinite one, in the norm of scaled slots; exact where it is already.
     pub(crate) fn clip(&mut self, k: &mut [f64], block: usize) {
+        self.change(k, block, |value| value.max(0.0));
+    }
+
+    /// As [`Convexifier::clip`], with negative curvature taken as positive: a direction of descent that
+    /// was bent downwards keeps a measure of length.
+    pub(crate) fn reflect(&mut self, k: &mut [f64], block: usize) {
+        self.change(k, block, f64::abs);
+    }
+
+    fn change(&mut self, k: &mut [f64], block: usize, value: impl Fn(f64) -> f64) {
         let sizes = &self.sizes[block];
         let n = sizes.len();
         let (matrix, vectors) = (&mut self.matrix[..n * n], &mut self.vectors[..n * n]);
@@ -55,9 +65,8 @@ impl Convexifier {
         }
         for i in 0..n {
             for j in 0..=i {
-                let value: f64 =
-                    (0..n).map(|e| matrix[e * n + e].max(0.0) * vectors[i * n + e] * vectors[j * n + e]).sum();
-                k[i * n + j] = value / (sizes[i] * sizes[j]);
+                let sum: f64 = (0..n).map(|e| value(matrix[e * n + e]) * vectors[i * n + e] * vectors[j * n + e]).sum();
+                k[i * n + j] = sum / (sizes[i] * sizes[j]);
                 k[j * n + i] = k[i * n + j];
             }
         }
