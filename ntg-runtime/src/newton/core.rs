@@ -51,6 +51,8 @@ pub(super) struct Core<'a, N: Nlp> {
     /// What barrier parameters are relative to.
     pub(super) unit: f64,
     pub(super) filter: Filter,
+    /// A point that met all tolerances.
+    pub(super) best: Option<super::polish::Best>,
     /// Set once bounds are elastic.
     pub(super) elastic: Option<super::elastic::Elastic>,
     pub(super) step: super::direction::Direction,
@@ -106,6 +108,7 @@ impl<'a, N: Nlp> Core<'a, N> {
             mu: FIRST_BARRIER * unit,
             unit,
             filter: Filter::default(),
+            best: None,
             elastic: None,
             step,
             trial: Trial { x: x.clone(), quantities: vec![0.0; count], w: rows, failure: None },
@@ -228,7 +231,7 @@ impl<'a, N: Nlp> Core<'a, N> {
 
     /// The barrier parameter that ends the sequence.
     pub(super) fn last_barrier(&self) -> f64 {
-        LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance) * self.unit
+        self.fineness() * LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance) * self.unit
     }
 
     /// Lowers the barrier as long as its problem is solved well enough, equation (11.6).

@@ -33,6 +33,15 @@ impl<N: Nlp> Core<'_, N> {
         found.into_iter().map(|(_, violation)| violation).collect()
     }
 
+    /// Ends the solve, at the best point if one met all tolerances before.
+    pub(super) fn end(mut self, status: Status) -> Outcome {
+        let stopped = matches!(status, Status::Cancelled | Status::TimeLimit);
+        if self.take_best() && !stopped {
+            return self.outcome(Status::Solved);
+        }
+        self.outcome(status)
+    }
+
     /// Ends the solve.
     pub(super) fn outcome(mut self, status: Status) -> Outcome {
         self.history.push(self.record);

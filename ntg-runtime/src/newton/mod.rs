@@ -86,19 +86,21 @@ fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
     let mut tiny = 0;
     loop {
         core.measure();
-        if let Some(status) = core.stops() {
-            if status.is_solved() {
-                core.polish();
-            }
-            return core.outcome(status);
+        let stops = core.stops();
+        let solved = stops == Some(Status::Solved);
+        if (solved || core.best.is_some()) && core.polished(solved) {
+            return core.outcome(Status::Solved);
+        }
+        if let Some(status) = stops.filter(|_| !solved) {
+            return core.end(status);
         }
         if let Some(status) = core.lower_barrier() {
-            return core.outcome(status);
+            return core.end(status);
         }
         let searched = core.next();
         tiny = if searched == Searched::Tiny { tiny + 1 } else { 0 };
         let ended = match searched {
-            Searched::Tiny if tiny >= TINY_STEPS => Some(Status::StepTooSmall),
+            Searched::Tiny if tiny >= TINY_STEPS => Some(core.stuck()),
             Searched::Stuck if core.elastic.is_some() => Some(core.stuck()),
             Searched::Stuck => {
                 core.enter_elastic(elastic::PRICE);
@@ -107,10 +109,10 @@ fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
             Searched::Tiny | Searched::Accepted => None,
         };
         if let Some(status) = ended {
-            return core.outcome(status);
+            return core.end(status);
         }
         if let Err(what) = core.advance() {
-            return core.outcome(Status::NotFinite(what));
+            return core.end(Status::NotFinite(what));
         }
     }
 }
