@@ -81,6 +81,12 @@ impl Shipped {
         report.solution.signal(&self.0, name).unwrap_or_else(|| panic!("nothing is called {name}"))
     }
 
+    /// Solves by one method, where several minima lie side by side.
+    pub(crate) fn by(mut self, method: Method) -> Self {
+        self.1.method = method;
+        self
+    }
+
     /// Constraints to the last digits: for what is checked in a high derivative, whose numbers are large.
     pub(crate) fn precisely(mut self) -> Self {
         self.1.constraint_tolerance = 1e-12;
