@@ -70,6 +70,7 @@ pub(crate) enum Command {
     ///   ntg solve specs/low_observable.ntg --set sig_max=4.5 --format json
     ///   ntg solve mission.ntg --set "v_max=250 [m/s]" --set start_x=-100,-97 --save run.json
     ///   ntg solve specs/low_observable.ntg --route "x, y: -100, -100; 0, -100; 5, -15 [km]"
+    ///   ntg solve specs/low_observable.ntg --starts 50 --seed 2
     #[command(verbatim_doc_comment)]
     Solve(Solve),
     Plot(crate::plot::Arguments),
@@ -146,12 +147,34 @@ pub(crate) struct Solve {
     /// Give up after that many iterations.
     #[arg(long, value_name = "N")]
     pub(crate) max_iterations: Option<usize>,
+    /// Solve from many starts (the guess, a coarse search over the plane, random routes, perturbed
+    /// guesses), list the local minima, and go on with the best.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) starts: Option<u32>,
+    /// The seed of the random starts: the same seed gives the same starts.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "starts")]
+    pub(crate) seed: u64,
+    /// Where starts come from.
+    #[arg(long, value_enum, default_value_t = Kind::Mixed, requires = "starts")]
+    pub(crate) start_kind: Kind,
     /// Largest scaled residual of the optimality conditions.
     #[arg(long, value_name = "RESIDUAL")]
     pub(crate) tolerance: Option<f64>,
     /// Which method solves the problem.
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub(crate) method: Method,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Kind {
+    /// The guess, the coarse search, random routes and perturbed guesses.
+    Mixed,
+    /// Random routes.
+    Routes,
+    /// Perturbed guesses.
+    Perturbed,
+    /// The coarse search.
+    Search,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

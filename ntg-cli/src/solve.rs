@@ -1,6 +1,7 @@
 //! `ntg solve`: from a spec to a printed solution.
 
 mod json;
+mod starts;
 mod text;
 
 use std::time::{Duration, Instant};
@@ -8,6 +9,7 @@ use std::time::{Duration, Instant};
 use ntg_interp::Interpreted;
 use ntg_report::run::Recording;
 use ntg_runtime::guess::Guess;
+use ntg_runtime::multistart::{MultiReport, multistart_from};
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::{Method, Settings};
 
@@ -23,8 +25,15 @@ pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
 struct Solved<'a> {
     problem: &'a Interpreted,
     report: &'a Report,
+    starts: Option<&'a MultiReport>,
     samples: usize,
     compile_seconds: f64,
+}
+
+/// What was solved.
+enum Found {
+    One(Box<Report>),
+    Many(MultiReport),
 }
 
 /// The error is what to say; empty where all has been said.
@@ -43,24 +52,36 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let compile_seconds = began.elapsed().as_secs_f64();
 
     let interrupt = Interrupt::install();
-    let watch = Watch::new(&interrupt);
-    watch.over(&mut settings);
-    let report = match &guess {
-        Some(guess) => ntg_runtime::solve_from(&problem, guess, &settings),
-        None => ntg_runtime::solve(&problem, &settings),
+    let guess = guess.unwrap_or_default();
+    let mut iterations = vec![];
+    let found = match starts::wanted(arguments, &interrupt) {
+        Some(starts) => {
+            starts::cancellable(&mut settings, &interrupt);
+            multistart_from(&problem, &guess, &starts, &settings).map(Found::Many)
+        }
+        None => {
+            let watch = Watch::new(&interrupt);
+            watch.over(&mut settings);
+            let report = ntg_runtime::solve_from(&problem, &guess, &settings);
+            iterations = watch.end();
+            report.map(|report| Found::One(Box::new(report)))
+        }
     };
-    let iterations = watch.end();
-    let report = report.map_err(|error| format!("{}: {error}", arguments.spec.display()))?;
+    let found = found.map_err(|error| format!("{}: {error}", arguments.spec.display()))?;
+    let (report, starts) = match &found {
+        Found::One(report) => (&**report, None),
+        Found::Many(starts) => (starts.best().ok_or_else(|| starts.to_string())?, Some(starts)),
+    };
 
-    let solved = Solved { problem: &problem, report: &report, samples: arguments.samples as usize, compile_seconds };
+    let samples = arguments.samples as usize;
+    let solved = Solved { problem: &problem, report, starts, samples, compile_seconds };
     match arguments.format {
         Format::Text => files::print(&text::document(&solved)),
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
         let notes = &compiled.notes;
-        let run =
-            Recording { problem: &problem, report: &report, source: &source, notes, iterations: &iterations }.run();
+        let run = Recording { problem: &problem, report, source: &source, notes, iterations: &iterations }.run();
         write::whole(path, arguments.force, run.text().as_bytes())?;
     }
     Ok(match report.is_solved() {

@@ -12,6 +12,7 @@ pub mod lanes;
 pub mod math;
 mod meshes;
 pub mod method;
+pub mod multistart;
 pub mod newton;
 pub mod nlp;
 pub mod outcome;
@@ -31,6 +32,7 @@ pub use solve::{Error, solve, solve_from};
 /// What a program that solves problems names.
 pub mod prelude {
     pub use crate::guess::Guess;
+    pub use crate::multistart::{Minima, MultiReport, StartKind, Starts};
     pub use crate::problem::Problem;
     pub use crate::report::Report;
     pub use crate::settings::{Control, Method, Progress, Settings};

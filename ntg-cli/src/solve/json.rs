@@ -10,7 +10,7 @@ use super::Solved;
 pub(super) fn document(solved: &Solved<'_>) -> Value {
     let report = solved.report;
     let solution = &report.solution;
-    json!({
+    let mut document = json!({
         "problem": report.problem,
         "status": if report.is_solved() { "solved".to_owned() } else { report.status.to_string() },
         "advice": report.advice,
@@ -36,7 +36,11 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
             "message": s.to_string(), "expression": s.place.text, "line": s.place.line, "column": s.place.column,
         })).collect::<Vec<_>>(),
         "history": history(report),
-    })
+    });
+    if let Some(starts) = solved.starts {
+        document["starts"] = super::starts::document(starts);
+    }
+    document
 }
 
 fn parameter(parameter: &Parameter) -> (String, Value) {

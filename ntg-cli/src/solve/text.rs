@@ -11,7 +11,8 @@ const MOST_ROWS: usize = 21;
 const LEAST_WIDTH: usize = 11;
 
 pub(super) fn document(solved: &Solved<'_>) -> String {
-    let mut lines = vec![solved.report.to_string(), String::new()];
+    let mut lines: Vec<String> = solved.starts.map(|starts| format!("{starts}\n")).into_iter().collect();
+    lines.extend([solved.report.to_string(), String::new()]);
     let problem: &dyn Problem = solved.problem;
     let solution = &solved.report.solution;
     let trajectories = solution.trajectories();

@@ -55,6 +55,20 @@ pub(super) fn solve(structure: &Structure, name: &Ident) -> TokenStream {
             ) -> ::core::result::Result<#solution, ::ntg::runtime::Error> {
                 ::ntg::runtime::solve_from(self, guess, settings).map(|report| #solution::new(self, report))
             }
+
+            /// Solves the problem from many starts, side by side, and gives every local minimum
+            /// that was found once, the best first.
+            ///
+            /// # Errors
+            /// As `solve`. A start that fails is counted and is no error.
+            pub fn multistart(
+                &self,
+                starts: &::ntg::runtime::multistart::Starts,
+                settings: &::ntg::runtime::settings::Settings,
+            ) -> ::core::result::Result<::ntg::runtime::multistart::Minima<#solution>, ::ntg::runtime::Error> {
+                let found = ::ntg::runtime::multistart::multistart(self, starts, settings)?;
+                Ok(::ntg::runtime::multistart::Minima::new(found, |report| #solution::new(self, report)))
+            }
         }
     }
 }

@@ -114,7 +114,7 @@ fn line(known: &[(f64, f64)], t: f64) -> Option<f64> {
 
 /// Bounds along the phase on the output itself: rows of one slot whose coefficients are one
 /// multiple of the B-splines' values, which add up to 1.
-fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)> {
+pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)> {
     let layout = &nlp.model.layout;
     let coefficients = &layout.phases[phase].outputs[output].coefficients;
     let mut found: Option<(f64, f64)> = None;

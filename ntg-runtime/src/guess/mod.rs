@@ -14,5 +14,8 @@ mod route;
 mod start;
 mod statements;
 
+pub(crate) use defaults::bounds as constant_bounds;
 pub use program::Guess;
+pub(crate) use route::Route;
 pub use start::start;
+pub(crate) use start::{Curve, Function, apply, finish, set};

@@ -101,6 +101,14 @@ impl Guess {
         self.and(Statement::Variable { name: name.to_owned(), value })
     }
 
+    /// The outputs that routes guess together.
+    pub(crate) fn routes(&self) -> impl Iterator<Item = &[String]> {
+        self.statements.iter().filter_map(|statement| match statement {
+            Statement::Route { outputs, .. } => Some(&outputs[..]),
+            _ => None,
+        })
+    }
+
     fn and(mut self, statement: Statement) -> Self {
         self.statements.push(statement);
         self

@@ -2,14 +2,14 @@
 
 /// Way-points with the arc length up to each, as a part of the whole.
 #[derive(Clone, Debug)]
-pub(super) struct Route {
+pub(crate) struct Route {
     points: Vec<Vec<f64>>,
     fraction: Vec<f64>,
 }
 
 impl Route {
     /// A polygon through `points`, all of one dimension; none for no points.
-    pub(super) fn new(points: Vec<Vec<f64>>) -> Option<Self> {
+    pub(crate) fn new(points: Vec<Vec<f64>>) -> Option<Self> {
         let mut length = vec![0.0];
         for pair in points.windows(2) {
             let square: f64 = pair[0].iter().zip(&pair[1]).map(|(a, b)| (b - a) * (b - a)).sum();
@@ -24,7 +24,7 @@ impl Route {
     }
 
     /// Coordinate `axis` after the part `s` in 0 .. 1 of the length.
-    pub(super) fn at(&self, axis: usize, s: f64) -> f64 {
+    pub(crate) fn at(&self, axis: usize, s: f64) -> f64 {
         let last = self.points.len() - 1;
         let next = self.fraction.partition_point(|f| *f <= s).min(last);
         if next == 0 || s >= 1.0 {

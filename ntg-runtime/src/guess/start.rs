@@ -13,16 +13,16 @@ use ntg_splines::{Ends, Knots, Sample, fit};
 use std::rc::Rc;
 
 /// A guessed function of scaled time, SI.
-pub(super) type Function<'a> = Rc<dyn Fn(f64) -> Result<f64, SetupError> + 'a>;
+pub(crate) type Function<'a> = Rc<dyn Fn(f64) -> Result<f64, SetupError> + 'a>;
 
 /// A function that is guessed for one output of one phase.
 #[derive(Clone)]
-pub(super) struct Curve<'a> {
-    pub(super) phase: usize,
-    pub(super) output: usize,
+pub(crate) struct Curve<'a> {
+    pub(crate) phase: usize,
+    pub(crate) output: usize,
     /// Whether its argument is the agent's whole time instead of the phase's.
-    pub(super) whole: bool,
-    pub(super) function: Function<'a>,
+    pub(crate) whole: bool,
+    pub(crate) function: Function<'a>,
 }
 
 /// The first point of a solve, from the spec's own guess or from a program's: what another solver has to
@@ -82,7 +82,7 @@ fn raw_start(nlp: &Transcription, guess: &Guess, raw: &[f64]) -> Result<Vec<f64>
 }
 
 /// Fits every curve, later ones replacing earlier ones.
-fn apply(layout: &Layout, curves: &[Curve], x: &mut [f64]) -> Result<(), SetupError> {
+pub(crate) fn apply(layout: &Layout, curves: &[Curve], x: &mut [f64]) -> Result<(), SetupError> {
     for curve in curves {
         let member = &layout.phases[curve.phase].outputs[curve.output];
         let time = if curve.whole { Whole::new(layout, curve.phase, x) } else { Whole::PHASE };
@@ -132,7 +132,7 @@ impl Whole {
 }
 
 /// Brings variables within their bounds and gives integrals the values of their sums.
-fn finish(nlp: &Transcription, mut x: Vec<f64>) -> Result<Vec<f64>, SetupError> {
+pub(crate) fn finish(nlp: &Transcription, mut x: Vec<f64>) -> Result<Vec<f64>, SetupError> {
     /// Integrals may depend on integrals; deeper nesting is left to the solver.
     const NESTING: usize = 3;
     clamp(nlp, &mut x);
@@ -166,7 +166,7 @@ fn clamp(nlp: &Transcription, x: &mut [f64]) {
 }
 
 /// Sets a duration or start if it is free.
-pub(super) fn set(time: Time, value: f64, x: &mut [f64]) {
+pub(crate) fn set(time: Time, value: f64, x: &mut [f64]) {
     if let Time::Free(variable) = time {
         x[variable as usize] = value;
     }

@@ -1,0 +1,218 @@
+//! What flight costs per second, by the spec's own functions, at many places at once.
+//!
+//! Takes a phase, a scaled time and poses of one vehicle; evaluates every integrand and every
+//! trajectory constraint of that phase with the vehicle in these poses and everything else as it
+//! is guessed. Constraints count by their violations (docs/maths.md, equation 11.4).
+
+use crate::multistart::vehicles::Vehicle;
+use crate::transcribe::instances::members;
+use crate::transcribe::node::{Node, Site};
+use crate::transcribe::points::Point;
+use crate::transcribe::rows::{bound_size, group_bounds};
+use crate::transcribe::shape::trace;
+use crate::transcribe::slots::Source;
+use crate::transcribe::{SetupError, Transcription};
+use ntg_splines::Side;
+use ntg_structure::{At, Block, Call, Data, Domain, Group, Row};
+
+/// Where a vehicle is and how it moves, in real time, SI.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pose {
+    pub(super) position: [f64; 2],
+    pub(super) velocity: [f64; 2],
+    pub(super) acceleration: [f64; 2],
+}
+
+/// Which functions are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Where {
+    /// Those along a phase, at a scaled time.
+    Along(f64),
+    /// Those at its start.
+    Start,
+    /// Those at its end.
+    End,
+}
+
+/// What one pose costs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Rate {
+    /// The objective per second along a phase, or the objective itself at its ends.
+    pub(super) cost: f64,
+    /// The sum of relative violations, each at most [`MOST`].
+    pub(super) violation: f64,
+}
+
+/// One violation counts at most this much.
+const MOST: f64 = 10.0;
+/// Poses that are evaluated at once.
+const CHUNK: usize = 4096;
+
+/// A problem seen from one vehicle in one phase.
+pub(super) struct Rates<'a> {
+    pub(super) nlp: &'a Transcription<'a>,
+    pub(super) vehicle: &'a Vehicle,
+    pub(super) phase: usize,
+    /// The guess.
+    pub(super) x: &'a [f64],
+    /// The derivative of the objective by every integral that is a variable.
+    pub(super) integrals: &'a [f64],
+}
+
+impl Rates<'_> {
+    /// The costs of poses.
+    pub(super) fn at(&self, place: Where, poses: &[Pose]) -> Result<Vec<Rate>, SetupError> {
+        use rayon::prelude::*;
+        let parts: Result<Vec<Vec<Rate>>, SetupError> =
+            poses.par_chunks(CHUNK).map(|chunk| self.chunk(place, chunk)).collect();
+        Ok(parts?.into_iter().flatten().collect())
+    }
+
+    fn chunk(&self, place: Where, poses: &[Pose]) -> Result<Vec<Rate>, SetupError> {
+        let frame = self.nlp.frame();
+        let mut rates = vec![Rate::default(); poses.len()];
+        // A constraint stands in several groups, one for each kind of point; once is enough.
+        let mut seen: Vec<(usize, Vec<i64>)> = vec![];
+        for group in &self.nlp.model.structure.groups {
+            for indices in members(&group.loops) {
+                if self.concerns(group, place, &indices)? {
+                    let bounds = group_bounds(&frame, group, &indices)?;
+                    let values = self.values(group, place, &indices, poses)?;
+                    self.add(group, (&indices, &bounds), &values, &mut seen, &mut rates)?;
+                }
+            }
+        }
+        Ok(rates)
+    }
+
+    /// Whether anything along the phase depends on time, or on outputs that move with it.
+    pub(super) fn depend_on_time(&self) -> Result<bool, SetupError> {
+        let point = Point { phase: Some(self.phase), tau: 0.5, side: Side::Right, weight: f64::NAN };
+        for group in &self.nlp.model.structure.groups {
+            for indices in members(&group.loops) {
+                if !self.concerns(group, Where::Along(0.5), &indices)? {
+                    continue;
+                }
+                let sources = trace(&self.nlp.frame(), &group.call, &Site { indices, point })?.sources;
+                let moves = |source: &Source| {
+                    matches!(source, Source::Flat { at: At::Here, .. })
+                        && self.own(*source, Where::Along(0.5)).is_none()
+                };
+                if uses_tau(&group.call) || sources.iter().any(moves) {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether a group is evaluated there in this phase.
+    fn concerns(&self, group: &Group, place: Where, indices: &[i64]) -> Result<bool, SetupError> {
+        let reference = match (&group.domain, place) {
+            (Domain::Path { phase, .. }, Where::Along(_)) => phase,
+            (Domain::Start(phase), Where::Start) | (Domain::End(phase), Where::End) => phase,
+            _ => return Ok(false),
+        };
+        let structure = &self.nlp.model.structure;
+        let joins = |row: &Row| {
+            matches!(row, Row::Constraint { constraint, .. }
+                if structure.constraints[*constraint].block == Block::Continuity)
+        };
+        Ok(!group.rows.iter().any(joins) && self.nlp.model.layout.phase(structure, reference, indices)? == self.phase)
+    }
+
+    /// Every row of a group for every pose: `[row * poses + pose]`.
+    fn values(&self, group: &Group, place: Where, indices: &[i64], poses: &[Pose]) -> Result<Vec<f64>, SetupError> {
+        let (frame, layout) = (self.nlp.frame(), &self.nlp.model.layout);
+        let point = match place {
+            Where::Along(tau) => Point { phase: Some(self.phase), tau, side: Side::Right, weight: f64::NAN },
+            Where::Start => Point::start(self.phase),
+            Where::End => Point::end(self.phase),
+        };
+        let site = Site { indices: indices.to_vec(), point };
+        let sources = trace(&frame, &group.call, &site)?.sources;
+        let node = Node::build(&frame, &group.call, &vec![site; poses.len()], &sources)?;
+        let duration = layout.duration(self.phase, self.x);
+        let mut u = Vec::with_capacity(sources.len() * poses.len());
+        for source in &sources {
+            match self.own(*source, place) {
+                Some((axis, derivative)) => {
+                    let factor = duration.powi(i32::try_from(derivative).unwrap_or(i32::MAX));
+                    u.extend(poses.iter().map(|pose| match derivative {
+                        0 => pose.position[axis],
+                        1 => pose.velocity[axis] * factor,
+                        2 => pose.acceleration[axis] * factor,
+                        _ => 0.0,
+                    }));
+                }
+                None => u.resize(u.len() + poses.len(), layout.affine(*source, &point).value(self.x)),
+            }
+        }
+        let mut work = node.work();
+        node.values(self.nlp.problem, &self.nlp.model.tables, &u, &mut work);
+        Ok(work.values)
+    }
+
+    /// The axis and derivative of the vehicle that a slot stands for, if it does.
+    fn own(&self, source: Source, place: Where) -> Option<(usize, usize)> {
+        let Source::Flat { phase, at, output, derivative } = source else { return None };
+        let here = match at {
+            At::Here => true,
+            At::Start => place == Where::Start,
+            At::End => place == Where::End,
+        };
+        let first = self.nlp.model.layout.agents[self.vehicle.agent].phases.start;
+        let axis = self.vehicle.members[self.phase - first].iter().position(|member| *member == output)?;
+        (here && phase == self.phase && axis < 2).then_some((axis, derivative))
+    }
+
+    fn add(
+        &self,
+        group: &Group,
+        (indices, bounds): (&Vec<i64>, &[(f64, f64)]),
+        values: &[f64],
+        seen: &mut Vec<(usize, Vec<i64>)>,
+        rates: &mut [Rate],
+    ) -> Result<(), SetupError> {
+        let (structure, layout) = (&self.nlp.model.structure, &self.nlp.model.layout);
+        // Integrands hold the factor T.
+        let path = matches!(group.domain, Domain::Path { .. });
+        let duration = if path { layout.duration(self.phase, self.x) } else { 1.0 };
+        for ((row, values), bounds) in group.rows.iter().zip(values.chunks_exact(rates.len())).zip(bounds) {
+            let price = match row {
+                Row::Cost { .. } => 1.0 / duration,
+                Row::Integral { integral, index } => {
+                    let index: Vec<i64> = index.iter().map(|affine| affine.at(indices)).collect();
+                    let variable = layout.integral(structure, *integral, &index)?;
+                    self.integrals.get(variable as usize).copied().unwrap_or(0.0) / duration
+                }
+                Row::Part { .. } => continue,
+                Row::Constraint { constraint, .. } => {
+                    let member = (*constraint, indices.clone());
+                    if !seen.contains(&member) {
+                        seen.push(member);
+                        let unit = structure.constraints[*constraint].unit.factor;
+                        rates.iter_mut().zip(values).for_each(|(r, v)| r.violation += violation(*v, *bounds, unit));
+                    }
+                    continue;
+                }
+            };
+            rates.iter_mut().zip(values).for_each(|(rate, value)| rate.cost += price * value);
+        }
+        Ok(())
+    }
+}
+
+fn uses_tau(call: &Call) -> bool {
+    call.data.contains(&Data::Tau) || call.reductions.iter().any(|reduction| uses_tau(&reduction.body))
+}
+
+/// The relative violation (9.3), at most [`MOST`]; also where there is no value.
+fn violation(value: f64, (lower, upper): (f64, f64), unit: f64) -> f64 {
+    let size = match bound_size((lower, upper)) {
+        size if size > 0.0 => size,
+        _ => unit,
+    };
+    let missed = (lower - value).max(value - upper).max(0.0) / size;
+    if value.is_nan() { MOST } else { missed.min(MOST) }
+}

@@ -1,0 +1,73 @@
+//! Which solves ended at the same local minimum (docs/maths.md, equation 11.7).
+//!
+//! Two solutions are one minimum where their objectives agree and their outputs stay together over
+//! each agent's own time. Mirror images have equal objectives and remain two.
+
+use super::Minimum;
+use crate::report::Report;
+use crate::solution::Solution;
+
+/// Objectives that differ by less than this part of their size are equal.
+const SAME_OBJECTIVE: f64 = 1e-5;
+/// Outputs whose root mean square difference is below this part of their size are equal.
+const SAME_PATH: f64 = 0.02;
+/// Times at which outputs are compared.
+const SAMPLES: usize = 65;
+
+/// A solved start with what it is compared by.
+struct Candidate {
+    start: usize,
+    report: Report,
+    curves: Vec<Vec<f64>>,
+}
+
+/// The minima, the best first, each with the starts that led to it. `solved` holds starts with
+/// their reports, in order.
+pub(super) fn minima(solved: Vec<(usize, Report)>) -> Vec<(Minimum, Vec<usize>)> {
+    let maximize = solved.first().is_some_and(|(_, r)| r.solution.structure().maximize);
+    let mut candidates: Vec<Candidate> = solved
+        .into_iter()
+        .map(|(start, report)| Candidate { start, curves: curves(&report.solution), report })
+        .collect();
+    let key = |c: &Candidate| if maximize { -c.report.objective } else { c.report.objective };
+    // Stable: among equal objectives the order of the starts decides.
+    candidates.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    let mut found: Vec<(Candidate, Vec<usize>)> = vec![];
+    for candidate in candidates {
+        match found.iter_mut().find(|(known, _)| same(known, &candidate)) {
+            Some((_, starts)) => starts.push(candidate.start),
+            None => {
+                let start = candidate.start;
+                found.push((candidate, vec![start]));
+            }
+        }
+    }
+    let minimum = |(candidate, starts): (Candidate, Vec<usize>)| {
+        let Candidate { start, report, .. } = candidate;
+        (Minimum { count: starts.len(), first: start, report }, starts)
+    };
+    found.into_iter().map(minimum).collect()
+}
+
+/// Every output at equal parts of its agent's time.
+fn curves(solution: &Solution) -> Vec<Vec<f64>> {
+    let trajectories = solution.trajectories().into_iter();
+    trajectories.map(|t| t.sample(SAMPLES).into_iter().map(|(_, value)| value).collect()).collect()
+}
+
+fn same(a: &Candidate, b: &Candidate) -> bool {
+    let size = a.report.objective.abs().max(b.report.objective.abs()).max(f64::MIN_POSITIVE);
+    let near = (a.report.objective - b.report.objective).abs() <= SAME_OBJECTIVE * size;
+    near && a.curves.iter().zip(&b.curves).all(|(a, b)| together(a, b))
+}
+
+fn together(a: &[f64], b: &[f64]) -> bool {
+    let range = |values: &[f64]| {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (most - least).max(most.abs()).max(least.abs())
+    };
+    let size = range(a).max(range(b));
+    let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+    (square / a.len().max(1) as f64).sqrt() <= SAME_PATH * size
+}

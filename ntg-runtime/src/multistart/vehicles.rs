@@ -1,0 +1,181 @@
+//! Which outputs are positions.
+//!
+//! Two or three outputs of an agent are the position of a *vehicle* where a route guesses them
+//! together. In an agent without such a route they are those of one unit and one index that boundary
+//! conditions fix at both ends or constant bounds confine, if there are two or three.
+
+use crate::guess::{Guess, constant_bounds};
+use crate::transcribe::instances::{index_at, members};
+use crate::transcribe::layout::Layout;
+use crate::transcribe::slots::AffineMap;
+use crate::transcribe::{Transcription, names};
+use ntg_splines::Side;
+use ntg_structure::{GuessKind, GuessScope};
+
+/// An output by name and index.
+type Axis = (String, Option<i64>);
+
+/// The outputs that are one vehicle's position.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Vehicle {
+    pub(super) agent: usize,
+    /// Name and index of two or three outputs.
+    pub(super) axes: Vec<Axis>,
+    /// For each phase of the agent, which of the phase's outputs they are.
+    pub(super) members: Vec<Vec<usize>>,
+}
+
+/// Smallest and largest number of outputs of one position.
+const AXES: std::ops::RangeInclusive<usize> = 2..=3;
+
+/// Every vehicle of a problem.
+pub(super) fn vehicles(nlp: &Transcription, guess: &Guess) -> Vec<Vehicle> {
+    let mut found: Vec<Vehicle> = vec![];
+    let mut add = |agent: usize, axes: Vec<Axis>| {
+        let known = |v: &Vehicle| v.agent == agent && v.axes.iter().any(|axis| axes.contains(axis));
+        if !found.iter().any(known) {
+            found.extend(Vehicle::new(&nlp.model.layout, nlp, agent, axes));
+        }
+    };
+    for (agent, axes) in guessed(nlp, guess) {
+        add(agent, axes);
+    }
+    for agent in 0..nlp.model.layout.agents.len() {
+        if !found.iter().any(|vehicle| vehicle.agent == agent) {
+            let plain = plain(nlp, agent);
+            found.extend(plain.into_iter().filter_map(|axes| Vehicle::new(&nlp.model.layout, nlp, agent, axes)));
+        }
+    }
+    found
+}
+
+impl Vehicle {
+    /// None where a phase of the agent does not have all of the outputs.
+    fn new(layout: &Layout, nlp: &Transcription, agent: usize, axes: Vec<Axis>) -> Option<Self> {
+        let member = |phase: usize, (name, index): &Axis| {
+            let declared = &nlp.model.structure.phases[layout.phases[phase].phase].outputs;
+            layout.phases[phase].outputs.iter().position(|o| o.index == *index && declared[o.output].name == *name)
+        };
+        let phases = layout.agents[agent].phases.clone();
+        let members: Option<Vec<Vec<usize>>> =
+            phases.map(|phase| axes.iter().map(|axis| member(phase, axis)).collect()).collect();
+        AXES.contains(&axes.len()).then_some(Self { agent, axes, members: members? })
+    }
+
+    /// Its position at a scaled time of a phase, SI.
+    pub(super) fn at(&self, nlp: &Transcription, phase: usize, tau: f64, x: &[f64]) -> Vec<f64> {
+        let layout = &nlp.model.layout;
+        let first = layout.agents[self.agent].phases.start;
+        let side = if tau < 1.0 { Side::Right } else { Side::Left };
+        let value =
+            |output: &usize| AffineMap { terms: layout.basis(phase, *output, 0, tau, side), offset: 0.0 }.value(x);
+        self.members[phase - first].iter().map(value).collect()
+    }
+
+    /// Its first and last positions.
+    pub(super) fn ends(&self, nlp: &Transcription, x: &[f64]) -> [Vec<f64>; 2] {
+        let phases = &nlp.model.layout.agents[self.agent].phases;
+        [self.at(nlp, phases.start, 0.0, x), self.at(nlp, phases.end - 1, 1.0, x)]
+    }
+
+    /// The box in which routes are looked for: what the guess covers, made wider by half of its
+    /// larger side, within constant bounds on the outputs (docs/maths.md, equation 11.1).
+    pub(super) fn extent(&self, nlp: &Transcription, x: &[f64]) -> Vec<(f64, f64)> {
+        /// Points of each phase that say what the guess covers.
+        const SAMPLES: usize = 33;
+        let phases = nlp.model.layout.agents[self.agent].phases.clone();
+        let mut held = vec![(f64::INFINITY, f64::NEG_INFINITY); self.axes.len()];
+        for phase in phases.clone() {
+            for i in 0..SAMPLES {
+                let at = self.at(nlp, phase, i as f64 / (SAMPLES - 1) as f64, x);
+                held.iter_mut().zip(at).for_each(|(h, v)| *h = (h.0.min(v), h.1.max(v)));
+            }
+        }
+        let bounds: Vec<_> = self.members[0].iter().map(|o| constant_bounds(nlp, phases.start, *o)).collect();
+        let sides = held.iter().zip(&bounds).map(|(h, bound)| {
+            let confined = bound.map_or(0.0, |(lower, upper)| upper - lower);
+            (h.1 - h.0).max(if confined.is_finite() { 0.5 * confined } else { 0.0 })
+        });
+        let largest = sides.fold(0.0, f64::max);
+        let wider = if largest > 0.0 { 0.5 * largest } else { self.unit(nlp) };
+        let widen = |(h, bound): (&(f64, f64), &Option<(f64, f64)>)| {
+            let (lower, upper) = bound.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            ((h.0 - wider).max(lower.min(h.0)), (h.1 + wider).min(upper.max(h.1)))
+        };
+        held.iter().zip(&bounds).map(widen).collect()
+    }
+
+    fn unit(&self, nlp: &Transcription) -> f64 {
+        let phase = &nlp.model.layout.phases[nlp.model.layout.agents[self.agent].phases.start];
+        nlp.model.structure.phases[phase.phase].outputs[phase.outputs[self.members[0][0]].output].unit.factor
+    }
+}
+
+/// Outputs that routes guess together, the spec's first.
+fn guessed(nlp: &Transcription, guess: &Guess) -> Vec<(usize, Vec<Axis>)> {
+    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+    let mut found = vec![];
+    for declared in &structure.guesses {
+        let GuessKind::Route { outputs, .. } = &declared.kind else { continue };
+        for indices in members(&declared.loops) {
+            let agent = match &declared.scope {
+                GuessScope::Phase(phase) => {
+                    layout.phase(structure, phase, &indices).map(|p| layout.phases[p].agent).ok()
+                }
+                GuessScope::Agent { agent, index } => {
+                    let index = index_at(index.as_ref(), &indices);
+                    layout.agents.iter().position(|member| member.agent == *agent && member.index == index)
+                }
+            };
+            let axes = outputs.iter().map(|(name, index)| (name.clone(), index_at(index.as_ref(), &indices)));
+            found.extend(agent.map(|agent| (agent, axes.collect())));
+        }
+    }
+    for route in guess.routes() {
+        for agent in 0..layout.agents.len() {
+            let path = names::agent(structure, layout, agent);
+            let axis = |given: &String| outputs(nlp, agent).into_iter().find(|o| names::means(given, &path, &o.0, o.1));
+            found.extend(route.iter().map(axis).collect::<Option<Vec<_>>>().map(|axes| (agent, axes)));
+        }
+    }
+    found
+}
+
+/// Name and index of every output of an agent's first phase.
+fn outputs(nlp: &Transcription, agent: usize) -> Vec<Axis> {
+    let layout = &nlp.model.layout;
+    let Some(phase) = layout.agents[agent].phases.clone().next() else { return vec![] };
+    let declared = &nlp.model.structure.phases[layout.phases[phase].phase].outputs;
+    layout.phases[phase].outputs.iter().map(|o| (declared[o.output].name.clone(), o.index)).collect()
+}
+
+/// Groups of outputs of one unit and one index that are fixed at both ends, or confined.
+fn plain(nlp: &Transcription, agent: usize) -> Vec<Vec<Axis>> {
+    let layout = &nlp.model.layout;
+    let phases = layout.agents[agent].phases.clone();
+    let (Some(first), Some(last)) = (phases.clone().next(), phases.last()) else { return vec![] };
+    let declared = &nlp.model.structure.phases[layout.phases[first].phase].outputs;
+    let mut groups: Vec<(String, Option<i64>, Vec<Axis>)> = vec![];
+    for (output, member) in layout.phases[first].outputs.iter().enumerate() {
+        let own = &declared[member.output];
+        let fixed = |phase: usize, output: usize, tau: f64, side: Side| {
+            let map = AffineMap { terms: layout.basis(phase, output, 0, tau, side), offset: 0.0 };
+            nlp.linear.value(&map).is_some()
+        };
+        let confined = constant_bounds(nlp, first, output).is_some_and(|(a, b)| (b - a).is_finite());
+        let later = &nlp.model.structure.phases[layout.phases[last].phase].outputs;
+        let same =
+            |o: &crate::transcribe::layout::OutputMember| o.index == member.index && later[o.output].name == own.name;
+        let Some(at_end) = layout.phases[last].outputs.iter().position(same) else { continue };
+        let tied = fixed(first, output, 0.0, Side::Right) && fixed(last, at_end, 1.0, Side::Left);
+        if !(confined || tied) {
+            continue;
+        }
+        let axis = (own.name.clone(), member.index);
+        match groups.iter_mut().find(|g| g.0 == own.unit.symbol && g.1 == member.index) {
+            Some(group) => group.2.push(axis),
+            None => groups.push((own.unit.symbol.clone(), member.index, vec![axis])),
+        }
+    }
+    groups.into_iter().map(|group| group.2).filter(|axes| AXES.contains(&axes.len())).collect()
+}
