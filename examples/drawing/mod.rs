@@ -13,6 +13,7 @@ pub(crate) mod heat;
 pub(crate) mod history;
 pub(crate) mod missile;
 pub(crate) mod paper;
+pub(crate) mod phases;
 pub(crate) mod radar;
 pub(crate) mod track;
 
