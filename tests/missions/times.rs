@@ -109,8 +109,8 @@ fn event_times_add_up() {
             let [start, end, length] = ["start", "end", "duration"].map(|what| time(&format!("{what}({phase})")));
             near(start + length, end);
         }
-        near(time(&format!("{bus}.D[2]")), time(&format!("duration({bus}.leg[2])")));
-        near(time(&format!("{bus}.back")), time(&format!("duration({bus}.home)")));
+        near(time(&format!("{bus}.leg[2].D")), time(&format!("duration({bus}.leg[2])")));
+        near(time(&format!("{bus}.home.back")), time(&format!("duration({bus}.home)")));
     }
     assert!(time("start(bus[2])") >= time("end(bus[1].leg[1])") - 1e-6);
     assert!(solution.phases().iter().all(|phase| phase.start < phase.end));

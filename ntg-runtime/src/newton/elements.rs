@@ -330,7 +330,7 @@ impl BlockPlan {
         let n = self.slots;
         let Buffers { second, element, convexifier, .. } = buffers;
         let element = &mut element[..n * n];
-        for lane in 0..LANES {
+        (0..LANES).for_each(|lane| {
             element.fill(0.0);
             for &(i, j) in &self.pairs {
                 element[i * n + j] = second[i * n + j][lane];
@@ -340,7 +340,7 @@ impl BlockPlan {
             for &(i, j) in &self.pairs {
                 second[i * n + j][lane] = element[i * n + j];
             }
-        }
+        });
     }
 
     /// `E^T second E`, added to the matrix.

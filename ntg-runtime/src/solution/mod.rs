@@ -151,7 +151,7 @@ impl Solution {
     }
 
     /// Whether no phase of a stretch has a name for its duration.
-    fn is_nameless(&self, phases: std::ops::Range<usize>) -> bool {
+    fn is_nameless(&self, phases: Range<usize>) -> bool {
         let (structure, layout) = (self.structure(), &self.inner.model.layout);
         let mut phases = phases;
         phases.all(|phase| structure.phases[layout.phases[phase].phase].duration_name.is_none())
