@@ -89,7 +89,7 @@ fn json_lists_the_times_of_agents_and_phases_by_path() {
 
     let found = json(&["solve", "missile_boost_coast.ntg"]);
     let at = |path: &str| number(&found["times"][path]);
-    assert_eq!((at("end(boost)"), at("start(coast)"), at("burn")), (6.0, 6.0, 6.0));
+    assert_eq!((at("end(boost)"), at("start(coast)"), at("boost.burn")), (6.0, 6.0, 6.0));
     assert!((at("end(coast)") / 18.799_113_6 - 1.0).abs() < 1e-6);
     // A number in each phase, one function over both.
     let thrust = found["lets"]["thrust"]["value"].as_array().expect("values over time");
