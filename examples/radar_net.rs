@@ -28,10 +28,10 @@ fn main() -> Drawn {
 
     let colours = [BLUE, VERMILION, GREEN, PURPLE];
     let mut lines = legs(flight.untyped(), ["x", "y"], &[Line::new("flight", INK, Stroke::Solid, vec![])])?;
-    for i in 0..net.x_radar.len() {
+    for (i, colour) in colours.into_iter().enumerate() {
         let at = |a: f64| (net.x_radar[i] + net.reach[i] * a.cos(), net.y_radar[i] + net.reach[i] * a.sin());
         let circle = (0..=120).map(|k| at(f64::from(k) * 3.0_f64.to_radians())).collect();
-        lines.push(Line::new(&format!("reach of radar {}", i + 1), colours[i], Stroke::Dashed, circle));
+        lines.push(Line::new(&format!("reach of radar {}", i + 1), colour, Stroke::Dashed, circle));
     }
     let path = Path::new("pictures/radar_net_map.svg");
     let sentence =
