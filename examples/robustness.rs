@@ -2,13 +2,15 @@
 //!
 //! Run with `cargo run --release --example robustness`; takes about half a minute. Without a limit on
 //! the signature; with the limit at once, whose gradient vanishes where the aircraft is turned away;
-//! and with the limit by the spec's continuation, from a wide blend in azimuth to a narrow one.
+//! with the limit by the spec's continuation, from a wide blend in azimuth to a narrow one; and so with
+//! two phases, of which the second may show more.
 
 use ntg::prelude::*;
 use ntg::runtime::problem::{Derivatives, Lanes, Problem};
 use ntg::runtime::{report::Report, solve_from, splines::Table, structure::Structure};
 
 ntg_file!("specs/low_observable.ntg");
+ntg_file!("specs/low_observable_phases.ntg");
 
 const ROUTES: &str = include_str!("../specs/data/routes.csv");
 
@@ -22,7 +24,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{:<26} {:>6} {:>5}  {:>10}  {:>7}  (how often|broken)", "", "", "", "median max", "");
     table("no limit", &AtOnce(&unlimited), 128.252905291)?;
     table("limit 4.2, at once", &AtOnce(&limited), 130.907227498)?;
-    table("limit 4.2, continuation", &limited, 130.907227498)
+    table("limit 4.2, continuation", &limited, 130.907227498)?;
+    table("two phases, continuation", &LowObservablePhases::default(), 128.347970733)
 }
 
 /// Solves from every route, and prints one line.

@@ -8,12 +8,11 @@ use crate::guess::{Guess, start};
 use crate::method::{self, Start};
 use crate::outcome::Outcome;
 use crate::problem::Problem;
-use crate::settings::{Control, Settings};
+use crate::settings::Settings;
 use crate::solution::{Inner, Solution};
 use crate::transcribe::{SetupError, Transcription};
 use ntg_structure::{Points, Structure};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Up to so many intervals a problem is solved at once.
 const FEW: usize = 24;
@@ -37,8 +36,7 @@ pub(crate) fn start_from_coarse(
     }
     let coarse = coarsened(structure, most.div_ceil(FINER));
     let (earlier, spent) = start_from_coarse(problem, &coarse, guess, settings)?;
-    let cancelled = Arc::new(AtomicBool::new(false));
-    let rough = rough(settings, &cancelled);
+    let rough = rough(settings);
     let mut nlp = Transcription::with(problem, coarse)?;
     let (first, from) = match &earlier {
         Some(solution) => (start(&nlp, Some(&Guess::from(solution)))?, Start::Near),
@@ -47,8 +45,7 @@ pub(crate) fn start_from_coarse(
     nlp.set_scales(&first, settings)?;
     let outcome = method::solve_from(&nlp, &first, from, &rough);
     let iterations = spent + outcome.iterations;
-    let good = outcome.status.is_solved() && !cancelled.load(Ordering::Relaxed);
-    Ok((good.then(|| solution(&nlp, outcome)), iterations))
+    Ok((outcome.status.is_solved().then(|| solution(&nlp, outcome)), iterations))
 }
 
 /// The most intervals of any output.
@@ -80,20 +77,10 @@ fn coarsened(structure: &Structure, most: usize) -> Structure {
 }
 
 /// The settings of a level that is not the last.
-fn rough(settings: &Settings, cancelled: &Arc<AtomicBool>) -> Settings {
-    let mut rough = settings.clone();
-    rough.tolerance = settings.tolerance.max(ROUGH);
-    rough.constraint_tolerance = settings.constraint_tolerance.max(ROUGH);
-    rough.scales.clone_from(&settings.scales);
-    if let Some(watch) = settings.on_iteration.clone() {
-        let cancelled = cancelled.clone();
-        rough.on_iteration = Some(Arc::new(move |progress| {
-            let answer = watch(progress);
-            cancelled.fetch_or(answer == Control::Cancel, Ordering::Relaxed);
-            answer
-        }));
-    }
-    rough
+fn rough(settings: &Settings) -> Settings {
+    let tolerance = settings.tolerance.max(ROUGH);
+    let constraint_tolerance = settings.constraint_tolerance.max(ROUGH);
+    Settings { tolerance, constraint_tolerance, ..settings.clone() }
 }
 
 fn solution(nlp: &Transcription, outcome: Outcome) -> Solution {

@@ -5,6 +5,7 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// What the callback answers.
@@ -145,6 +146,21 @@ impl fmt::Display for InvalidSetting {
 impl std::error::Error for InvalidSetting {}
 
 impl Settings {
+    /// The same with a callback that, once it has asked to stop, is not asked again: a problem may be
+    /// solved in several parts, and none may go on after one was cancelled.
+    pub(crate) fn remembering(&self) -> Self {
+        let Some(watch) = self.on_iteration.clone() else { return self.clone() };
+        let cancelled = AtomicBool::new(false);
+        let remember: OnIteration = Arc::new(move |progress| {
+            if cancelled.load(Ordering::Relaxed) || watch(progress) == Control::Cancel {
+                cancelled.store(true, Ordering::Relaxed);
+                return Control::Cancel;
+            }
+            Control::Continue
+        });
+        Self { on_iteration: Some(remember), ..self.clone() }
+    }
+
     /// The same with what is left of the time limit after some time.
     pub(crate) fn after(&self, elapsed: Duration) -> Self {
         let time_limit = self.time_limit.map(|limit| limit.saturating_sub(elapsed).max(Duration::from_nanos(1)));

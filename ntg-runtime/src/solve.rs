@@ -80,6 +80,7 @@ pub fn solve_from(problem: &dyn Problem, guess: &Guess, settings: &Settings) -> 
 
 fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Result<Report, Error> {
     settings.validate()?;
+    let settings = &settings.remembering();
     let began = Instant::now();
     let structure = problem.structure();
     let steps = steps(&structure);
