@@ -1,4 +1,4 @@
-//! Which solves ended at the same local minimum (docs/maths.md, equation 11.7).
+//! Which solves ended at the same local minimum (docs/maths.md, equation 12.7).
 //!
 //! Two solutions are one minimum where their objectives agree and their outputs stay together over
 //! each agent's own time. Mirror images have equal objectives and remain two.

@@ -1,4 +1,4 @@
-//! Many starts of one problem, and the local minima that they lead to (docs/maths.md, section 11).
+//! Many starts of one problem, and the local minima that they lead to (docs/maths.md, section 12).
 //!
 //! ```text
 //! Problem, Guess -> vehicles -> starts (guess, search, routes, perturbed) -> solves -> minima

@@ -69,7 +69,7 @@ fn along<'a>(nlp: &Transcription, vehicle: &Vehicle, points: Vec<Vec<f64>>) -> V
 }
 
 /// The guess with a few half sine waves added to every output, other durations and other variables
-/// (docs/maths.md, equation 11.2).
+/// (docs/maths.md, equation 12.2).
 pub(super) fn perturbed(nlp: &Transcription, guess: &[f64], rng: &mut Rng) -> Result<Vec<f64>, SetupError> {
     let layout = &nlp.model.layout;
     let mut x = guess.to_vec();

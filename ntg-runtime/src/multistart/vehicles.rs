@@ -79,7 +79,7 @@ impl Vehicle {
     }
 
     /// The box in which routes are looked for: what the guess covers, made wider by half of its
-    /// larger side, within constant bounds on the outputs (docs/maths.md, equation 11.1).
+    /// larger side, within constant bounds on the outputs (docs/maths.md, equation 12.1).
     pub(super) fn extent(&self, nlp: &Transcription, x: &[f64]) -> Vec<(f64, f64)> {
         /// Points of each phase that say what the guess covers.
         const SAMPLES: usize = 33;

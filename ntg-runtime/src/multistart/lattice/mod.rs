@@ -1,4 +1,4 @@
-//! A coarse search over the plane, for the global shape of a route (docs/maths.md, section 11.3).
+//! A coarse search over the plane, for the global shape of a route (docs/maths.md, section 12.3).
 //!
 //! ```text
 //! vehicle, guess -> Grid -> Speeds -> Prices (the spec's own functions on every move) -> cheapest path -> start

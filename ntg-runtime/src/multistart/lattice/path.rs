@@ -132,7 +132,7 @@ pub(super) fn cheapest(grid: &Grid, prices: &Prices, known: &[Path]) -> Option<P
     end(best).is_finite().then(|| search.path(last + best, phases, states))
 }
 
-/// What moves from a cell cost more because known paths are near (docs/maths.md, equation 11.6).
+/// What moves from a cell cost more because known paths are near (docs/maths.md, equation 12.6).
 fn factor(grid: &Grid, known: &[Path], cell: usize) -> f64 {
     let at = grid.position(cell);
     let [a, b] = grid.ends;

@@ -1,4 +1,4 @@
-//! What every move on the lattice costs (docs/maths.md, equations 11.3 to 11.5).
+//! What every move on the lattice costs (docs/maths.md, equations 12.3 to 12.5).
 
 use super::grid::{Grid, HEADINGS, TURNS};
 use super::rates::{Pose, Rate, Rates, Where};
@@ -219,7 +219,7 @@ fn typical(rates: &Rates, sample: &[([f64; 2], [f64; 2])], speed: f64, time: f64
     Ok(if second > 0.0 { second } else { 1.0 })
 }
 
-/// The speed at which a metre is cheapest: equation 11.3.
+/// The speed at which a metre is cheapest: equation 12.3.
 fn best_speed(
     rates: &Rates,
     sample: &[([f64; 2], [f64; 2])],

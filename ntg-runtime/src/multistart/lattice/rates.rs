@@ -2,7 +2,7 @@
 //!
 //! Takes a phase, a scaled time and poses of one vehicle; evaluates every integrand and every
 //! trajectory constraint of that phase with the vehicle in these poses and everything else as it
-//! is guessed. Constraints count by their violations (docs/maths.md, equation 11.4).
+//! is guessed. Constraints count by their violations (docs/maths.md, equation 12.4).
 
 use crate::multistart::vehicles::Vehicle;
 use crate::transcribe::instances::members;
