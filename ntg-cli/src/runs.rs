@@ -39,7 +39,7 @@ fn run(path: &Path, set: &[String], interrupt: &Interrupt) -> Result<Run, String
     let watch = Watch::new(interrupt);
     watch.over(&mut settings);
     let report = ntg_runtime::solve(&problem, &settings);
-    let iterations = watch.end();
+    let iterations = watch.end(crate::solve::is_cancelled(&report));
     let report = report.map_err(|error| format!("{}: {error}", path.display()))?;
     if !report.is_solved() {
         eprintln!("warning: {}: {}; what follows is the last point", path.display(), report.status);

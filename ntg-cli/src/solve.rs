@@ -12,6 +12,7 @@ use ntg_runtime::guess::Guess;
 use ntg_runtime::multistart::{MultiReport, multistart_from};
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::{Method, Settings};
+use ntg_runtime::{Error, status::Status};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
@@ -63,7 +64,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
             let watch = Watch::new(&interrupt);
             watch.over(&mut settings);
             let report = ntg_runtime::solve_from(&problem, &guess, &settings);
-            iterations = watch.end();
+            iterations = watch.end(is_cancelled(&report));
             report.map(|report| Found::One(Box::new(report)))
         }
     };
@@ -89,6 +90,11 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         false if interrupt.is_pressed() => Exit::Interrupted,
         false => Exit::NotSolved,
     })
+}
+
+/// Whether a solve was stopped from outside.
+pub(crate) fn is_cancelled(solved: &Result<Report, Error>) -> bool {
+    solved.as_ref().is_ok_and(|report| report.status == Status::Cancelled)
 }
 
 /// What the command line says about the start; none for the spec's own guess.

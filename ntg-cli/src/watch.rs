@@ -71,11 +71,12 @@ impl Watch {
         if self.interrupt.is_pressed() { Control::Cancel } else { Control::Continue }
     }
 
-    /// Takes the line away; gives all iterations seen.
-    pub(crate) fn end(&self) -> Vec<Progress> {
+    /// Takes the line away; gives all iterations seen. Says where a solve was stopped that would have
+    /// gone on: one that came to its end in spite of Ctrl-C was not.
+    pub(crate) fn end(&self, cancelled: bool) -> Vec<Progress> {
         self.line.finish_and_clear();
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        if let (true, Some(last)) = (self.interrupt.is_pressed(), seen.last()) {
+        if let (true, Some(last)) = (cancelled && self.interrupt.is_pressed(), seen.last()) {
             eprintln!("stopped by Ctrl-C after {}", words(last));
         }
         seen
