@@ -4,14 +4,14 @@ mod codegen_support;
 
 use codegen_support::{body, expand, one_kernel, rest};
 
-/// The function `path_values` of a program of one kernel.
+/// The function of a program of one kernel that gives its values.
 #[track_caller]
 fn values(program: &ntg_compiler::program::Program) -> String {
     let text = expand(program);
     let start = text.find("/// `out[0]`").expect("rows are documented");
     let rest = &text[start..];
-    let end = rest.find("\n        }\n").expect("the function ends");
-    rest[..end + 10].lines().map(|line| format!("{}\n", line.strip_prefix("        ").unwrap_or(line))).collect()
+    let end = rest.find("\n            }\n").expect("the function ends");
+    rest[..end + 14].lines().map(|line| format!("{}\n", line.strip_prefix("            ").unwrap_or(line))).collect()
 }
 
 #[test]

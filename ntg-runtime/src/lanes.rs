@@ -5,6 +5,8 @@
 //! of the contract; the bits are the same on all. The drivers load a pack of each input, call the
 //! kernel, and store a pack of each result. They allocate nothing.
 
+use std::marker::PhantomData;
+
 use ntg_math::{MOST_LANES, Pack, Simd, Task, Work, dispatch};
 use ntg_splines::Table;
 use ntg_structure::Structure;
@@ -33,16 +35,16 @@ impl<T: Kernels> Problem for T {
 
     fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
         let call = Call { problem: self, kernel, point: Lanes { lanes, inputs, weights: &[] }, tables };
-        dispatch(Values(call, values));
+        dispatch(AllValues(call, values));
     }
 
     fn derivatives(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
-        dispatch(ValuesAndDerivatives(Call { problem: self, kernel, point, tables }, out));
+        dispatch(AllDerivatives(Call { problem: self, kernel, point, tables }, out));
     }
 
     fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]) {
         let call = Call { problem: self, kernel, point: Lanes { lanes, inputs, weights: &[] }, tables };
-        dispatch(Probes(call, probes));
+        dispatch(AllProbes(call, probes));
     }
 }
 
@@ -54,11 +56,11 @@ struct Call<'a, T> {
     tables: &'a [Table],
 }
 
-struct Values<'a, T>(Call<'a, T>, &'a mut [f64]);
-struct ValuesAndDerivatives<'a, T>(Call<'a, T>, Derivatives<'a>);
-struct Probes<'a, T>(Call<'a, T>, &'a mut [f64]);
+struct AllValues<'a, T>(Call<'a, T>, &'a mut [f64]);
+struct AllDerivatives<'a, T>(Call<'a, T>, Derivatives<'a>);
+struct AllProbes<'a, T>(Call<'a, T>, &'a mut [f64]);
 
-impl<T: Kernels> Task for Values<'_, T> {
+impl<T: Kernels> Task for AllValues<'_, T> {
     #[inline]
     fn run<S: Simd>(self, simd: S) {
         let Call { problem, kernel, point, tables } = self.0;
@@ -66,7 +68,7 @@ impl<T: Kernels> Task for Values<'_, T> {
     }
 }
 
-impl<T: Kernels> Task for ValuesAndDerivatives<'_, T> {
+impl<T: Kernels> Task for AllDerivatives<'_, T> {
     #[inline]
     fn run<S: Simd>(self, simd: S) {
         let Call { problem, kernel, point, tables } = self.0;
@@ -74,7 +76,7 @@ impl<T: Kernels> Task for ValuesAndDerivatives<'_, T> {
     }
 }
 
-impl<T: Kernels> Task for Probes<'_, T> {
+impl<T: Kernels> Task for AllProbes<'_, T> {
     #[inline]
     fn run<S: Simd>(self, simd: S) {
         let Call { problem, kernel, point, tables } = self.0;
@@ -82,81 +84,152 @@ impl<T: Kernels> Task for Probes<'_, T> {
     }
 }
 
-/// Calls `f` with the inputs of every pack of lanes and stores its results.
+/// The values of one kernel, at a pack of lanes: `I` inputs, `R` rows.
+///
+/// A type and not a function value, since only methods are certain to be compiled into the loop that
+/// may use the processor's instructions; a function that is called from there without being part of
+/// it is many times slower.
+pub trait Values<const I: usize, const R: usize> {
+    /// Writes every row.
+    fn at<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; R]);
+}
+
+/// Values and derivatives of one kernel: `J` first derivatives, and `H` second derivatives of the rows
+/// times their weights.
+pub trait ValuesAndDerivatives<const I: usize, const R: usize, const J: usize, const H: usize> {
+    /// Writes all of them.
+    fn at<S: Simd>(
+        simd: S,
+        tables: &[Table],
+        inputs: &[Pack<S>; I],
+        weights: &[Pack<S>; R],
+        values: &mut [Pack<S>; R],
+        jacobian: &mut [Pack<S>; J],
+        hessian: &mut [Pack<S>; H],
+    );
+}
+
+/// What is probed in one kernel: `P` arguments that should stay inside a domain.
+pub trait Probes<const I: usize, const P: usize> {
+    /// Writes every one.
+    fn at<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; P]);
+}
+
+/// Calls a kernel with the inputs of every pack of lanes and stores its rows.
 ///
 /// `point.inputs` holds `I` numbers for every lane and `out` at least `R`; entry `i` of lane `l` is
 /// `[i * lanes + l]`. Where either is shorter than that, nothing is written.
 #[inline]
-pub fn values<S: Simd, const I: usize, const R: usize>(
+pub fn values<S: Simd, K: Values<I, R>, const I: usize, const R: usize>(
     simd: S,
+    _: K,
     point: Lanes<'_>,
+    tables: &[Table],
     out: &mut [f64],
-    f: impl Fn(S, &[Pack<S>; I], &mut [Pack<S>; R]),
 ) {
     if point.lanes == 0 || point.inputs.len() < I * point.lanes || out.len() < R * point.lanes {
         return;
     }
-    simd.vectorize(EveryPack { simd, point, out, f });
+    simd.vectorize(EveryPack::<S, OfValues<K>, I, R> { simd, point, tables, out, kernel: PhantomData });
 }
 
-/// Calls `f` with the inputs and weights of every pack of lanes and stores values, first derivatives
-/// and weighted second derivatives. `I`, `J` and `H` may be 0.
+/// As [`values`], of what is probed.
+#[inline]
+pub fn probes<S: Simd, K: Probes<I, P>, const I: usize, const P: usize>(
+    simd: S,
+    _: K,
+    point: Lanes<'_>,
+    tables: &[Table],
+    out: &mut [f64],
+) {
+    if point.lanes == 0 || point.inputs.len() < I * point.lanes || out.len() < P * point.lanes {
+        return;
+    }
+    simd.vectorize(EveryPack::<S, OfProbes<K>, I, P> { simd, point, tables, out, kernel: PhantomData });
+}
+
+/// Calls a kernel with the inputs and weights of every pack of lanes and stores values, first
+/// derivatives and weighted second derivatives. `I`, `J` and `H` may be 0.
 ///
 /// Arrays are laid out as for [`values`]; where one is too short, nothing is written.
 #[inline]
-pub fn derivatives<S: Simd, const I: usize, const R: usize, const J: usize, const H: usize>(
+pub fn derivatives<S: Simd, K, const I: usize, const R: usize, const J: usize, const H: usize>(
     simd: S,
+    _: K,
     point: Lanes<'_>,
+    tables: &[Table],
     out: Derivatives<'_>,
-    f: impl Fn(S, &[Pack<S>; I], &[Pack<S>; R], &mut [Pack<S>; R], &mut [Pack<S>; J], &mut [Pack<S>; H]),
-) {
+) where
+    K: ValuesAndDerivatives<I, R, J, H>,
+{
     let lanes = point.lanes;
     let short = out.values.len() < R * lanes || out.jacobian.len() < J * lanes || out.hessian.len() < H * lanes;
     if lanes == 0 || point.inputs.len() < I * lanes || point.weights.len() < R * lanes || short {
         return;
     }
-    simd.vectorize(EveryPackWithDerivatives { simd, point, out, f });
+    simd.vectorize(EveryPackWithDerivatives::<S, K, I, R, J, H> { simd, point, tables, out, kernel: PhantomData });
+}
+
+/// The function of a kernel that fills one array.
+trait Fill<const I: usize, const R: usize> {
+    fn fill<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; R]);
+}
+
+struct OfValues<K>(PhantomData<K>);
+struct OfProbes<K>(PhantomData<K>);
+
+impl<K: Values<I, R>, const I: usize, const R: usize> Fill<I, R> for OfValues<K> {
+    #[inline(always)]
+    fn fill<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; R]) {
+        K::at(simd, tables, inputs, out);
+    }
+}
+
+impl<K: Probes<I, P>, const I: usize, const P: usize> Fill<I, P> for OfProbes<K> {
+    #[inline(always)]
+    fn fill<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; P]) {
+        K::at(simd, tables, inputs, out);
+    }
 }
 
 struct EveryPack<'a, S, F, const I: usize, const R: usize> {
     simd: S,
     point: Lanes<'a>,
+    tables: &'a [Table],
     out: &'a mut [f64],
-    f: F,
+    kernel: PhantomData<F>,
 }
 
-impl<S: Simd, F, const I: usize, const R: usize> Work for EveryPack<'_, S, F, I, R>
-where
-    F: Fn(S, &[Pack<S>; I], &mut [Pack<S>; R]),
-{
+impl<S: Simd, F: Fill<I, R>, const I: usize, const R: usize> Work for EveryPack<'_, S, F, I, R> {
     #[inline(always)]
     fn run(self) {
-        let Self { simd, point, out, f } = self;
+        let Self { simd, point, tables, out, .. } = self;
         let lanes = point.lanes;
         let inputs: [&[f64]; I] = rows(point.inputs, lanes);
         for from in packs::<S>(lanes) {
             let mut results = [Pack::splat(simd, 0.0); R];
-            f(simd, &gather(simd, &inputs, from), &mut results);
+            F::fill(simd, tables, &gather(simd, &inputs, from), &mut results);
             scatter(&results, lanes, from, out);
         }
     }
 }
 
-struct EveryPackWithDerivatives<'a, S, F, const I: usize, const R: usize, const J: usize, const H: usize> {
+struct EveryPackWithDerivatives<'a, S, K, const I: usize, const R: usize, const J: usize, const H: usize> {
     simd: S,
     point: Lanes<'a>,
+    tables: &'a [Table],
     out: Derivatives<'a>,
-    f: F,
+    kernel: PhantomData<K>,
 }
 
-impl<S: Simd, F, const I: usize, const R: usize, const J: usize, const H: usize> Work
-    for EveryPackWithDerivatives<'_, S, F, I, R, J, H>
+impl<S: Simd, K, const I: usize, const R: usize, const J: usize, const H: usize> Work
+    for EveryPackWithDerivatives<'_, S, K, I, R, J, H>
 where
-    F: Fn(S, &[Pack<S>; I], &[Pack<S>; R], &mut [Pack<S>; R], &mut [Pack<S>; J], &mut [Pack<S>; H]),
+    K: ValuesAndDerivatives<I, R, J, H>,
 {
     #[inline(always)]
     fn run(self) {
-        let Self { simd, point, out, f } = self;
+        let Self { simd, point, tables, out, .. } = self;
         let lanes = point.lanes;
         let inputs: [&[f64]; I] = rows(point.inputs, lanes);
         let weights: [&[f64]; R] = rows(point.weights, lanes);
@@ -164,7 +237,7 @@ where
             let zero = Pack::splat(simd, 0.0);
             let (mut values, mut jacobian, mut hessian) = ([zero; R], [zero; J], [zero; H]);
             let (inputs, weights) = (gather(simd, &inputs, from), gather(simd, &weights, from));
-            f(simd, &inputs, &weights, &mut values, &mut jacobian, &mut hessian);
+            K::at(simd, tables, &inputs, &weights, &mut values, &mut jacobian, &mut hessian);
             scatter(&values, lanes, from, out.values);
             scatter(&jacobian, lanes, from, out.jacobian);
             scatter(&hessian, lanes, from, out.hessian);
@@ -220,17 +293,41 @@ mod tests {
     /// Two kernels: sum and product of two inputs; twice a weight without inputs.
     struct Two;
 
+    struct SumAndProduct;
+
+    impl Values<2, 2> for SumAndProduct {
+        fn at<S: Simd>(_: S, _: &[Table], u: &[Pack<S>; 2], out: &mut [Pack<S>; 2]) {
+            *out = [u[0] + u[1], u[0] * u[1]];
+        }
+    }
+
+    struct Twice;
+
+    impl ValuesAndDerivatives<0, 1, 0, 0> for Twice {
+        fn at<S: Simd>(
+            _: S,
+            _: &[Table],
+            _: &[Pack<S>; 0],
+            w: &[Pack<S>; 1],
+            v: &mut [Pack<S>; 1],
+            _: &mut [Pack<S>; 0],
+            _: &mut [Pack<S>; 0],
+        ) {
+            v[0] = w[0] * 2.0;
+        }
+    }
+
     impl Kernels for Two {
         fn structure(&self) -> Structure {
             Structure::default()
         }
 
-        fn values<S: Simd>(&self, simd: S, _: usize, point: Lanes<'_>, _: &[Table], out: &mut [f64]) {
-            values::<S, 2, 2>(simd, point, out, |_, u, r| *r = [u[0] + u[1], u[0] * u[1]]);
+        fn values<S: Simd>(&self, simd: S, _: usize, point: Lanes<'_>, tables: &[Table], out: &mut [f64]) {
+            values(simd, SumAndProduct, point, tables, out);
         }
 
-        fn derivatives<S: Simd>(&self, simd: S, _: usize, point: Lanes<'_>, _: &[Table], out: Derivatives<'_>) {
-            derivatives::<S, 0, 1, 0, 0>(simd, point, out, |_, _, w, v, _, _| v[0] = w[0] * 2.0);
+        fn derivatives<S: Simd>(&self, simd: S, _: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
+            derivatives(simd, Twice, point, tables, out);
         }
 
         fn probes<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], out: &mut [f64]) {

@@ -13,11 +13,14 @@ use crate::solution::{Inner, Solution};
 use crate::transcribe::{SetupError, Transcription};
 use ntg_structure::{Points, Structure};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Up to so many intervals a problem is solved at once.
 const FEW: usize = 24;
 /// How many times more intervals the next level has.
 const FINER: usize = 4;
+/// With as few intervals as this, there is nothing coarser.
+const FEWEST: usize = 2;
 /// The tolerance of all levels but the last.
 const ROUGH: f64 = 1e-5;
 
@@ -34,7 +37,38 @@ pub(crate) fn start_from_coarse(
     if most <= FEW || guess.is_some_and(Guess::is_near) {
         return Ok((None, 0));
     }
-    let coarse = coarsened(structure, most.div_ceil(FINER));
+    solution_on(problem, coarsened(structure, most.div_ceil(FINER)), guess, settings)
+}
+
+/// A start near a solution of `structure` where no method came to one from the guess: from fewer and fewer
+/// knots, on which a guess with loops and corners becomes a smooth curve.
+pub(crate) fn start_from_fewer(
+    problem: &dyn Problem,
+    structure: &Structure,
+    guess: Option<&Guess>,
+    settings: &Settings,
+) -> Result<(Option<Solution>, usize), SetupError> {
+    let (began, mut spent) = (Instant::now(), 0);
+    let mut most = intervals(structure);
+    while most > FEWEST {
+        most = most.div_ceil(2);
+        let coarse = coarsened(structure, most);
+        let (found, iterations) = solution_on(problem, coarse, guess, &settings.after(began.elapsed()))?;
+        spent += iterations;
+        if found.is_some() {
+            return Ok((found, spent));
+        }
+    }
+    Ok((None, spent))
+}
+
+/// A rough solution of `coarse`, itself found on coarser knots where it has many.
+fn solution_on(
+    problem: &dyn Problem,
+    coarse: Structure,
+    guess: Option<&Guess>,
+    settings: &Settings,
+) -> Result<(Option<Solution>, usize), SetupError> {
     let (earlier, spent) = start_from_coarse(problem, &coarse, guess, settings)?;
     let rough = rough(settings);
     let mut nlp = Transcription::with(problem, coarse)?;

@@ -43,25 +43,34 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Se
     }
 }
 
-/// The Newton method; where it fails, the same with elastic bounds from the start; where that fails,
-/// the sequential quadratic program from the start.
+/// The Newton method; where it fails, the others.
 fn automatic<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Settings) -> Outcome {
     let began = Instant::now();
-    let mut best = newton::solve_from(nlp, start, from, settings);
+    let first = newton::solve_from(nlp, start, from, settings);
+    if is_final(&first.status) {
+        return first;
+    }
+    others(nlp, start, first, &settings.after(began.elapsed()))
+}
+
+/// What else there is where the Newton method has failed: the same with elastic bounds from the start; where
+/// that fails, the sequential quadratic program from the start.
+pub(crate) fn others<N: Nlp>(nlp: &N, start: &[f64], failed: Outcome, settings: &Settings) -> Outcome {
+    let began = Instant::now();
+    let mut best = failed;
     for attempt in [newton::solve_elastic, sqp::solve] {
         if is_final(&best.status) {
             break;
         }
         let next = attempt(nlp, start, &settings.after(began.elapsed()));
-        let iterations = best.iterations + next.iterations;
+        let (iterations, seconds) = (best.iterations + next.iterations, best.seconds + next.seconds);
         // Where nothing was solved, the last one has the best-founded reason why.
-        best = Outcome { iterations, ..next };
+        best = Outcome { iterations, seconds, ..next };
     }
-    best.seconds = began.elapsed().as_secs_f64();
     best
 }
 
 /// Whether another method could do no better.
-fn is_final(status: &Status) -> bool {
+pub(crate) fn is_final(status: &Status) -> bool {
     matches!(status, Status::Solved | Status::Cancelled | Status::TimeLimit | Status::Contradiction { .. })
 }

@@ -8,12 +8,12 @@
 
 use crate::guess::continuation::{Setting, set, steps};
 use crate::guess::{Guess, start};
-use crate::meshes::start_from_coarse;
+use crate::meshes::{start_from_coarse, start_from_fewer};
 use crate::method::{self, Start};
 use crate::outcome::Outcome;
 use crate::problem::Problem;
 use crate::report::{Report, StepReport, user};
-use crate::settings::{InvalidSetting, Settings};
+use crate::settings::{InvalidSetting, Method, Settings};
 use crate::solution::Value;
 use crate::status::Status;
 use crate::transcribe::{SetupError, Transcription, singular};
@@ -113,7 +113,7 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
             None if coarse.is_some() => Start::Near,
             None => Start::Cold,
         };
-        let mut outcome = method::solve_from(&nlp, &first, from, &settings.after(began.elapsed()));
+        let mut outcome = by_all_means(&nlp, (problem, guess), (&first, from), &settings.after(began.elapsed()))?;
         outcome.iterations += std::mem::take(&mut iterations);
         let stop = i + 1 == steps.len() || matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
         history.push(record(&nlp, &structure, step, &outcome, step_began));
@@ -128,6 +128,51 @@ fn run(problem: &dyn Problem, guess: Option<&Guess>, settings: &Settings) -> Res
         last = Some(if finite { outcome } else { Outcome { x: first, ..outcome } });
     }
     Err(SetupError::Malformed { message: "a continuation has no step".into() }.into())
+}
+
+/// Solves by the method of the settings; an automatic one has further ways where that fails
+/// (docs/maths.md, section 11.9).
+fn by_all_means(
+    nlp: &Transcription,
+    (problem, guess): (&dyn Problem, Option<&Guess>),
+    (first, from): (&[f64], Start<'_>),
+    settings: &Settings,
+) -> Result<Outcome, SetupError> {
+    if settings.method != Method::Auto {
+        return Ok(method::solve_from(nlp, first, from, settings));
+    }
+    let began = Instant::now();
+    let newton = Settings { method: Method::Newton, ..settings.clone() };
+    let mut outcome = method::solve_from(nlp, first, from, &newton);
+    if !method::is_final(&outcome.status) {
+        outcome = from_fewer(nlp, (problem, guess), outcome, &newton.after(began.elapsed()))?;
+    }
+    if !method::is_final(&outcome.status) {
+        outcome = method::others(nlp, first, outcome, &settings.after(began.elapsed()));
+    }
+    if !method::is_final(&outcome.status) {
+        outcome = from_fewer(nlp, (problem, guess), outcome, &settings.after(began.elapsed()))?;
+    }
+    Ok(outcome)
+}
+
+/// The solution from a start on fewer knots, where there was none from the guess; `failed` where there is
+/// none either.
+fn from_fewer(
+    nlp: &Transcription,
+    (problem, guess): (&dyn Problem, Option<&Guess>),
+    failed: Outcome,
+    settings: &Settings,
+) -> Result<Outcome, SetupError> {
+    let began = Instant::now();
+    let (found, spent) = start_from_fewer(problem, &nlp.model.structure, guess, settings)?;
+    let iterations = failed.iterations + spent;
+    let Some(solution) = found else { return Ok(Outcome { iterations, ..failed }) };
+    let first = start(nlp, Some(&Guess::from(&solution)))?;
+    let again = method::solve_from(nlp, &first, Start::Near, &settings.after(began.elapsed()));
+    let iterations = iterations + again.iterations;
+    let better = if method::is_final(&again.status) { again } else { failed };
+    Ok(Outcome { iterations, ..better })
 }
 
 fn record(

@@ -17,6 +17,7 @@ fn solved(program: &Program, start: &[f64], objective: f64) -> Outcome {
         ("Newton", newton::solve(program, start, &Settings::default())),
         ("automatic", method::solve(program, start, &Settings::default())),
     ] {
+        trace(&outcome);
         println!("{name}: iterations {} {}", outcome.iterations, outcome.status);
         assert_eq!(outcome.status, Status::Solved, "{name}: {:?} after {}", outcome.residuals, outcome.iterations);
         assert!(
@@ -26,25 +27,32 @@ fn solved(program: &Program, start: &[f64], objective: f64) -> Outcome {
         );
     }
     let outcome = solve(program, start, &Settings::default());
-    if std::env::var_os("SQP_TRACE").is_some() {
-        for record in &outcome.history {
-            println!(
-                "{:14.8e} p {:8.1e} d {:8.1e} c {:8.1e} step {:8.1e} {}{}{}",
-                record.objective,
-                record.residuals.scaled.primal,
-                record.residuals.scaled.dual,
-                record.residuals.scaled.complementarity,
-                record.step,
-                if record.elastic { "elastic " } else { "" },
-                if record.exact { "exact " } else { "" },
-                if record.corrected { "corrected" } else { "" }
-            );
-        }
-    }
+    trace(&outcome);
     println!("iterations {} qps {} {}", outcome.iterations, outcome.qps, outcome.status);
     assert_eq!(outcome.status, Status::Solved, "{:?} after {}", outcome.residuals, outcome.iterations);
     assert!((outcome.objective - objective).abs() <= 1e-7 * (1.0 + objective.abs()), "{}", outcome.objective);
     outcome
+}
+
+/// What every iteration was, for whoever sets `TRACE`.
+fn trace(outcome: &Outcome) {
+    if std::env::var_os("TRACE").is_none() {
+        return;
+    }
+    for record in &outcome.history {
+        println!(
+            "{:14.8e} p {:8.1e} d {:8.1e} c {:8.1e} step {:8.1e} mu {:7.1e} {}{}{}",
+            record.objective,
+            record.residuals.scaled.primal,
+            record.residuals.scaled.dual,
+            record.residuals.scaled.complementarity,
+            record.step,
+            record.barrier,
+            if record.elastic { "elastic " } else { "" },
+            if record.exact { "exact " } else { "" },
+            if record.corrected { "corrected" } else { "" }
+        );
+    }
 }
 
 #[track_caller]

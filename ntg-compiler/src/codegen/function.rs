@@ -1,9 +1,11 @@
-//! One kernel as three functions of arrays: straight lines, without loops or branches.
+//! One kernel as a type with up to three functions of arrays: straight lines, without loops or branches.
 //!
-//! Takes a kernel's shape and formulas, gives `..._values`, `..._derivatives`, `..._probes`, and
-//! how each is called. A node that several others need has a `let` of its own; one that a single
-//! other needs is written in its place as long as the line stays short. Both passes are loops over
-//! the schedule, so a sum of any length is many short lines, never one deep expression.
+//! Takes a kernel's shape and formulas, gives a type that implements `lanes::Values`,
+//! `lanes::ValuesAndDerivatives`, `lanes::Probes`. Methods of a type, not function values: only they
+//! are certain to be compiled into the loop that has the processor's instructions. A node that several
+//! others need has a `let` of its own; one that a single other needs is written in its place as long
+//! as the line stays short. Both passes are loops over the schedule, so a sum of any length is many
+//! short lines, never one deep expression.
 //!
 //! Afterwards: the functions hold exactly the graph's operations, each once.
 
@@ -22,40 +24,36 @@ use crate::program::KernelBody;
 const LINE: usize = 6;
 
 /// What is ours in every kernel function.
-const OURS: [&str; 10] = ["simd", "z", "w", "tables", "out", "values", "jacobian", "hessian", "math", "f64"];
+const OURS: [&str; 11] = ["simd", "z", "w", "tables", "out", "values", "jacobian", "hessian", "math", "lanes", "f64"];
 
-/// A kernel's functions, and calls of them from `lanes`.
+/// A kernel's type, and what it implements.
 pub(super) struct Functions {
     /// The items.
     pub(super) items: TokenStream,
-    /// What `lanes` calls for values.
-    pub(super) values: TokenStream,
-    /// What it calls for derivatives; none where nothing is differentiated.
-    pub(super) derivatives: Option<TokenStream>,
-    /// What it calls for probes; none where there are none.
-    pub(super) probes: Option<TokenStream>,
+    /// Whether anything is differentiated.
+    pub(super) derivatives: bool,
+    /// Whether anything is probed.
+    pub(super) probes: bool,
 }
 
-/// Writes a kernel's functions under names that begin with `name`.
+/// Writes a kernel as a type of this name.
 pub(super) fn functions(name: &str, shape: &Kernel, body: &KernelBody) -> Functions {
     let values = Function::new(body, &[("out", &body.values)]);
     let derivatives = (shape.slots > 0).then(|| {
         Function::new(body, &[("values", &body.values), ("jacobian", &body.jacobian), ("hessian", &body.hessian)])
     });
     let probes = (!body.probes.is_empty()).then(|| Function::new(body, &[("out", &body.probes)]));
-
-    let titles = [("values", results(body)), ("derivatives", derivatives_of(shape, body)), ("probes", probed(shape))];
-    let [in_values, in_derivatives, in_probes] = titles.map(|(what, doc)| (format!("{name}_{what}"), doc));
+    let kind = ident(name);
     let written = [
-        Some(values.write(&in_values.0, &in_values.1)),
-        derivatives.as_ref().map(|f| f.write(&in_derivatives.0, &in_derivatives.1)),
-        probes.as_ref().map(|f| f.write(&in_probes.0, &in_probes.1)),
+        Some(values.write(&kind, "Values", &results(body))),
+        derivatives.as_ref().map(|f| f.write(&kind, "ValuesAndDerivatives", &derivatives_of(shape, body))),
+        probes.as_ref().map(|f| f.write(&kind, "Probes", &probed(shape))),
     ];
+    let implementations = written.into_iter().flatten();
     Functions {
-        items: written.into_iter().flatten().collect(),
-        values: values.call(&in_values.0),
-        derivatives: derivatives.map(|f| f.call(&in_derivatives.0)),
-        probes: probes.map(|f| f.call(&in_probes.0)),
+        items: quote! { pub(super) struct #kind {} #(#implementations)* },
+        derivatives: derivatives.is_some(),
+        probes: probes.is_some(),
     }
 }
 
@@ -108,7 +106,6 @@ struct Function<'a> {
     inputs: Vec<(usize, Ident)>,
     /// The nodes that have a name here.
     names: Locals,
-    tables: bool,
 }
 
 /// What each node is called.
@@ -144,7 +141,6 @@ impl<'a> Function<'a> {
         let outputs = outputs.to_vec();
         let roots: Vec<NodeId> = outputs.iter().flat_map(|(_, roots)| roots.iter().copied()).collect();
         let needed = body.dag.schedule(&roots);
-        let tables = needed.iter().any(|id| matches!(body.dag.node(*id), Node::Table { .. }));
 
         let mut names = Locals::default();
         needed.iter().for_each(|id| names.add_if_number(&body.dag, *id));
@@ -166,33 +162,37 @@ impl<'a> Function<'a> {
         for (i, id) in schedule.iter().enumerate() {
             names.idents.insert(*id, ident(&format!("t{}", i + 1)));
         }
-        Self { body, outputs, schedule, inputs, names, tables }
+        Self { body, outputs, schedule, inputs, names }
     }
 
-    /// The parameters of the function, as `(name, type)`.
-    fn parameters(&self) -> Vec<(Ident, TokenStream)> {
+    /// How many numbers the function takes and gives: the arguments of the trait.
+    fn sizes(&self) -> Vec<Literal> {
+        let results = self.outputs.iter().map(|(_, roots)| roots.len());
+        std::iter::once(self.body.inputs).chain(results).map(Literal::usize_unsuffixed).collect()
+    }
+
+    /// The parameters of the function.
+    fn parameters(&self) -> Vec<TokenStream> {
         let array = |length: usize| {
             let length = Literal::usize_unsuffixed(length);
             quote! { [Pack<S>; #length] }
         };
         let (inputs, rows) = (array(self.body.inputs), array(self.body.values.len()));
-        let mut parameters = vec![(ident("simd"), quote! { S }), (ident("z"), quote! { &#inputs })];
+        let mut parameters = vec![quote! { simd: S }, quote! { tables: &[Table] }, quote! { z: &#inputs }];
         if self.outputs.len() > 1 {
-            parameters.push((ident("w"), quote! { &#rows }));
-        }
-        if self.tables {
-            parameters.push((ident("tables"), quote! { &[Table] }));
+            parameters.push(quote! { w: &#rows });
         }
         for (name, roots) in &self.outputs {
-            let results = array(roots.len());
-            parameters.push((ident(name), quote! { &mut #results }));
+            let (name, results) = (ident(name), array(roots.len()));
+            parameters.push(quote! { #name: &mut #results });
         }
         parameters
     }
 
-    fn write(&self, name: &str, doc: &[String]) -> TokenStream {
-        let (name, dag) = (ident(name), &self.body.dag);
-        let parameters = self.parameters().into_iter().map(|(name, kind)| quote! { #name: #kind });
+    /// The implementation of one of the traits of `lanes`.
+    fn write(&self, kind: &Ident, implements: &str, doc: &[String]) -> TokenStream {
+        let (implements, dag) = (ident(implements), &self.body.dag);
+        let (sizes, parameters) = (self.sizes(), self.parameters());
         let inputs = self.pattern("z", 0, self.body.inputs);
         let weights = self.pattern("w", self.body.inputs, self.body.values.len());
         let mut done = HashSet::new(); // Asked, never iterated.
@@ -218,13 +218,15 @@ impl<'a> Function<'a> {
             })
         });
         quote! {
-            #(#[doc = #doc])*
-            #[inline(always)]
-            pub(super) fn #name<S: Simd>(#(#parameters),*) {
-                #inputs
-                #weights
-                #(#lets)*
-                #(#stores)*
+            impl lanes::#implements<#(#sizes),*> for #kind {
+                #(#[doc = #doc])*
+                #[inline(always)]
+                fn at<S: Simd>(#(#parameters),*) {
+                    #inputs
+                    #weights
+                    #(#lets)*
+                    #(#stores)*
+                }
             }
         }
     }
@@ -245,17 +247,6 @@ impl<'a> Function<'a> {
         }
         let array = ident(array);
         quote! { let [#(#names),*] = *#array; }
-    }
-
-    /// What `lanes` calls: the function itself, or a closure that adds the tables.
-    fn call(&self, name: &str) -> TokenStream {
-        let name = ident(name);
-        if !self.tables {
-            return quote! { kernels::#name };
-        }
-        let arguments: Vec<Ident> = self.parameters().into_iter().map(|(name, _)| name).collect();
-        let of_lane = arguments.iter().filter(|name| *name != "tables");
-        quote! { |#(#of_lane),*| kernels::#name(#(#arguments),*) }
     }
 }
 

@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::function::{self, Functions};
-use super::names::Scope;
+use super::names::{Scope, ident};
 use crate::program::Program;
 
 /// The module, and the arms of `match kernel` in the three methods of the contract.
@@ -21,23 +21,29 @@ pub(super) struct Kernels {
 
 /// Writes all kernels of a program.
 pub(super) fn kernels(program: &Program) -> Kernels {
-    let mut scope = Scope::with(&["math"]);
+    let mut scope = Scope::with(&["math", "lanes", "Pack", "Simd", "Table"]);
     let (mut items, mut values, mut derivatives, mut probes) = (vec![], vec![], vec![], vec![]);
     for (i, (shape, body)) in program.structure.kernels.iter().zip(&program.kernels).enumerate() {
         let name = scope.take(&shape.name, |_| false);
         let number = Literal::usize_unsuffixed(i);
-        let Functions { items: functions, values: of_values, derivatives: of_derivatives, probes: of_probes } =
+        let Functions { items: functions, derivatives: differentiated, probes: probed } =
             function::functions(&name, shape, body);
+        let kernel = ident(&name);
         items.push(functions);
-        values.push(quote! { #number => lanes::values(simd, point, values, #of_values), });
-        derivatives.push(match of_derivatives {
-            Some(call) => quote! { #number => lanes::derivatives(simd, point, out, #call), },
-            None => quote! { #number => lanes::values(simd, point, out.values, #of_values), },
+        let of_values = |out| quote! { lanes::values(simd, kernels::#kernel {}, point, tables, #out) };
+        let (all, only) = (of_values(quote! { values }), of_values(quote! { out.values }));
+        values.push(quote! { #number => #all, });
+        derivatives.push(match differentiated {
+            true => quote! { #number => lanes::derivatives(simd, kernels::#kernel {}, point, tables, out), },
+            false => quote! { #number => #only, },
         });
-        probes.extend(of_probes.map(|call| quote! { #number => lanes::values(simd, point, probes, #call), }));
+        if probed {
+            probes.push(quote! { #number => lanes::probes(simd, kernels::#kernel {}, point, tables, probes), });
+        }
     }
     let items = quote! {
         mod kernels {
+            use ::ntg::runtime::lanes;
             use ::ntg::runtime::math::{self, Pack, Simd};
             use ::ntg::runtime::splines::Table;
 

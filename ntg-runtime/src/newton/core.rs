@@ -1,7 +1,7 @@
 //! The state of a solve, how far it has come, and the steps of the loop that the other files do not
 //! hold (docs/maths.md, section 11).
 
-use super::filter::Filter;
+use super::filter::{Filter, LARGEST_THETA};
 use super::sides::{Sides, log_sum};
 use super::system::System;
 use crate::method::Start;
@@ -157,7 +157,7 @@ impl<'a, N: Nlp> Core<'a, N> {
     pub(super) fn reset_filter(&mut self) {
         let theta = self.theta();
         self.filter.clear();
-        self.filter.limit = 1e4 * theta.max(1.0);
+        self.filter.limit = LARGEST_THETA * theta.max(1.0);
     }
 
     /// Infeasibility of the present point.

@@ -1,7 +1,7 @@
 //! The end of a solve, and of an iteration.
 
 use super::core::Core;
-use crate::nlp::{Assembly, Nlp, NotFinite, kkt};
+use crate::nlp::{Nlp, NotFinite, kkt};
 use crate::outcome::Outcome;
 use crate::status::{Bounded, Residuals, Status, Violation};
 
@@ -71,13 +71,13 @@ impl<N: Nlp> Core<'_, N> {
 
     /// The residuals of the last point, in both measures.
     fn residuals(&self, x: &[f64], rows: &[f64], bounds: &[f64]) -> Residuals {
-        let mut assembly = Assembly::new(x.len(), rows.len(), self.nlp.blocks());
-        assembly.first(self.nlp.blocks(), self.system.latest());
+        let latest = self.system.latest();
+        let mut lagrangian = vec![0.0; x.len()];
+        kkt::lagrangian(self.nlp.blocks(), latest, rows, &mut lagrangian);
         let point = kkt::Point {
             x,
-            rows: &self.system.latest().rows,
-            gradient: &assembly.gradient,
-            jacobian: &assembly.jacobian,
+            rows: &latest.rows,
+            lagrangian: &lagrangian,
             row_multipliers: rows,
             bound_multipliers: bounds,
         };

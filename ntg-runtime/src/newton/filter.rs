@@ -6,6 +6,10 @@
 /// Progress asked for in infeasibility, and in the objective per infeasibility.
 const MARGIN: f64 = 1e-5;
 
+/// No point is accepted whose infeasibility exceeds the first one, or 1, this many times. (Reference: 1e4. There the
+/// direction is that of a shifted Hessian and short; here it may be long, and what is that far away is no progress.)
+pub(super) const LARGEST_THETA: f64 = 1e2;
+
 /// Pairs that a new point must improve on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Filter {

@@ -5,7 +5,7 @@
 //! constants these are.
 
 use super::core::Core;
-use super::filter::Filter;
+use super::filter::{Filter, LARGEST_THETA};
 use crate::nlp::Nlp;
 
 /// The least fraction of the way to a bound that a step may go.
@@ -116,7 +116,7 @@ impl<N: Nlp> Core<'_, N> {
     /// Whether the objective is to decide about a step (19).
     fn objective_decides(&self, here: Here, alpha: f64) -> bool {
         here.slope < 0.0
-            && here.theta <= SMALL_THETA * (self.filter.limit / 1e4)
+            && here.theta <= SMALL_THETA * (self.filter.limit / LARGEST_THETA)
             && alpha * (-here.slope).powf(SWITCH_PHI) > here.theta.powf(SWITCH_THETA)
     }
 
@@ -180,7 +180,7 @@ impl<N: Nlp> Core<'_, N> {
         }
         let descent = -here.slope;
         let by_objective = MARGIN.min(MARGIN * here.theta / descent);
-        if here.theta <= SMALL_THETA * (self.filter.limit / 1e4) {
+        if here.theta <= SMALL_THETA * (self.filter.limit / LARGEST_THETA) {
             by_objective.min(here.theta.powf(SWITCH_THETA) / descent.powf(SWITCH_PHI)).max(f64::EPSILON)
         } else {
             by_objective.max(f64::EPSILON)

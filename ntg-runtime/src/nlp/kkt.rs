@@ -11,7 +11,7 @@
 //! A positive multiplier belongs to the lower bound, a negative one to the upper bound. A multiplier
 //! that belongs to no bound counts as dual residual, a row's by its own size.
 
-use super::{Csc, Limits, Scales};
+use super::{Block, Evaluation, Limits, Scales, Target};
 use crate::status::{Residual, Residuals};
 
 /// Where the mean size of the multipliers exceeds this, dual residuals are measured relative to it.
@@ -24,14 +24,34 @@ pub struct Point<'a> {
     pub x: &'a [f64],
     /// The rows.
     pub rows: &'a [f64],
-    /// The gradient of the objective.
-    pub gradient: &'a [f64],
-    /// The Jacobian of the rows.
-    pub jacobian: &'a Csc,
+    /// The gradient of the objective without that of the rows times their multipliers: `f' - J^T lambda`.
+    pub lagrangian: &'a [f64],
     /// Multipliers of the rows: the derivative of the optimal objective by the active bound.
     pub row_multipliers: &'a [f64],
     /// Multipliers of the bounds of the variables.
     pub bound_multipliers: &'a [f64],
+}
+
+/// Writes `f' - J^T lambda`, element by element, from their derivatives at a point.
+pub fn lagrangian(blocks: &[Block], at: &Evaluation, multipliers: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    for (block, values) in blocks.iter().zip(&at.blocks) {
+        for element in 0..block.elements {
+            let (variables, map) = (block.variables(element), block.map(element));
+            for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                let target = row * block.elements + element;
+                let factor = block.weight[target]
+                    * match block.target[target] {
+                        Target::Objective => 1.0,
+                        Target::Row(row) => -multipliers[row as usize],
+                    };
+                let slope = factor * values.jacobian[entry * block.elements + element];
+                for (&variable, coefficient) in variables.iter().zip(&map[slot * variables.len()..]) {
+                    out[variable as usize] += slope * coefficient;
+                }
+            }
+        }
+    }
 }
 
 /// The violation of `lower <= value <= upper`.
@@ -55,8 +75,7 @@ fn complementarity(multiplier: f64, value: f64, lower: f64, upper: f64) -> Optio
 pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residuals {
     let mut found = Residuals::default();
     for (j, &size) in scales.variables.iter().enumerate() {
-        let mut dual = point.gradient[j] - point.bound_multipliers[j];
-        dual -= point.jacobian.column(j).map(|(i, a)| a * point.row_multipliers[i]).sum::<f64>();
+        let dual = point.lagrangian[j] - point.bound_multipliers[j];
         let (value, mu) = (point.x[j], point.bound_multipliers[j]);
         found.primal(violation(value, limits.lower[j], limits.upper[j]), 1.0 / size);
         found.dual(dual, scales.objective * size);

@@ -207,7 +207,8 @@ impl Inner {
         for phase in phases.clone() {
             let duration = layout.duration(phase, &self.x);
             if t < start + duration || phase == last {
-                let tau = (t - start) / duration;
+                // At its very end a phase is over, whatever its start and duration are rounded to.
+                let tau = if t >= start + duration { 1.0 } else { (t - start) / duration };
                 // A time that is not a number stays one.
                 return Some((phase, if tau.is_nan() { tau } else { tau.clamp(0.0, 1.0) }));
             }

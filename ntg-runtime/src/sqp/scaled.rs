@@ -31,7 +31,9 @@ pub(super) struct Program<'a, N: Nlp> {
     pub(super) convex: Csc,
     /// What [`Program::mix`] made of the two.
     pub(super) mixed: Csc,
-    convexifier: Convexifier,
+    convexifier: Convexifier<1>,
+    /// The gradient of the Lagrangian, in the program's own units.
+    lagrangian: Vec<f64>,
     work: N::Workspace,
     at: Evaluation,
     trial: Evaluation,
@@ -68,6 +70,7 @@ impl<'a, N: Nlp> Program<'a, N> {
             convex: hessian.clone(),
             mixed: hessian,
             convexifier,
+            lagrangian: vec![0.0; nlp.variables()],
             work,
             at,
             trial,
@@ -119,7 +122,7 @@ impl<'a, N: Nlp> Program<'a, N> {
         self.assembly.hessian(blocks, &self.at, |_, _, _| {});
         scale_hessian(&self.assembly.hessian, &self.scales.variables, &mut self.exact);
         let convexifier = &mut self.convexifier;
-        self.assembly.hessian(blocks, &self.at, |k, block, _| convexifier.clip(k, block));
+        self.assembly.hessian(blocks, &self.at, |k, block, _| convexifier.clip(k.as_chunks_mut().0, block));
         scale_hessian(&self.assembly.hessian, &self.scales.variables, &mut self.convex);
         Ok(())
     }
@@ -135,11 +138,11 @@ impl<'a, N: Nlp> Program<'a, N> {
     /// The residuals of the latest point with scaled multipliers.
     pub(super) fn residuals(&mut self, rows: &[f64], bounds: &[f64]) -> Residuals {
         self.unscale_multipliers(rows, bounds);
+        kkt::lagrangian(self.nlp.blocks(), &self.at, &self.weights, &mut self.lagrangian);
         let point = kkt::Point {
             x: &self.x,
             rows: &self.at.rows,
-            gradient: &self.assembly.gradient,
-            jacobian: &self.assembly.jacobian,
+            lagrangian: &self.lagrangian,
             row_multipliers: &self.weights,
             bound_multipliers: &self.mu,
         };
