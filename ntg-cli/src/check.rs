@@ -23,7 +23,14 @@ struct Checked {
 }
 
 pub(crate) fn run(arguments: &arguments::Check) -> Exit {
-    let checked: Vec<Checked> = arguments.specs.iter().map(|spec| check(files::read(spec))).collect();
+    let specs = match files::specs(&arguments.specs) {
+        Ok(specs) => specs,
+        Err(message) => {
+            eprintln!("error: {message}");
+            return Exit::Bad;
+        }
+    };
+    let checked: Vec<Checked> = specs.iter().map(|spec| check(files::read(spec))).collect();
     match arguments.format {
         Format::Text => checked.iter().for_each(text),
         Format::Json => files::print(&format!("{:#}", json::document(&checked))),

@@ -16,7 +16,9 @@ pub(crate) fn run(arguments: &arguments::Explain) -> Exit {
     let letters = letters.to_uppercase().replace("ERROR", "").replace("NOTE", "");
     let is_wanted = |code: &&Code| {
         let (kind, number) = code.text().split_at(1);
-        letters.strip_prefix(kind).and_then(|digits| digits.parse().ok()) == number.parse::<u32>().ok()
+        // A bare number is an error's.
+        let digits = letters.strip_prefix(kind).or((kind == "E").then_some(letters.as_str()));
+        digits.and_then(|digits| digits.parse().ok()) == number.parse::<u32>().ok()
     };
     match Code::ALL.iter().find(is_wanted) {
         Some(code) => {

@@ -44,6 +44,32 @@ pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
 
+/// The files that paths of the command line stand for: of a folder all specs below it.
+pub(crate) fn specs(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+    Ok(paths.iter().map(|path| below(path)).collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// The path itself, or all specs below it if it is a folder.
+fn below(path: &Path) -> Result<Vec<PathBuf>, String> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let failed = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
+    let mut found = vec![];
+    for entry in std::fs::read_dir(path).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let path = entry.path();
+        // A link to a folder may lead back to where it stands.
+        if entry.file_type().map_err(failed)?.is_dir() {
+            found.extend(below(&path)?);
+        } else if path.extension().is_some_and(|extension| extension == "ntg") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
 /// Reads a spec from a file, or from standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
     let name = if is_standard_input(path) { "<stdin>".to_owned() } else { path.display().to_string() };

@@ -1,6 +1,6 @@
 //! `ntg fmt`: specs in the canonical layout.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ntg_compiler::syntax;
 use similar::TextDiff;
@@ -9,8 +9,8 @@ use crate::{Exit, arguments, files, write};
 
 pub(crate) fn run(arguments: &arguments::Fmt) -> Exit {
     let mut exit = Exit::Done;
-    let specs: Vec<PathBuf> = match arguments.specs.iter().map(|path| below(path)).collect::<Result<Vec<_>, _>>() {
-        Ok(specs) => specs.concat(),
+    let specs = match files::specs(&arguments.specs) {
+        Ok(specs) => specs,
         Err(message) => {
             eprintln!("error: {message}");
             return Exit::Bad;
@@ -25,27 +25,6 @@ pub(crate) fn run(arguments: &arguments::Fmt) -> Exit {
         }
     }
     exit
-}
-
-/// The path itself, or all specs below it if it is a folder.
-fn below(path: &Path) -> Result<Vec<PathBuf>, String> {
-    if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
-    }
-    let failed = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
-    let mut found = vec![];
-    for entry in std::fs::read_dir(path).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        let path = entry.path();
-        // A link to a folder may lead back to where it stands.
-        if entry.file_type().map_err(failed)?.is_dir() {
-            found.extend(below(&path)?);
-        } else if path.extension().is_some_and(|extension| extension == "ntg") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    Ok(found)
 }
 
 /// Gives whether the spec is, or now is, in the canonical layout. What was wrong has been said.

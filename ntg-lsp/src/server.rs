@@ -34,7 +34,16 @@ pub type ProtocolError = Box<dyn std::error::Error + Send + Sync>;
 pub fn serve(connection: &Connection) -> Result<(), ProtocolError> {
     connection.initialize(serde_json::to_value(capabilities())?)?;
     let mut server = Server { connection, documents: HashMap::new() };
-    while let Ok(message) = connection.receiver.recv() {
+    let mut waiting = None;
+    loop {
+        let message = match waiting.take() {
+            Some(message) => message,
+            None => {
+                server.publish()?;
+                let Ok(message) = connection.receiver.recv() else { return Ok(()) };
+                message
+            }
+        };
         match message {
             Message::Request(request) => {
                 if connection.handle_shutdown(&request)? {
@@ -46,11 +55,8 @@ pub fn serve(connection: &Connection) -> Result<(), ProtocolError> {
             Message::Notification(notification) => server.notification(notification),
             Message::Response(_) => {}
         }
-        if connection.receiver.is_empty() {
-            server.publish()?;
-        }
+        waiting = connection.receiver.try_recv().ok();
     }
-    Ok(())
 }
 
 /// What this server can do.

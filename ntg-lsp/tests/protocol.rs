@@ -273,6 +273,30 @@ fn the_outline_holds_what_is_declared() {
 }
 
 #[test]
+fn a_fast_typist_is_told_about_the_last_text() {
+    let mut editor = Editor::new();
+    editor.open(TEXT);
+    for version in 1..=200 {
+        let place = json!({ "line": 6, "character": 16 });
+        let changes = json!([{ "range": { "start": place, "end": place }, "text": "1" }]);
+        let document = json!({ "uri": URI, "version": version });
+        editor.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+    }
+    let mut told = 0;
+    loop {
+        let message = editor.read();
+        told += 1;
+        if message["params"]["version"] == 200 {
+            // `const two = 11...12;` with 200 ones is a number as good as 2.
+            assert_eq!(message["params"]["diagnostics"], json!([]));
+            break;
+        }
+    }
+    assert!(told <= 200);
+    editor.end();
+}
+
+#[test]
 fn what_is_not_known_is_refused_and_nothing_breaks() {
     let mut editor = Editor::new();
     let refused = editor.try_ask("textDocument/somethingElse", json!({})).expect_err("unknown");

@@ -9,7 +9,7 @@ use super::Format;
 
 #[derive(Args, Debug)]
 pub(crate) struct Check {
-    /// The spec files; `-` is standard input.
+    /// Spec files, folders (all `.ntg` files below them), or `-`: standard input.
     #[arg(required = true, value_name = "SPEC")]
     pub(crate) specs: Vec<PathBuf>,
     /// How to print: pictures for people, or one JSON document (docs/check-format.md).
