@@ -19,15 +19,24 @@ pub mod words;
 
 pub use server::{ProtocolError, serve};
 
+use lsp_server::Connection;
+
 /// Answers the editor at the other end of standard input and output.
 ///
 /// # Errors
 /// The connection broke, or the editor does not speak the protocol.
 pub fn run() -> Result<(), ProtocolError> {
-    let (connection, threads) = lsp_server::Connection::stdio();
+    let (Connection { sender, receiver }, threads) = Connection::stdio();
+    // The thread that reads hands over one message at a time; those that come while the compiler looks at a text wait
+    // in a queue, for `serve` to see them together.
+    let (filled, queue) = Connection::memory();
+    let reader = std::thread::spawn(move || receiver.iter().try_for_each(|message| filled.sender.send(message)));
+    let connection = Connection { sender, receiver: queue.receiver };
     let served = serve(&connection);
-    // The threads end when the channel to them does.
+    // The threads end when the channels to them do.
     drop(connection);
     threads.join()?;
+    // It fails where messages come behind the last that `serve` took, which are for nobody.
+    let _ = reader.join();
     served
 }

@@ -61,7 +61,7 @@ impl Writer<'_> {
                 self.put("-");
                 self.node(*x, SIGN);
             }
-            Node::Unary(op, x) => self.call(unary(*op), &[*x]),
+            Node::Unary(op, x) => self.call(op.name(), &[*x]),
             Node::Binary(op, a, b) => self.binary(*op, *a, *b),
             Node::Powi(x, exponent) => {
                 self.node(*x, ATOM);
@@ -92,10 +92,7 @@ impl Writer<'_> {
             Binary::Mul => (" * ", PRODUCT, PRODUCT),
             Binary::Div => (" / ", PRODUCT, SIGN),
             Binary::Pow => ("^", ATOM, ATOM),
-            Binary::Atan2 => return self.call("atan2", &[a, b]),
-            Binary::Hypot => return self.call("hypot", &[a, b]),
-            Binary::Min => return self.call("min", &[a, b]),
-            Binary::Max => return self.call("max", &[a, b]),
+            Binary::Atan2 | Binary::Hypot | Binary::Min | Binary::Max => return self.call(op.name(), &[a, b]),
             Binary::LessEq => (" <= ", PRODUCT, PRODUCT),
         };
         self.node(a, left);
@@ -163,28 +160,6 @@ fn strength(node: &Node) -> u8 {
         Node::Binary(Binary::Mul | Binary::Div | Binary::LessEq, ..) => PRODUCT,
         Node::Binary(Binary::Pow, ..) | Node::Powi(..) => POWER,
         _ => ATOM,
-    }
-}
-
-fn unary(op: Unary) -> &'static str {
-    match op {
-        Unary::Neg => "-",
-        Unary::Sqrt => "sqrt",
-        Unary::Exp => "exp",
-        Unary::Log => "log",
-        Unary::Sin => "sin",
-        Unary::Cos => "cos",
-        Unary::Tan => "tan",
-        Unary::Asin => "asin",
-        Unary::Acos => "acos",
-        Unary::Atan => "atan",
-        Unary::Sinh => "sinh",
-        Unary::Cosh => "cosh",
-        Unary::Tanh => "tanh",
-        Unary::Abs => "abs",
-        Unary::Sign => "sign",
-        Unary::Logistic => "logistic",
-        Unary::Softplus => "softplus",
     }
 }
 

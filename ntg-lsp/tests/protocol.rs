@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
+use lsp_server::{Connection, Message, Notification, Request};
 use serde_json::{Value, json};
 
 const URI: &str = "file:///specs/flight.ntg";
@@ -273,27 +274,30 @@ fn the_outline_holds_what_is_declared() {
 }
 
 #[test]
-fn a_fast_typist_is_told_about_the_last_text() {
-    let mut editor = Editor::new();
-    editor.open(TEXT);
+fn changes_that_wait_are_taken_together() {
+    let (server, editor) = Connection::memory();
+    let tell = |method: &str, params: Value| {
+        editor.sender.send(Message::Notification(Notification::new(method.to_owned(), params))).expect("it is open");
+    };
+    let initialize = Request::new(1.into(), "initialize".to_owned(), json!({ "capabilities": {} }));
+    editor.sender.send(Message::Request(initialize)).expect("it is open");
+    tell("initialized", json!({}));
+    let document = json!({ "uri": URI, "languageId": "ntg", "version": 0, "text": TEXT });
+    tell("textDocument/didOpen", json!({ "textDocument": document }));
     for version in 1..=200 {
         let place = json!({ "line": 6, "character": 16 });
         let changes = json!([{ "range": { "start": place, "end": place }, "text": "1" }]);
         let document = json!({ "uri": URI, "version": version });
-        editor.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+        tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
     }
-    let mut told = 0;
-    loop {
-        let message = editor.read();
-        told += 1;
-        if message["params"]["version"] == 200 {
-            // `const two = 11...12;` with 200 ones is a number as good as 2.
-            assert_eq!(message["params"]["diagnostics"], json!([]));
-            break;
-        }
-    }
-    assert!(told <= 200);
-    editor.end();
+    drop(editor.sender);
+    // All of it waits before the server starts.
+    ntg_lsp::serve(&server).expect("the editor speaks the protocol");
+    drop(server);
+    let told: Vec<Message> = editor.receiver.iter().collect();
+    let [Message::Response(_), Message::Notification(told)] = told.as_slice() else { panic!("{told:?}") };
+    // `const two = 11...12;` with 200 ones is a number as good as 2.
+    assert_eq!((&told.params["version"], &told.params["diagnostics"]), (&json!(200), &json!([])));
 }
 
 #[test]

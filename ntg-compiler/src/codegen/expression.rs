@@ -63,14 +63,14 @@ fn expression(dag: &Dag, id: NodeId, names: &impl Names) -> Expression {
             let x = operand(dag, *x, names).at_least(Level::Negation, true);
             Expression { tokens: quote! { -#x }, level: Level::Negation }
         }
-        Node::Unary(op, x) => call(unary(*op), &[*x], dag, names),
+        Node::Unary(op, x) => call(op.name(), &[*x], dag, names),
         Node::Binary(op, a, b) => match arithmetic(*op) {
             Some((mark, level)) => {
                 let a = operand(dag, *a, names).at_least(level, false);
                 let b = operand(dag, *b, names).at_least(level, true);
                 Expression { tokens: quote! { #a #mark #b }, level }
             }
-            None => call(binary(*op), &[*a, *b], dag, names),
+            None => call(op.name(), &[*a, *b], dag, names),
         },
         Node::Powi(x, n) => {
             if let (2 | 3, Some(x)) = (n, names.name(*x)) {
@@ -153,44 +153,5 @@ fn arithmetic(op: Binary) -> Option<(TokenStream, Level)> {
         Binary::Mul => Some((quote! { * }, Level::Product)),
         Binary::Div => Some((quote! { / }, Level::Product)),
         _ => None,
-    }
-}
-
-/// The runtime's name of an operation on one number.
-fn unary(op: Unary) -> &'static str {
-    match op {
-        Unary::Neg => "neg",
-        Unary::Sqrt => "sqrt",
-        Unary::Exp => "exp",
-        Unary::Log => "log",
-        Unary::Sin => "sin",
-        Unary::Cos => "cos",
-        Unary::Tan => "tan",
-        Unary::Asin => "asin",
-        Unary::Acos => "acos",
-        Unary::Atan => "atan",
-        Unary::Sinh => "sinh",
-        Unary::Cosh => "cosh",
-        Unary::Tanh => "tanh",
-        Unary::Abs => "abs",
-        Unary::Sign => "sign",
-        Unary::Logistic => "logistic",
-        Unary::Softplus => "softplus",
-    }
-}
-
-/// The runtime's name of an operation on two numbers.
-fn binary(op: Binary) -> &'static str {
-    match op {
-        Binary::Add => "add",
-        Binary::Sub => "sub",
-        Binary::Mul => "mul",
-        Binary::Div => "div",
-        Binary::Pow => "pow",
-        Binary::Atan2 => "atan2",
-        Binary::Hypot => "hypot",
-        Binary::Min => "min",
-        Binary::Max => "max",
-        Binary::LessEq => "less_eq",
     }
 }

@@ -103,6 +103,29 @@ impl Unary {
         Self::Logistic,
         Self::Softplus,
     ];
+
+    /// What generated code, and the language where it has it as a function, call the operation.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Neg => "neg",
+            Self::Sqrt => "sqrt",
+            Self::Exp => "exp",
+            Self::Log => "log",
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+            Self::Tan => "tan",
+            Self::Asin => "asin",
+            Self::Acos => "acos",
+            Self::Atan => "atan",
+            Self::Sinh => "sinh",
+            Self::Cosh => "cosh",
+            Self::Tanh => "tanh",
+            Self::Abs => "abs",
+            Self::Sign => "sign",
+            Self::Logistic => "logistic",
+            Self::Softplus => "softplus",
+        }
+    }
 }
 
 /// Operations on two numbers. [`super::Scalar`] gives their exact meaning.
@@ -144,6 +167,22 @@ impl Binary {
         Self::Max,
         Self::LessEq,
     ];
+
+    /// What generated code, and the language where it has it as a function, call the operation.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Add => "add",
+            Self::Sub => "sub",
+            Self::Mul => "mul",
+            Self::Div => "div",
+            Self::Pow => "pow",
+            Self::Atan2 => "atan2",
+            Self::Hypot => "hypot",
+            Self::Min => "min",
+            Self::Max => "max",
+            Self::LessEq => "less_eq",
+        }
+    }
 }
 
 /// How a [`Node::Reduce`] joins its members.

@@ -51,25 +51,25 @@ enum Rule {
 /// Every function of the language.
 pub(super) const BUILTINS: &[Builtin] = &[
     Builtin { name: "sqrt", rule: Rule::Root },
-    Builtin { name: "exp", rule: Rule::Pure(Unary::Exp) },
-    Builtin { name: "log", rule: Rule::Pure(Unary::Log) },
-    Builtin { name: "sin", rule: Rule::Pure(Unary::Sin) },
-    Builtin { name: "cos", rule: Rule::Pure(Unary::Cos) },
-    Builtin { name: "tan", rule: Rule::Pure(Unary::Tan) },
-    Builtin { name: "asin", rule: Rule::Pure(Unary::Asin) },
-    Builtin { name: "acos", rule: Rule::Pure(Unary::Acos) },
-    Builtin { name: "atan", rule: Rule::Pure(Unary::Atan) },
+    Builtin::pure(Unary::Exp),
+    Builtin::pure(Unary::Log),
+    Builtin::pure(Unary::Sin),
+    Builtin::pure(Unary::Cos),
+    Builtin::pure(Unary::Tan),
+    Builtin::pure(Unary::Asin),
+    Builtin::pure(Unary::Acos),
+    Builtin::pure(Unary::Atan),
     Builtin { name: "atan2", rule: Rule::Angle },
-    Builtin { name: "sinh", rule: Rule::Pure(Unary::Sinh) },
-    Builtin { name: "cosh", rule: Rule::Pure(Unary::Cosh) },
-    Builtin { name: "tanh", rule: Rule::Pure(Unary::Tanh) },
+    Builtin::pure(Unary::Sinh),
+    Builtin::pure(Unary::Cosh),
+    Builtin::pure(Unary::Tanh),
     Builtin { name: "hypot", rule: Rule::Hypot },
     Builtin { name: "abs", rule: Rule::Abs },
     Builtin { name: "min", rule: Rule::Min },
     Builtin { name: "max", rule: Rule::Max },
     Builtin { name: "sign", rule: Rule::Sign },
-    Builtin { name: "logistic", rule: Rule::Pure(Unary::Logistic) },
-    Builtin { name: "softplus", rule: Rule::Pure(Unary::Softplus) },
+    Builtin::pure(Unary::Logistic),
+    Builtin::pure(Unary::Softplus),
     Builtin { name: "smooth_abs", rule: Rule::SmoothAbs },
     Builtin { name: "smooth_max", rule: Rule::SmoothMax },
 ];
@@ -97,6 +97,11 @@ const HABITS: &[(&str, &str)] = &[
 ];
 
 impl Builtin {
+    /// A pure number of a pure number, called as the operation is.
+    const fn pure(operation: Unary) -> Self {
+        Self { name: operation.name(), rule: Rule::Pure(operation) }
+    }
+
     /// Its name.
     pub(super) fn name(&self) -> &'static str {
         self.name
