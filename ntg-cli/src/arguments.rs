@@ -8,9 +8,18 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use text::{Check, Completions, Explain, Fmt, New};
 
+/// From nothing to something one can send to a colleague.
+const FIVE_COMMANDS: &str = "\
+A first problem:
+  ntg new landing                             # a commented spec; edit it
+  ntg check landing.ntg
+  ntg solve landing.ntg --save landing.json
+  ntg plot landing.json --xy x,y -o landing.svg
+  ntg report landing.json -o landing.html";
+
 /// Optimal control and trajectory generation from a readable problem file.
 #[derive(Debug, Parser)]
-#[command(name = "ntg", version, about, arg_required_else_help = true)]
+#[command(name = "ntg", version, arg_required_else_help = true, after_help = FIVE_COMMANDS)]
 pub(crate) struct Ntg {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -31,7 +40,7 @@ pub(crate) enum Command {
     ///
     /// Examples:
     ///   ntg check specs/van_der_pol.ntg
-    ///   ntg check specs/*.ntg --format json
+    ///   ntg check specs --format json              # all .ntg files below a folder
     ///   git show HEAD:specs/car.ntg | ntg check -
     #[command(verbatim_doc_comment)]
     Check(Check),
@@ -142,7 +151,7 @@ pub(crate) struct Solve {
     #[arg(long)]
     pub(crate) force: bool,
     /// Give up after that many seconds.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) time_limit: Option<f64>,
     /// Give up after that many iterations.
     #[arg(long, value_name = "N")]
@@ -158,7 +167,7 @@ pub(crate) struct Solve {
     #[arg(long, value_enum, default_value_t = Kind::Mixed, requires = "starts")]
     pub(crate) start_kind: Kind,
     /// Largest scaled residual of the optimality conditions.
-    #[arg(long, value_name = "RESIDUAL")]
+    #[arg(long, value_name = "RESIDUAL", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// Which method solves the problem.
     #[arg(long, value_enum, default_value_t = Method::Auto)]

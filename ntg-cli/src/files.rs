@@ -9,6 +9,9 @@ use ntg_compiler::diagnostic::{Code, Diagnostic};
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::{Source, Span};
 
+/// Share of letters in place from which a file's name is taken for a slip of the pen.
+const LIKE: f64 = 0.6;
+
 /// Finds table files relative to the spec that names them.
 pub(crate) struct BesideSpec {
     folder: PathBuf,
@@ -46,7 +49,15 @@ pub(crate) fn is_standard_input(path: &Path) -> bool {
 
 /// The files that paths of the command line stand for: of a folder all specs below it.
 pub(crate) fn specs(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
-    Ok(paths.iter().map(|path| below(path)).collect::<Result<Vec<_>, _>>()?.concat())
+    let mut specs = vec![];
+    for path in paths {
+        let found = below(path)?;
+        if found.is_empty() {
+            return Err(format!("there is no .ntg file below `{}`; `ntg new NAME` writes one", path.display()));
+        }
+        specs.extend(found);
+    }
+    Ok(specs)
 }
 
 /// The path itself, or all specs below it if it is a folder.
@@ -70,6 +81,41 @@ fn below(path: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(found)
 }
 
+/// Why a file could not be read, and which one may be meant.
+pub(crate) fn unread(path: &Path, error: &std::io::Error) -> String {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let shown = path.display();
+    if path.is_dir() {
+        return match nearest(path, Path::new("")) {
+            Some(inside) => format!("`{shown}` is a folder; name a file in it, such as `{}`", inside.display()),
+            None => format!("`{shown}` is a folder; name a file"),
+        };
+    }
+    if error.kind() != std::io::ErrorKind::NotFound {
+        return format!("cannot read `{shown}`: {error}");
+    }
+    if !folder.is_dir() {
+        return format!("cannot read `{shown}`: there is no folder `{}`", folder.display());
+    }
+    match nearest(folder, path) {
+        Some(near) => format!("cannot read `{shown}`: there is no such file; did you mean `{}`?", near.display()),
+        None => format!("cannot read `{shown}`: there is no such file"),
+    }
+}
+
+/// The file of a folder whose name is most like the wanted one and has the same extension, a spec's if none is said.
+fn nearest(folder: &Path, wanted: &Path) -> Option<PathBuf> {
+    let extension = wanted.extension().unwrap_or("ntg".as_ref());
+    let stem = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok);
+    let files = entries.map(|entry| entry.path()).filter(|path| path.extension() == Some(extension));
+    let like = |path: &PathBuf| strsim::normalized_damerau_levenshtein(&stem(path), &stem(wanted));
+    let mut near: Vec<PathBuf> = files.filter(|path| wanted.file_name().is_none() || like(path) >= LIKE).collect();
+    near.sort();
+    let best = near.into_iter().max_by(|a, b| like(a).total_cmp(&like(b)))?;
+    Some(best.strip_prefix(".").map(Path::to_path_buf).unwrap_or(best))
+}
+
 /// Reads a spec from a file, or from standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
     let name = if is_standard_input(path) { "<stdin>".to_owned() } else { path.display().to_string() };
@@ -79,10 +125,7 @@ pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
     } else {
         std::fs::read(path)
     };
-    let bytes = bytes.map_err(|error| {
-        let message = format!("cannot read `{name}`: {error}");
-        Failure::Unread { name: name.clone(), message }
-    })?;
+    let bytes = bytes.map_err(|error| Failure::Unread { name: name.clone(), message: unread(path, &error) })?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     match String::from_utf8(bytes) {
         Ok(text) => Ok((Source::new(name, text), BesideSpec { folder })),

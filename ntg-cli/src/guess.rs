@@ -8,13 +8,17 @@ use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use serde_json::Value;
 
+use crate::files;
+use crate::runs::SAVED;
+
 /// Reads a saved solution as a guess for a problem: its unknowns where the splines are the same,
 /// its sampled outputs, durations and variables otherwise.
 pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> {
-    let text = std::fs::read_to_string(path).map_err(|e| format!("cannot read `{}`: {e}", path.display()))?;
-    let saved: Value = serde_json::from_str(&text).map_err(|e| format!("`{}` is not JSON: {e}", path.display()))?;
+    let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
+    let saved: Value =
+        serde_json::from_str(&text).map_err(|e| format!("`{}` is not JSON: {e}; {SAVED}", path.display()))?;
     if saved["format"] != FORMAT {
-        return Err(format!("`{}` is no saved solution (its \"format\" is not \"{FORMAT}\")", path.display()));
+        return Err(format!("`{}` is no saved solution (its \"format\" is not \"{FORMAT}\"); {SAVED}", path.display()));
     }
     if saved["version"] != VERSION {
         let version = &saved["version"];

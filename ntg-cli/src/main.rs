@@ -17,6 +17,7 @@ mod plot;
 mod report;
 mod route;
 mod runs;
+mod setup;
 mod solve;
 mod sweep;
 mod values;

@@ -14,8 +14,7 @@ const START: &str = include_str!("new/start.ntg");
 pub(crate) fn run(arguments: &arguments::New) -> Exit {
     match start(&arguments.name, arguments.force) {
         Ok(path) => {
-            let path = path.display();
-            files::print(&format!("{path}: written; `ntg check {path}`, `ntg solve {path}`"));
+            files::print(&next(&path));
             Exit::Done
         }
         Err(message) => {
@@ -35,6 +34,16 @@ fn start(name: &Path, force: bool) -> Result<PathBuf, String> {
     }
     write::whole(&path, force, text.as_bytes())?;
     Ok(path)
+}
+
+/// What to do with the spec.
+fn next(path: &Path) -> String {
+    let (spec, stem) = (path.display(), path.with_extension(""));
+    let stem = stem.display();
+    format!(
+        "{spec}: written. Edit it, then:\n  ntg check {spec}\n  ntg solve {spec} --save {stem}.json\n  \
+         ntg plot {stem}.json --xy x,y -o {stem}.svg\n  ntg report {stem}.json -o {stem}.html"
+    )
 }
 
 fn with_extension(name: &Path) -> PathBuf {

@@ -1,10 +1,11 @@
 //! `--route "x, y: -100, -100; -100, -15; 5, -15 [km]"`: a coarse route as the first guess.
 
-use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::{Structure, Unit};
+
+use crate::values;
 
 /// What is wrong, and what is right.
 const FORM: &str = "write OUTPUTS: POINT; POINT, such as `x, y: -100, -100; -100, -15; 5, -15 [km]`";
@@ -53,10 +54,7 @@ fn unit(structure: &Structure, name: &str) -> Result<Unit, String> {
 /// One number, in the declared unit.
 fn number(cell: &str, shared: &str, unit: &Unit) -> Result<f64, String> {
     let text = if cell.contains('[') { cell.to_owned() } else { format!("{cell} {shared}") };
-    let source = Source::new("--route", text.trim());
-    let found = ntg_compiler::model::given(&source, unit)
-        .map_err(|found| found.iter().map(|d| format!("\n{}", d.render(&source))).collect::<String>())?;
-    match found[..] {
+    match values::given(&text, unit)?[..] {
         [value] => Ok(value / unit.factor),
         _ => Err(format!("`{cell}` is not one number; {FORM}")),
     }

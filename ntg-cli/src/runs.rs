@@ -8,7 +8,10 @@ use ntg_report::run::Recording;
 use ntg_runtime::settings::Settings;
 
 use crate::watch::{Interrupt, Watch};
-use crate::{files, values};
+use crate::{files, setup, values};
+
+/// What can be read as a run.
+pub(crate) const SAVED: &str = "give a file that `ntg solve --save` has written";
 
 /// One run for each file, named by its file where there are several.
 pub(crate) fn load(paths: &[PathBuf], set: &[String]) -> Result<Vec<(String, Run)>, String> {
@@ -26,8 +29,8 @@ fn run(path: &Path, set: &[String], interrupt: &Interrupt) -> Result<Run, String
         if !set.is_empty() {
             return Err(format!("`{}` is solved already; --set goes with a spec", path.display()));
         }
-        let text = std::fs::read_to_string(path).map_err(|e| format!("cannot read `{}`: {e}", path.display()))?;
-        return Run::read(&text).map_err(|message| format!("`{}` {message}", path.display()));
+        let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
+        return Run::read(&text).map_err(|message| format!("`{}` {message}; {SAVED}", path.display()));
     }
     // Findings have been said.
     let (source, compiled) = files::compile(path).ok_or_else(String::new)?;
@@ -40,7 +43,7 @@ fn run(path: &Path, set: &[String], interrupt: &Interrupt) -> Result<Run, String
     watch.over(&mut settings);
     let report = ntg_runtime::solve(&problem, &settings);
     let iterations = watch.end(crate::solve::is_cancelled(&report));
-    let report = report.map_err(|error| format!("{}: {error}", path.display()))?;
+    let report = report.map_err(|error| setup::words(&error, &source))?;
     if !report.is_solved() {
         eprintln!("warning: {}: {}; what follows is the last point", path.display(), report.status);
     }

@@ -16,7 +16,7 @@ use ntg_runtime::{Error, status::Status};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
-use crate::{Exit, files, guess, route, values, write};
+use crate::{Exit, files, guess, route, setup, values, write};
 
 pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
     crate::said(solve(arguments))
@@ -68,7 +68,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
             report.map(|report| Found::One(Box::new(report)))
         }
     };
-    let found = found.map_err(|error| format!("{}: {error}", arguments.spec.display()))?;
+    let found = found.map_err(|error| setup::words(&error, &source))?;
     let (report, starts) = match &found {
         Found::One(report) => (&**report, None),
         Found::Many(starts) => (starts.best().ok_or_else(|| starts.to_string())?, Some(starts)),

@@ -1,5 +1,8 @@
 //! The verbs that look at a spec's text, as a user runs them.
 
+#[path = "text/mistakes.rs"]
+mod mistakes;
+
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -25,7 +25,7 @@ fn bounds_that_cross() {
     let rows = vec![Row::Constraint { constraint, lower: Some(0), upper: Some(1) }];
     problem.structure.groups.push(Group { bounds: Some(bounds), ..group(domain, call, rows) });
     let error = refused(&problem);
-    let words = "the bounds of `window` cross: no number lies between 2 and 1 (line 1, column 1: `window`)";
+    let words = "the bounds of `window` cross: no number lies between 2 and 1 [E056] (line 1, column 1: `window`)";
     assert_eq!(error.to_string(), words);
     assert!(error.code().is_some());
 }
@@ -100,7 +100,7 @@ fn a_parameter_that_is_not_finite() {
         let mut problem = problems::double_integrator(3.0, 2.0, false);
         problem.parameter("v_max", &[1.0, value], Unit::default());
         let error = refused(&problem).to_string();
-        assert_eq!(error, format!("parameter `v_max[2]` is {value}; it must be a finite number"));
+        assert_eq!(error, format!("parameter `v_max[2]` is {value}; it must be a finite number [E032]"));
     }
 }
 

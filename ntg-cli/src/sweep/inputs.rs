@@ -7,7 +7,11 @@ use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::Parameter;
 use ntg_sweep::{Range, grid};
 
+use crate::files;
 use crate::values::{self, given, target_of};
+
+/// How a range is written.
+const FORM: &str = "a range is NAME=FIRST:LAST:COUNT, such as `v_max=0.2:0.3:11` or `v_max=\"200:300:11 [m/s]\"`";
 
 /// What is set, and to which values, in declared units.
 pub(super) struct Sets {
@@ -24,7 +28,10 @@ pub(super) fn fixed(set: &[String]) -> Vec<String> {
 /// takes the values that hold for all rows.
 pub(super) fn sets(problem: &mut Interpreted, set: &[String], from: Option<&Path>) -> Result<Sets, String> {
     for assignment in fixed(set) {
-        values::set(problem, &assignment)?;
+        values::set(problem, &assignment).map_err(|message| match assignment.contains("..") {
+            true => format!("{message}; {FORM}"),
+            false => message,
+        })?;
     }
     let mut names = vec![];
     let mut rows = vec![vec![]];
@@ -87,7 +94,6 @@ fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
 
 /// `name=first:last:count [unit]`.
 fn range(problem: &mut Interpreted, text: &str) -> Result<(String, Range), String> {
-    const FORM: &str = "a range is NAME=FIRST:LAST:COUNT, such as `v_max=0.2:0.3:11` or `v_max=\"200:300:11 [m/s]\"`";
     let (name, range) = text.split_once('=').ok_or(FORM)?;
     let name = name.trim();
     let (range, unit) = range.find('[').map_or((range, ""), |at| range.split_at(at));
@@ -107,6 +113,9 @@ type Read = (Vec<String>, Vec<Vec<f64>>);
 
 /// A table of parameter sets.
 fn table(problem: &mut Interpreted, path: &Path) -> Result<Read, String> {
+    if let Err(error) = std::fs::File::open(path) {
+        return Err(files::unread(path, &error));
+    }
     let table = ntg_sweep::read(path)?;
     let parameters = table.names.iter().map(|name| parameter(problem, name)).collect::<Result<Vec<_>, _>>();
     let parameters = parameters.map_err(|message| format!("`{}`: {message}", path.display()))?;

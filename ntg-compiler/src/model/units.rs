@@ -148,13 +148,17 @@ pub(super) const SYMBOLS: &[Symbol] = &[
 
 /// Symbols that people write for others: (what they write, what to write instead).
 const HABITS: &[(&str, &str)] = &[
+    ("mps", "m/s"),
+    ("fps", "ft/s"),
     ("sec", "s"),
+    ("secs", "s"),
     ("second", "s"),
     ("seconds", "s"),
     ("hr", "h"),
     ("hour", "h"),
     ("minute", "min"),
     ("meter", "m"),
+    ("meters", "m"),
     ("metre", "m"),
     ("feet", "ft"),
     ("foot", "ft"),
@@ -164,6 +168,7 @@ const HABITS: &[(&str, &str)] = &[
     ("kts", "kn"),
     ("degree", "deg"),
     ("degrees", "deg"),
+    ("radians", "rad"),
     ("kmh", "km/h"),
     ("kph", "km/h"),
     ("Ohm", "ohm"),

@@ -225,6 +225,9 @@ impl Here<'_> {
                 "constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`, with `==`".into(),
             );
         }
+        if this == "," && after_number && self.expected.has(Rule::semicolon) {
+            return Some("the decimal point is `.`; a list stands in parentheses, `(1, 2)`".into());
+        }
         if this == "," && self.expected.has(Rule::semicolon) {
             return Some("a list stands in parentheses, `(1, 2)`".into());
         }

@@ -100,9 +100,54 @@ impl SetupError {
     /// The code under which the language's documentation explains the same mistake, if it does.
     pub fn code(&self) -> Option<&'static str> {
         match self {
+            Self::IndexOutOfRange { .. } => Some("E028"),
+            Self::NotFinite { .. } => Some("E032"),
+            Self::Knots { .. } => Some("E055"),
             Self::CrossingBounds { .. } => Some("E056"),
             Self::Contradiction { .. } => Some("E057"),
+            Self::Duration { .. } => Some("E060"),
+            Self::Guess { .. } => Some("E065"),
+            Self::Table { .. } => Some("E073"),
+            Self::Malformed { .. } => None,
+        }
+    }
+
+    /// What to do, where that is not in the message.
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFinite { .. } => Some("change the parameters that it is computed from"),
+            Self::CrossingBounds { .. } => Some("change the parameters that stand in its bounds"),
+            Self::Contradiction { .. } => Some("loosen the bound, or change what is fixed"),
+            Self::Duration { .. } => Some("change the parameters that decide how long it lasts"),
             _ => None,
+        }
+    }
+
+    /// What is wrong, without code and place.
+    pub fn message(&self) -> String {
+        match self {
+            Self::NotFinite { what, value, .. } => format!("{what} is {value}; it must be a finite number"),
+            Self::CrossingBounds { what, lower, upper, unit, .. } => {
+                let (lower, upper) = (show(*lower, unit), show(*upper, unit));
+                format!("the bounds of {what} cross: no number lies between {lower} and {upper}")
+            }
+            Self::Contradiction { what, value, bound, unit, .. } => {
+                let (value, bound) = (show(*value, unit), show(*bound, unit));
+                format!("{what} cannot hold: the other conditions there make it {value}, and its bound is {bound}")
+            }
+            Self::IndexOutOfRange { what, index, first, last, .. } if last < first => {
+                format!("{what} has no member {index}: it is empty")
+            }
+            Self::IndexOutOfRange { what, index, first, last, .. } => {
+                format!("{what} has no member {index}: its members are {first} .. {last}")
+            }
+            Self::Duration { phase, seconds, .. } => {
+                format!("{phase} would last {seconds} s; a duration must be positive and finite")
+            }
+            Self::Knots { output, error, .. } => format!("the spline of {output}: {error}"),
+            Self::Table { table, message } => format!("table `{table}`: {message}"),
+            Self::Guess { message } => message.clone(),
+            Self::Malformed { message } => format!("the compiled problem contradicts itself: {message}"),
         }
     }
 
@@ -128,29 +173,9 @@ impl SetupError {
 
 impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFinite { what, value, .. } => write!(f, "{what} is {value}; it must be a finite number")?,
-            Self::CrossingBounds { what, lower, upper, unit, .. } => {
-                let (lower, upper) = (show(*lower, unit), show(*upper, unit));
-                write!(f, "the bounds of {what} cross: no number lies between {lower} and {upper}")?;
-            }
-            Self::Contradiction { what, value, bound, unit, .. } => {
-                let (value, bound) = (show(*value, unit), show(*bound, unit));
-                write!(f, "{what} cannot hold: the other conditions there make it {value}, and its bound is {bound}")?;
-            }
-            Self::IndexOutOfRange { what, index, first, last, .. } if last < first => {
-                write!(f, "{what} has no member {index}: it is empty")?;
-            }
-            Self::IndexOutOfRange { what, index, first, last, .. } => {
-                write!(f, "{what} has no member {index}: its members are {first} .. {last}")?;
-            }
-            Self::Duration { phase, seconds, .. } => {
-                write!(f, "{phase} would last {seconds} s; a duration must be positive and finite")?;
-            }
-            Self::Knots { output, error, .. } => write!(f, "the spline of {output}: {error}")?,
-            Self::Table { table, message } => write!(f, "table `{table}`: {message}")?,
-            Self::Guess { message } => f.write_str(message)?,
-            Self::Malformed { message } => write!(f, "the compiled problem contradicts itself: {message}")?,
+        f.write_str(&self.message())?;
+        if let Some(code) = self.code() {
+            write!(f, " [{code}]")?;
         }
         match self.place() {
             Some(place) => write!(f, " (line {}, column {}: `{}`)", place.line, place.column, place.text),
