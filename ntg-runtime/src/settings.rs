@@ -61,6 +61,39 @@ pub enum Method {
 }
 
 /// How to solve. `Settings::default()` suits most problems.
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let settings = Settings {
+///     tolerance: 1e-9,
+///     time_limit: Some(std::time::Duration::from_secs(60)),
+///     // Watches every iteration, and gives up after three.
+///     on_iteration: Some(std::sync::Arc::new(|progress| match progress.iteration {
+///         0..3 => Control::Continue,
+///         _ => Control::Cancel,
+///     })),
+///     ..Settings::default()
+/// };
+/// settings.validate()?;
+/// assert!(Move::default().solve(&settings)?.report().iterations <= 3);
+/// assert!(Settings { tolerance: -1.0, ..settings }.validate().is_err());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone)]
 pub struct Settings {
     /// Which method solves the problem. Default [`Method::Auto`].

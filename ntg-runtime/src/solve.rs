@@ -64,6 +64,32 @@ impl From<InvalidSetting> for Error {
 
 /// Solves a problem from the spec's own guess.
 ///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let problem = Move { distance: 3.0 }; // Any problem, whatever made it: results go by name.
+/// let report = solve(&problem, &Settings::default())?;
+/// assert!(report.is_solved(), "{report}");
+/// assert!((report.objective - 12.0 * 9.0 / 8.0).abs() < 1e-6);
+/// let x = report.solution.output("x").expect("an output of the spec");
+/// assert!((x.at(1.0) - 1.5).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// [`Error`] if the problem cannot be set up; a solve that ends without solution is a report.
 pub fn solve(problem: &dyn Problem, settings: &Settings) -> Result<Report, Error> {

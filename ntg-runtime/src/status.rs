@@ -41,6 +41,33 @@ pub struct Crossing {
 }
 
 /// Why a solve ended.
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         trajectory { slow: der(x) <= 0.3 [m/s]; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let solution = Move::default().solve(&Settings::default())?;
+/// // The mean speed is half a metre a second, so the limit cannot be kept.
+/// match solution.status() {
+///     Status::Infeasible { rows } => println!("{} is missed by {}", rows[0].name, rows[0].violation),
+///     other => panic!("{other}: {}", other.advice()),
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Status {
     /// All residuals are within their tolerances: a local minimum to first order.

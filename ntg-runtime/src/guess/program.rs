@@ -16,6 +16,35 @@ use std::sync::Arc;
 ///     .duration("T", 900.0);
 /// # let _ = guess;
 /// ```
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let problem = Move { distance: 5.0 };
+/// let guess = Guess::new().output("x", |tau| 5.0 * tau); // In declared units, over scaled time 0 .. 1.
+/// let far = problem.solve_from(&guess, &Settings::default())?;
+/// assert!(far.is_solved());
+///
+/// // The quickest start of all is what was found for a problem nearby.
+/// let problem = Move { distance: 5.1 };
+/// let again = problem.solve_from(&Guess::from(far.untyped()), &Settings::default())?;
+/// assert!((again.objective() - 12.0 * 5.1 * 5.1 / 8.0).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Default)]
 pub struct Guess {
     pub(super) base: Base,

@@ -42,6 +42,29 @@ pub enum StartKind {
 }
 
 /// Which starts are tried.
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// Two wells, at 1 and -1; the left one is deeper.
+///     problem Wells {
+///         duration T = 1;
+///         output x: spline(order = 3, intervals = 1);
+///         minimize (final(x)^2 - 1)^2 + 0.2 * final(x) + 0.01 * integral(der(x)^2);
+///         guess { x = 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let starts = Starts { count: 24, kind: StartKind::Perturbed, ..Starts::default() };
+/// let minima = Wells::default().multistart(&starts, &Settings::default())?;
+/// println!("{}", minima.report); // Every minimum once, with how many starts led to it.
+/// assert_eq!(minima.report.tried(), 24);
+/// assert!(minima.best().expect("one was solved").x.at(1.0) < 0.0);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone)]
 pub struct Starts {
     /// How many; at least 1. Default 16.

@@ -21,6 +21,34 @@ use ntg_structure::{Block, Place, Unit};
 use std::sync::Arc;
 
 /// Everything about one solve. All fields are plain data.
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let solution = Move::default().solve(&Settings::default())?;
+/// let report = solution.report();
+/// println!("{report}"); // Why it ended, the cost by terms, what is violated, for people.
+///
+/// assert!(report.is_solved() && report.violation.between < 1e-8);
+/// // What another metre would cost: d(12 distance^2 / T^3) = 24 distance / T^3 d(distance).
+/// let reach = report.constraint("reach").expect("a constraint of the spec");
+/// assert!((reach.sensitivity - 3.0).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Report {

@@ -21,6 +21,35 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Spline coefficients, times, variables and multipliers of a solved problem.
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let found = Move::default().solve(&Settings::default())?;
+/// let solution: &Solution = found.untyped(); // Everything by name, for programs that know no spec.
+///
+/// assert_eq!(solution.times(3), [0.0, 1.0, 2.0]);
+/// assert_eq!(solution.time("T"), Some(2.0));
+/// for x in solution.trajectories() {
+///     println!("{} [{}]: {:?}", x.name(), x.unit().symbol, x.sample(5));
+/// }
+/// assert!(solution.output("y").is_none());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone)]
 pub struct Solution {
     pub(crate) inner: Arc<Inner>,

@@ -15,6 +15,34 @@ use std::sync::Arc;
 /// A named expression (`let`) of one agent, over all of its phases that define it or in one of them.
 ///
 /// It borrows the problem, whose kernels compute it.
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         let speed [cm/s] = der(x);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let solution = Move::default().solve(&Settings::default())?;
+/// let speed: Signal<'_> = solution.speed();
+/// assert!((speed.at(1.0) - 75.0).abs() < 1e-4 && speed.unit().symbol == "cm/s");
+/// // The same by name, for programs that know no spec.
+/// let problem = Move::default();
+/// let signals = solution.untyped().signals(&problem);
+/// assert!(signals.iter().any(|signal| signal.name() == "speed"));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone)]
 pub struct Signal<'p> {
     problem: &'p dyn Problem,

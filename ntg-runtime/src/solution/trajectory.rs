@@ -9,6 +9,32 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// A flat output as a function of mission time, in its declared unit.
+///
+/// ```
+/// use ntg::prelude::*;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort: a cubic, with cost 12 distance^2 / T^3.
+///     problem Move {
+///         duration T = 2 [s];
+///         param distance = 1 [m];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { reach: x == distance;  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let solution = Move::default().solve(&Settings::default())?;
+/// let x: &Trajectory = &solution.x;
+/// assert!((x.at(1.0) - 0.5).abs() < 1e-6); // In its declared unit,
+/// assert!((x.derivative(1.0, 1) - 0.75).abs() < 1e-6); // and in that per second.
+/// assert!((x.at(99.0) - 1.0).abs() < 1e-6); // Times are clamped to its own.
+/// assert_eq!(x.sample(11).len(), 11);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone)]
 pub struct Trajectory {
     inner: Arc<Inner>,
