@@ -1,8 +1,10 @@
 //! A document and what the compiler finds in it.
 //!
 //! A text that someone is typing is wrong most of the time. So that names and hovers do not come and go, statements
-//! with syntax errors are blanked, without moving anything, and the rest is read again.
+//! with syntax errors are blanked, without moving anything, and the rest is read again: when someone asks for names,
+//! not at every keystroke, after which only the findings are wanted.
 
+use std::cell::OnceCell;
 use std::path::PathBuf;
 
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
@@ -37,12 +39,11 @@ pub struct Analysis {
     pub lines: Lines,
     /// All that was found.
     pub found: Vec<Diagnostic>,
-    /// Its names, as far as it can be read.
-    pub names: Names,
-    /// What can be read of it; none if there is not even a problem.
-    pub spec: Option<Spec>,
     /// What it means, if nothing is wrong.
     pub problem: Option<Problem>,
+    /// The syntax tree, if nothing is wrong with the syntax.
+    whole: Option<Spec>,
+    names: OnceCell<Names>,
     loader: Beside,
 }
 
@@ -51,15 +52,22 @@ impl Analysis {
     pub fn new(name: &str, text: String, loader: Beside) -> Self {
         let source = Source::new(name, text);
         let lines = Lines::new(&source.text);
-        let (spec, problem, found) = match syntax::parse(&source) {
+        let (whole, problem, found) = match syntax::parse(&source) {
             Ok(spec) => {
                 let (problem, found) = ntg_compiler::model::build(&spec, &source, &loader);
                 (Some(spec), problem, found)
             }
-            Err(found) => (readable(&source), None, found.into_iter().collect()),
+            Err(found) => (None, None, found.into_iter().collect()),
         };
-        let names = spec.as_ref().map(Names::of).unwrap_or_default();
-        Self { source, lines, found, names, spec, problem, loader }
+        Self { source, lines, found, problem, whole, names: OnceCell::new(), loader }
+    }
+
+    /// Its names, as far as it can be read.
+    pub fn names(&self) -> &Names {
+        self.names.get_or_init(|| match &self.whole {
+            Some(spec) => Names::of(spec),
+            None => readable(&self.source).as_ref().map(Names::of).unwrap_or_default(),
+        })
     }
 
     /// Where the files are that the spec names.

@@ -33,7 +33,7 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
 
 fn names(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
     let mut items: Vec<CompletionItem> = vec![];
-    for declaration in analysis.names.visible(byte) {
+    for declaration in analysis.names().visible(byte) {
         let label = &declaration.name.text;
         let is_named = !matches!(declaration.kind, Kind::Problem | Kind::Term | Kind::Constraint);
         if is_named && items.iter().all(|item| item.label != *label) {

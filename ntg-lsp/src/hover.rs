@@ -28,11 +28,11 @@ pub fn hover(analysis: &Analysis, byte: usize) -> Option<(String, Span)> {
     }
     if text == "der" {
         let of = |derivative: &&Derivative| derivative.span.start == word.start;
-        let derivative = analysis.names.derivatives.iter().find(of)?;
+        let derivative = analysis.names().derivatives.iter().find(of)?;
         return Some((expansion(analysis, derivative), derivative.span));
     }
-    if let Some(mention) = analysis.names.at(byte) {
-        let declared = mention.declarations.iter().filter_map(|at| analysis.names.declarations.get(*at));
+    if let Some(mention) = analysis.names().at(byte) {
+        let declared = mention.declarations.iter().filter_map(|at| analysis.names().declarations.get(*at));
         let texts: Vec<String> = declared.map(|declaration| about(analysis, declaration)).collect();
         return Some((texts.join("\n\n---\n\n"), mention.span));
     }
@@ -134,7 +134,7 @@ struct Probe {
 
 /// Asks the compiler about an expression of a scope, by naming it in a copy of the spec.
 fn probe(analysis: &Analysis, text: &str, scope: usize, indices: &[Span]) -> Option<Probe> {
-    let scope = analysis.names.scopes.get(scope)?;
+    let scope = analysis.names().scopes.get(scope)?;
     let family = match indices {
         [] => String::new(),
         [one] => format!("[{}]", analysis.source.slice(*one)),

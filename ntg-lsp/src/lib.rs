@@ -30,13 +30,13 @@ pub fn run() -> Result<(), ProtocolError> {
     // The thread that reads hands over one message at a time; those that come while the compiler looks at a text wait
     // in a queue, for `serve` to see them together.
     let (filled, queue) = Connection::memory();
-    let reader = std::thread::spawn(move || receiver.iter().try_for_each(|message| filled.sender.send(message)));
+    let reader = std::thread::spawn(move || receiver.iter().all(|message| filled.sender.send(message).is_ok()));
     let connection = Connection { sender, receiver: queue.receiver };
     let served = serve(&connection);
     // The threads end when the channels to them do.
     drop(connection);
     threads.join()?;
-    // It fails where messages come behind the last that `serve` took, which are for nobody.
+    // Messages behind the last that `serve` took are for nobody.
     let _ = reader.join();
     served
 }

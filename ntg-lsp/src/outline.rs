@@ -8,14 +8,14 @@ use crate::names::{Declaration, Kind};
 
 /// Problem, agents and phases with what they declare.
 pub fn symbols(analysis: &Analysis) -> Vec<DocumentSymbol> {
-    let declarations = &analysis.names.declarations;
+    let declarations = &analysis.names().declarations;
     let problem = declarations.iter().find(|declaration| declaration.kind == Kind::Problem);
     problem.map(|problem| symbol(analysis, problem)).into_iter().collect()
 }
 
 fn symbol(analysis: &Analysis, declaration: &Declaration) -> DocumentSymbol {
     let inside = declaration.inner.map(|scope| {
-        let own = analysis.names.declarations.iter().filter(|inner| {
+        let own = analysis.names().declarations.iter().filter(|inner| {
             inner.scope == scope && !matches!(inner.kind, Kind::Problem | Kind::Index | Kind::Argument)
         });
         let mut own: Vec<&Declaration> = own.collect();

@@ -238,8 +238,8 @@ impl Server<'_> {
         let uri = params.text_document_position_params.text_document.uri.clone();
         let place = self.place(&params.text_document_position_params);
         json(place.and_then(|(analysis, byte)| {
-            let mention = analysis.names.at(byte)?;
-            let places = mention.declarations.iter().map(|at| analysis.names.declarations[*at].name.span);
+            let mention = analysis.names().at(byte)?;
+            let places = mention.declarations.iter().map(|at| analysis.names().declarations[*at].name.span);
             let range = |span| analysis.lines.range(&analysis.source.text, span);
             let locations = places.map(|span| Location::new(uri.clone(), range(span))).collect();
             Some(GotoDefinitionResponse::Array(locations))
@@ -250,8 +250,8 @@ impl Server<'_> {
         let uri = params.text_document_position.text_document.uri.clone();
         let place = self.place(&params.text_document_position);
         json(place.and_then(|(analysis, byte)| {
-            let first = *analysis.names.at(byte)?.declarations.first()?;
-            let places = analysis.names.places(&analysis.names.together(first));
+            let first = *analysis.names().at(byte)?.declarations.first()?;
+            let places = analysis.names().places(&analysis.names().together(first));
             let range = |span| analysis.lines.range(&analysis.source.text, span);
             Some(places.into_iter().map(|span| Location::new(uri.clone(), range(span))).collect::<Vec<_>>())
         }))
@@ -259,7 +259,7 @@ impl Server<'_> {
 
     fn prepare_rename(&mut self, params: TextDocumentPositionParams) -> Value {
         json(self.place(&params).and_then(|(analysis, byte)| {
-            let mention = analysis.names.at(byte)?;
+            let mention = analysis.names().at(byte)?;
             Some(PrepareRenameResponse::Range(analysis.lines.range(&analysis.source.text, mention.span)))
         }))
     }

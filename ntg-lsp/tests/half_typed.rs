@@ -32,7 +32,7 @@ fn ask(text: &str, byte: usize) {
     let _ = outline::symbols(&analysis);
     let _ = outline::layout(&analysis);
     let _ = rename::edits(&analysis, text.floor_char_boundary(byte), "other_name");
-    for mention in &analysis.names.mentions {
+    for mention in &analysis.names().mentions {
         assert!(text.get(mention.span.start as usize..mention.span.end as usize).is_some());
     }
 }
