@@ -61,7 +61,11 @@ fn label(runs: &Runs<'_>, run: usize, path: &str) -> String {
 
 /// `name [unit]`.
 pub fn with_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
+    match (name.is_empty(), unit.is_empty()) {
+        (_, true) => name.to_owned(),
+        (true, false) => format!("[{unit}]"),
+        (false, false) => format!("{name} [{unit}]"),
+    }
 }
 
 /// One panel for each output, families and agents together.
@@ -109,15 +113,23 @@ pub fn constraints(runs: &Runs<'_>) -> Vec<Panel> {
     over_constraints(runs, |constraint, runs, run| {
         let lines = constraint.members.iter().map(|member| (&member.name, &member.t, &member.value));
         let lines: Vec<Line> = lines.map(|(name, t, value)| line(label(runs, run, name), run, t, value)).collect();
-        (with_unit(&short(&constraint.name), &constraint.unit), lines, limits(constraint))
+        (with_unit(ordinate(&constraint.name), &constraint.unit), lines, limits(constraint))
     })
 }
 
-/// One panel for each constraint along a trajectory that has multipliers.
+/// What a constraint's axis is called: an unnamed one is its own text, which has units already and stands above.
+fn ordinate(name: &str) -> &str {
+    let is_name = name.chars().all(|letter| letter.is_alphanumeric() || matches!(letter, '_' | '.' | '[' | ']'));
+    if is_name { name } else { "" }
+}
+
+/// One panel for each constraint along a trajectory that has multipliers. Where no bound is reached they are what the
+/// solver's last step has left of them, which tells nothing.
 pub fn multipliers(runs: &Runs<'_>) -> Vec<Panel> {
     let mut panels = over_constraints(runs, |constraint, runs, run| {
         let density = constraint.multiplier.as_ref().is_some_and(|m| m.density);
-        let lines = constraint.members.iter().filter(|member| member.multiplier_t.len() > 1);
+        let told = constraint.reaches_a_bound();
+        let lines = constraint.members.iter().filter(|member| told && member.multiplier_t.len() > 1);
         let lines =
             lines.map(|member| line(label(runs, run, &member.name), run, &member.multiplier_t, &member.multiplier));
         let y = if density { "dJ*/d(bound), per second" } else { "dJ*/d(bound)" };

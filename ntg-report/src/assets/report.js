@@ -20,7 +20,7 @@
 
   const number = (v) => {
     if (v == null || !isFinite(v)) return "–";
-    if (v !== 0 && (Math.abs(v) >= 1e6 || Math.abs(v) < 1e-3)) return v.toExponential(2);
+    if (v !== 0 && (Math.abs(v) >= 1e6 || Math.abs(v) < 1e-3)) return v.toExponential(2).replace(/\.?0+e/, "e");
     return String(+v.toPrecision(5));
   };
 
@@ -75,6 +75,17 @@
     stroke: () => css("--ink"), grid: { stroke: () => css("--line"), width: 1 }, ticks: { stroke: () => css("--line"), width: 1 },
   });
 
+  // Powers of ten, at most seven of them.
+  const decades = (u, axis, low, high) => {
+    const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
+    const step = Math.max(1, Math.ceil((last - first) / 6)), found = [];
+    for (let power = first; power <= last; power += step) found.push(10 ** power);
+    return found;
+  };
+  // As wide as its longest number.
+  const room = (u, values) => 22 + 7 * Math.max(4, ...(values || []).map((text) => (text || "").length));
+  const whole = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
+
   const time = (place, chart) => {
     const log = chart.kind === "log";
     const width = () => Math.max(place.clientWidth - 14, 240);
@@ -85,7 +96,13 @@
     const u = new uPlot({
       width: width(), height: 270, series: [{ label: chart.x, value: (u, v) => number(v) }, ...series],
       scales: { x: { time: false }, y: log ? { distr: 3 } : { range: spanned(chart) } },
-      axes: [axis(chart.x), { ...axis(chart.y), size: 62, values: (u, ticks) => ticks.map((v) => (v == null || (log && Math.abs(Math.log10(v) % 1) > 1e-9) ? null : log ? `1e${Math.round(Math.log10(v))}` : number(v))) }],
+      axes: [
+        { ...axis(chart.x), ...(log ? { incrs: whole } : {}) },
+        {
+          ...axis(chart.y), size: room, ...(log ? { splits: decades, filter: (u, splits) => splits } : {}),
+          values: (u, ticks) => ticks.map((v) => (v == null ? null : log ? `1e${Math.round(Math.log10(v))}` : number(v))),
+        },
+      ],
       cursor: { sync: log ? undefined : { key: "t" }, drag: { x: true, y: false } },
       legend: { live: true }, hooks: { draw: [marks(chart)] },
     }, joined(chart.lines), place);

@@ -10,8 +10,6 @@ use crate::run::{Constraint, Run, Spec};
 const VIOLATED: f64 = 1e-6;
 /// Relative violations between points above this are worth a mark.
 const BETWEEN: f64 = 1e-4;
-/// A bound that is nearer than this, relative to its size, is reached.
-const REACHED: f64 = 1e-5;
 
 /// How a constraint ended, from bad to good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,11 +57,7 @@ pub(super) fn state(constraint: &Constraint) -> State {
     if !members.is_empty() && members.iter().all(|m| m.lower.is_some() && m.lower == m.upper) {
         return State::Equality;
     }
-    let reached = |bound: Option<f64>, value: f64| {
-        bound.is_some_and(|bound| (value - bound).abs() <= REACHED * bound.abs().max(1.0))
-    };
-    let active = members.iter().any(|m| m.value.iter().any(|v| reached(m.lower, *v) || reached(m.upper, *v)));
-    if active { State::Active } else { State::Inactive }
+    if constraint.reaches_a_bound() { State::Active } else { State::Inactive }
 }
 
 /// The spec of one run; nothing where the file does not hold it.

@@ -193,6 +193,20 @@ pub struct Constraint {
     pub members: Vec<Member>,
 }
 
+impl Constraint {
+    /// Whether some value is at a bound or beyond it, so that there is something to pay for.
+    pub fn reaches_a_bound(&self) -> bool {
+        /// A bound that is nearer than this, relative to its size, is reached.
+        const REACHED: f64 = 1e-5;
+        let near = |bound: f64| REACHED * bound.abs().max(1.0);
+        self.members.iter().any(|member| {
+            let low = |value: f64| member.lower.is_some_and(|bound| value <= bound + near(bound));
+            let high = |value: f64| member.upper.is_some_and(|bound| value >= bound - near(bound));
+            member.value.iter().any(|value| low(*value) || high(*value))
+        })
+    }
+}
+
 /// A largest violation.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
