@@ -124,6 +124,7 @@ codes! {
     DerivativeJumps "N002" "a derivative that jumps at the knots";
     FitReport "N003" "how well a table follows its values";
     AlwaysHolds "N004" "a constraint that always holds";
+    FreeStart "N005" "an end without a start";
 }
 
 impl Code {

@@ -2,7 +2,7 @@
 //!
 //! Takes the finished problem.
 //! Finds: boundary conditions that contradict one another or a bound, more of them than an output
-//! can meet, a problem without an objective.
+//! can meet, a problem without an objective; notes an end without a start.
 //! Only what constants decide is told here; what parameters decide is the solver's affair.
 
 use std::collections::HashMap;
@@ -41,6 +41,20 @@ impl Elaborator<'_> {
             }
         }
         self.check_objective();
+        if !self.has_failed() {
+            self.check_start();
+        }
+    }
+
+    /// Notes conditions at the end without any at the start: most often the start was forgotten.
+    fn check_start(&mut self) {
+        let of = |block: Block| self.problem.constraints.iter().find(|constraint| constraint.block == block);
+        // Conditions in `temporal` may be about the start.
+        let (None, None, Some(end)) = (of(Block::Initial), of(Block::Temporal), of(Block::Final)) else { return };
+        let message =
+            "conditions hold at the end and none at the start: the trajectory begins wherever that is cheapest";
+        let note = Diagnostic::new(Code::FreeStart, end.span, message);
+        self.report(note.help("write `initial { ... }`, unless any start will do"));
     }
 
     pub(super) fn at_end(&self, phase: usize, block: Block) -> Vec<usize> {
