@@ -7,10 +7,10 @@
 //! [`problem::Problem`] is the contract with every back end, [`nlp::Nlp`] the one with every
 //! method. [`solve()`] goes the whole way. The mathematics is in docs/maths.md, sections 3 to 9.
 
+mod error;
 pub mod guess;
 pub mod lanes;
 pub mod math;
-mod meshes;
 pub mod method;
 pub mod multistart;
 pub mod newton;
@@ -18,16 +18,20 @@ pub mod nlp;
 pub mod outcome;
 pub mod problem;
 pub mod report;
+mod session;
 pub mod settings;
 pub mod solution;
 mod solve;
+mod solver;
 pub mod sqp;
 pub mod status;
 pub mod transcribe;
 
+pub use error::Error;
 pub use ntg_splines as splines;
 pub use ntg_structure as structure;
-pub use solve::{Error, solve, solve_from};
+pub use solve::{solve, solve_from};
+pub use solver::Solver;
 
 /// What a program that solves problems names.
 pub mod prelude {
@@ -38,5 +42,5 @@ pub mod prelude {
     pub use crate::settings::{Control, Method, Progress, Settings};
     pub use crate::solution::{Family, Signal, Solution, Trajectory};
     pub use crate::status::Status;
-    pub use crate::{Error, solve, solve_from};
+    pub use crate::{Error, Solver, solve, solve_from};
 }

@@ -12,5 +12,6 @@ mod flight_phases;
 mod missile;
 mod oscillator;
 mod phases;
+mod resolve;
 mod support;
 mod vehicles;

@@ -70,6 +70,20 @@ impl Shipped {
         self
     }
 
+    /// Sets a parameter of a problem that a solver holds, in its declared unit.
+    #[track_caller]
+    pub(crate) fn set<S>(solver: &mut Solver<Interpreted, S>, name: &str, value: f64) {
+        let structure = solver.problem.structure();
+        let parameter = structure.parameters.iter().find(|p| p.name == name);
+        let factor = parameter.unwrap_or_else(|| panic!("there is no parameter {name}")).unit.factor;
+        solver.problem.set(name, &[value * factor]).unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// A solver that keeps what does not change between solves.
+    pub(crate) fn solver(self) -> Solver<Interpreted> {
+        Solver::new(self.0, &self.1)
+    }
+
     /// The problem itself.
     pub(crate) fn problem(&self) -> &dyn Problem {
         &self.0

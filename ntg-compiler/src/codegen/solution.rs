@@ -56,6 +56,15 @@ pub(super) fn solve(structure: &Structure, name: &Ident) -> TokenStream {
                 ::ntg::runtime::solve_from(self, guess, settings).map(|report| #solution::new(self, report))
             }
 
+            /// A solver of this problem that keeps whatever does not change between solves: for a problem that is
+            /// solved again and again with other parameters, each time from the last solution.
+            pub fn solver(
+                &self,
+                settings: &::ntg::runtime::settings::Settings,
+            ) -> ::ntg::runtime::Solver<Self, #solution> {
+                ::ntg::runtime::Solver::typed(::core::clone::Clone::clone(self), settings, #solution::new)
+            }
+
             /// Solves the problem from many starts, side by side, and gives every local minimum
             /// that was found once, the best first.
             ///

@@ -37,7 +37,9 @@ const HISTORY: usize = 4096;
 pub(super) struct Core<'a, N: Nlp> {
     pub(super) nlp: &'a N,
     pub(super) settings: &'a Settings,
-    pub(super) system: System<N>,
+    pub(super) system: System<N::Workspace>,
+    /// Where the system goes in the end.
+    pub(super) memory: &'a mut Memory<N::Workspace>,
     pub(super) sides: Sides,
     /// The variables, and a 0 for nobody.
     pub(super) x: Vec<f64>,
@@ -52,16 +54,28 @@ pub(super) struct Core<'a, N: Nlp> {
     pub(super) unit: f64,
     pub(super) filter: Filter,
     /// A point that met all tolerances.
-    pub(super) best: Option<super::polish::Best>,
+    pub(super) best: super::polish::Best,
     /// Set once bounds are elastic.
     pub(super) elastic: Option<super::elastic::Elastic>,
     pub(super) step: super::direction::Direction,
+    /// Room for a direction that is returned to.
+    pub(super) kept: super::direction::Direction,
     /// A trial point: variables, quantities, distances.
     pub(super) trial: Trial,
     pub(super) record: IterationRecord,
     pub(super) history: Vec<IterationRecord>,
     pub(super) iterations: usize,
     pub(super) begin: Instant,
+}
+
+/// What one solve leaves to the next: the plans of the last program and its workspace. They are made anew
+/// where the next program differs in more than its numbers.
+pub struct Memory<W>(pub(super) Option<System<W>>);
+
+impl<W> Default for Memory<W> {
+    fn default() -> Self {
+        Self(None)
+    }
 }
 
 /// A point that is tried.
@@ -81,9 +95,10 @@ impl<'a, N: Nlp> Core<'a, N> {
         start: &[f64],
         from: Start<'_>,
         settings: &'a Settings,
-        begin: Instant,
+        memory: &'a mut Memory<N::Workspace>,
     ) -> Result<Self, NotFinite> {
-        let mut system = System::new(nlp);
+        let begin = Instant::now();
+        let mut system = System::for_program(memory.0.take(), nlp);
         let n = nlp.variables();
         let sizes = Scales::sizes(nlp.limits());
         let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();
@@ -102,13 +117,15 @@ impl<'a, N: Nlp> Core<'a, N> {
         let mut core = Self {
             nlp,
             settings,
+            memory,
             quantities: vec![0.0; count],
             descent: vec![0.0; n + 1],
             multipliers: vec![0.0; count],
             mu: FIRST_BARRIER * unit,
             unit,
-            filter: Filter::default(),
-            best: None,
+            filter: Filter::for_iterations(settings.max_iterations.min(HISTORY)),
+            best: super::polish::Best::new(&x, &sides),
+            kept: step.clone(),
             elastic: None,
             step,
             trial: Trial { x: x.clone(), quantities: vec![0.0; count], w: rows, failure: None },

@@ -60,7 +60,7 @@ pub(super) struct Direction {
 }
 
 impl Direction {
-    pub(super) fn new<N: Nlp>(n: usize, quantities: usize, sides: &Sides, system: &System<N>) -> Self {
+    pub(super) fn new<W>(n: usize, quantities: usize, sides: &Sides, system: &System<W>) -> Self {
         let (bounds, equalities) = (sides.side.len(), sides.equality.len());
         Self {
             x: vec![0.0; n + 1],
@@ -78,6 +78,25 @@ impl Direction {
             more_along: vec![0.0; quantities],
             border: vec![0.0; system.order.bordered.len()],
         }
+    }
+}
+
+impl Direction {
+    /// Becomes another direction of the same program, without allocation. What only serves to compute one stays.
+    pub(super) fn copy(&mut self, from: &Self) {
+        let pairs = [
+            (&mut self.x, &from.x),
+            (&mut self.along, &from.along),
+            (&mut self.w, &from.w),
+            (&mut self.z, &from.z),
+            (&mut self.y, &from.y),
+            (&mut self.r, &from.r),
+            (&mut self.c, &from.c),
+            (&mut self.compliance, &from.compliance),
+            (&mut self.softness, &from.softness),
+            (&mut self.sigma, &from.sigma),
+        ];
+        pairs.into_iter().for_each(|(to, from)| to.copy_from_slice(from));
     }
 }
 

@@ -19,6 +19,11 @@ pub(super) struct Filter {
 }
 
 impl Filter {
+    /// Room for one pair an iteration.
+    pub(super) fn for_iterations(most: usize) -> Self {
+        Self { pairs: Vec::with_capacity(most + 1), limit: 0.0 }
+    }
+
     /// Forgets all pairs.
     pub(super) fn clear(&mut self) {
         self.pairs.clear();

@@ -38,6 +38,8 @@ pub(super) struct BlockMap {
     pub(super) stride: usize,
     /// The coefficients, pack by pack.
     pub(super) coefficient: Vec<Pack>,
+    /// Which of its variables belong to each carrier of each element.
+    lists: Lists,
 }
 
 impl BlockMap {
@@ -60,11 +62,22 @@ impl BlockMap {
             carrier,
             coefficient_of,
             stride,
+            lists: vec![],
         };
         for (e, lists) in lists.iter().enumerate() {
             map.fill(block, sizes, e, lists);
         }
+        map.lists = lists;
         map
+    }
+
+    /// Takes in other numbers of a block of the same pattern.
+    pub(super) fn refill(&mut self, block: &Block, sizes: &[f64]) {
+        let lists = std::mem::take(&mut self.lists);
+        for (e, lists) in lists.iter().enumerate() {
+            self.fill(block, sizes, e, lists);
+        }
+        self.lists = lists;
     }
 
     fn fill(&mut self, block: &Block, sizes: &[f64], e: usize, lists: &[Vec<usize>]) {

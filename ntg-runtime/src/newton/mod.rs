@@ -23,6 +23,7 @@ mod filter;
 mod map;
 mod order;
 mod pack;
+mod pattern;
 mod polish;
 mod search;
 mod shape;
@@ -35,9 +36,10 @@ use crate::nlp::Nlp;
 use crate::outcome::Outcome;
 use crate::settings::Settings;
 use crate::status::Status;
+pub use core::Memory;
+
 use core::Core;
 use search::Searched;
-use std::time::Instant;
 
 /// Steps without effect in a row that end a solve.
 const TINY_STEPS: usize = 3;
@@ -47,32 +49,42 @@ const TINY_STEPS: usize = 3;
 /// The answer is deterministic: the same program, start and settings give the same bits (a time
 /// limit apart).
 pub fn solve<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Outcome {
-    run(nlp, start, Start::Cold, settings, |_| {})
+    solve_from(nlp, start, Start::Cold, settings)
 }
 
 /// As [`solve`], from a start about which more is known.
 pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Settings) -> Outcome {
-    run(nlp, start, from, settings, |_| {})
+    solve_in(&mut Memory::default(), nlp, (start, from), settings)
+}
+
+/// As [`solve_from`], with the plans of an earlier solve.
+pub fn solve_in<N: Nlp>(
+    memory: &mut Memory<N::Workspace>,
+    nlp: &N,
+    start: (&[f64], Start<'_>),
+    settings: &Settings,
+) -> Outcome {
+    run(memory, nlp, start, settings, |_| {})
 }
 
 /// As [`solve`], with elastic bounds from the first iteration on, at a low price: slower, and harder to
 /// trap.
 pub fn solve_elastic<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Outcome {
-    run(nlp, start, Start::Cold, settings, |core| core.enter_elastic(elastic::LOW_PRICE))
+    let prepare = |core: &mut Core<'_, N>| core.enter_elastic(elastic::LOW_PRICE);
+    run(&mut Memory::default(), nlp, (start, Start::Cold), settings, prepare)
 }
 
 fn run<N: Nlp>(
+    memory: &mut Memory<N::Workspace>,
     nlp: &N,
-    start: &[f64],
-    from: Start<'_>,
+    (start, from): (&[f64], Start<'_>),
     settings: &Settings,
     prepare: impl Fn(&mut Core<'_, N>),
 ) -> Outcome {
-    let begin = Instant::now();
     if let Some(status) = crate::sqp::refused(nlp, start) {
         return Outcome::failed(nlp, start, status);
     }
-    match Core::new(nlp, start, from, settings, begin) {
+    match Core::new(nlp, start, from, settings, memory) {
         Ok(mut core) => {
             prepare(&mut core);
             iterate(core)
@@ -88,7 +100,7 @@ fn iterate<N: Nlp>(mut core: Core<'_, N>) -> Outcome {
         core.measure();
         let stops = core.stops();
         let solved = stops == Some(Status::Solved);
-        if (solved || core.best.is_some()) && core.polished(solved) {
+        if (solved || core.best.is_held) && core.polished(solved) {
             return core.outcome(Status::Solved);
         }
         if let Some(status) = stops.filter(|_| !solved) {

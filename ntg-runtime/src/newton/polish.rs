@@ -5,6 +5,7 @@
 //! which is lowered for them. The best point is kept in case they lead away.
 
 use super::core::Core;
+use super::sides::Sides;
 use crate::nlp::Nlp;
 use crate::outcome::IterationRecord;
 
@@ -13,9 +14,11 @@ const ITERATIONS: usize = 8;
 /// What they aim for, as a fraction of the tolerances and of the last barrier parameter.
 const FINE: f64 = 1e-3;
 
-/// A point that meets all tolerances.
-#[derive(Clone, Debug)]
+/// Room for a point that meets all tolerances.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Best {
+    /// Whether there is one.
+    pub(super) is_held: bool,
     x: Vec<f64>,
     w: Vec<f64>,
     z: Vec<f64>,
@@ -25,16 +28,30 @@ pub(super) struct Best {
     since: usize,
 }
 
+impl Best {
+    /// Room for points of a program.
+    pub(super) fn new(x: &[f64], sides: &Sides) -> Self {
+        let (w, z, y) = (sides.w.clone(), sides.z.clone(), sides.y.clone());
+        Self { x: x.to_vec(), w, z, y, ..Self::default() }
+    }
+}
+
 impl<N: Nlp> Core<'_, N> {
     /// Called at a point that meets all tolerances, or after one: whether the solve is over. Then the
     /// present point is the best one.
     pub(super) fn polished(&mut self, solved: bool) -> bool {
-        let since = self.best.as_ref().map_or(self.iterations, |best| best.since);
+        if !self.best.is_held {
+            self.best.since = self.iterations;
+        }
+        let since = self.best.since;
         let largest = |record: &IterationRecord| record.residuals.scaled.largest();
-        if solved && self.best.as_ref().is_none_or(|best| largest(&self.record) < largest(&best.record)) {
-            let Self { x, sides, record, .. } = self;
-            let (w, z, y) = (sides.w.clone(), sides.z.clone(), sides.y.clone());
-            self.best = Some(Best { x: x.clone(), w, z, y, record: *record, since });
+        if solved && (!self.best.is_held || largest(&self.record) < largest(&self.best.record)) {
+            let Self { x, sides, record, best, .. } = self;
+            best.x.copy_from_slice(x);
+            best.w.copy_from_slice(&sides.w);
+            best.z.copy_from_slice(&sides.z);
+            best.y.copy_from_slice(&sides.y);
+            (best.record, best.is_held) = (*record, true);
         }
         let fine = FINE * self.settings.tolerance.min(self.settings.constraint_tolerance);
         let over = largest(&self.record) <= fine || self.iterations >= since + ITERATIONS;
@@ -46,9 +63,15 @@ impl<N: Nlp> Core<'_, N> {
 
     /// Returns to the best point, if there is one; whether there is.
     pub(super) fn take_best(&mut self) -> bool {
-        let Some(best) = self.best.take() else { return false };
-        if best.record != self.record {
-            (self.x, self.sides.w, self.sides.z, self.sides.y) = (best.x, best.w, best.z, best.y);
+        if !std::mem::take(&mut self.best.is_held) {
+            return false;
+        }
+        if self.best.record != self.record {
+            let Self { x, sides, best, .. } = self;
+            x.copy_from_slice(&best.x);
+            sides.w.copy_from_slice(&best.w);
+            sides.z.copy_from_slice(&best.z);
+            sides.y.copy_from_slice(&best.y);
             // They were finite when this point was met first.
             _ = self.evaluate();
             self.measure();
@@ -58,6 +81,6 @@ impl<N: Nlp> Core<'_, N> {
 
     /// The fraction of the last barrier parameter that is the last one now.
     pub(super) fn fineness(&self) -> f64 {
-        if self.best.is_some() { FINE } else { 1.0 }
+        if self.best.is_held { FINE } else { 1.0 }
     }
 }

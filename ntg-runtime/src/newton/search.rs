@@ -145,7 +145,7 @@ impl<N: Nlp> Core<'_, N> {
         if theta < here.theta {
             return false;
         }
-        let kept = self.step.clone();
+        self.kept.copy(&self.step);
         for _ in 0..CORRECTIONS {
             for (r, (side, w)) in self.step.r.iter_mut().zip(self.sides.side.iter().zip(&self.trial.w)) {
                 *r = alpha * *r + side.distance(&self.trial.quantities) - w;
@@ -169,7 +169,7 @@ impl<N: Nlp> Core<'_, N> {
             }
             theta = now;
         }
-        self.step = kept;
+        std::mem::swap(&mut self.step, &mut self.kept);
         false
     }
 

@@ -13,12 +13,15 @@ use super::elements::{BlockPlan, Buffers, Curvature, Weights};
 use super::factor::Factor;
 use super::map::BlockMap;
 use super::order::Order;
+use super::pattern::Pattern;
 use super::shape::Shape;
-use crate::nlp::{Convexifier, Evaluation, Nlp, NotFinite, Scales, Slopes};
+use crate::nlp::{Block, Convexifier, Evaluation, Nlp, NotFinite, Scales, Slopes};
 use crate::settings::Scaling;
 
-/// A program, its plans, and its derivatives at the latest point.
-pub(super) struct System<N: Nlp> {
+/// A program, its plans, and its derivatives at the latest point. `W` is the program's workspace.
+pub(super) struct System<W> {
+    /// What the plans were made for.
+    made_for: Vec<Pattern>,
     blocks: Vec<BlockPlan>,
     pub(super) order: Order,
     pub(super) shape: Shape,
@@ -27,7 +30,7 @@ pub(super) struct System<N: Nlp> {
     pub(super) matrix: Vec<f64>,
     pub(super) factor: Factor,
     buffers: Buffers,
-    work: N::Workspace,
+    work: W,
     /// Element derivatives at the latest point.
     at: Evaluation,
     /// Values at a trial point.
@@ -40,9 +43,9 @@ pub(super) struct System<N: Nlp> {
     side: Vec<f64>,
 }
 
-impl<N: Nlp> System<N> {
+impl<W> System<W> {
     /// Plans a program whose limits have their scales.
-    pub(super) fn new(nlp: &N) -> Self {
+    pub(super) fn new<N: Nlp<Workspace = W>>(nlp: &N) -> Self {
         let (n, m) = (nlp.variables(), nlp.rows());
         let sizes = Scales::sizes(nlp.limits());
         let maps: Vec<BlockMap> = nlp.blocks().iter().map(|block| BlockMap::new(block, &sizes, n as u32)).collect();
@@ -67,6 +70,7 @@ impl<N: Nlp> System<N> {
         }
         let (work, at) = nlp.workspace();
         Self {
+            made_for: nlp.blocks().iter().map(Pattern::of).collect(),
             blocks,
             scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0 },
             matrix: vec![0.0; shape.len],
@@ -81,6 +85,34 @@ impl<N: Nlp> System<N> {
             order,
             shape,
         }
+    }
+
+    /// The plans of a program, made again only where `earlier` was made for another one.
+    pub(super) fn for_program<N: Nlp<Workspace = W>>(earlier: Option<Self>, nlp: &N) -> Self {
+        match earlier {
+            Some(system) if system.fits(nlp) => system.refit(nlp),
+            _ => Self::new(nlp),
+        }
+    }
+
+    /// Whether the plans are those of a program, but for its numbers.
+    fn fits<N: Nlp<Workspace = W>>(&self, nlp: &N) -> bool {
+        let same = |(pattern, block): (&Pattern, &Block)| pattern.is_of(block);
+        (self.x.len(), self.weights.len()) == (nlp.variables(), nlp.rows())
+            && self.made_for.len() == nlp.blocks().len()
+            && self.made_for.iter().zip(nlp.blocks()).all(same)
+    }
+
+    /// The plans with the numbers of another program. Its workspace holds its data.
+    fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N) -> Self {
+        let sizes = Scales::sizes(nlp.limits());
+        for (plan, block) in self.blocks.iter_mut().zip(nlp.blocks()) {
+            plan.map.refill(block, &sizes);
+        }
+        self.buffers.set_convexifier(Convexifier::new(nlp.blocks(), &sizes));
+        self.scales = Scales { variables: sizes, rows: vec![1.0; self.weights.len()], objective: 1.0 };
+        (self.work, _) = nlp.workspace();
+        self
     }
 
     /// The quantity that is the objective.
@@ -99,7 +131,12 @@ impl<N: Nlp> System<N> {
     }
 
     /// Chooses the scales of rows and objective by the slopes at a scaled point.
-    pub(super) fn rescale(&mut self, nlp: &N, scaled: &[f64], scaling: Scaling) -> Result<(), NotFinite> {
+    pub(super) fn rescale<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        scaling: Scaling,
+    ) -> Result<(), NotFinite> {
         self.unscale(nlp, scaled);
         self.weights.fill(0.0);
         nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.work, &mut self.at)?;
@@ -110,7 +147,7 @@ impl<N: Nlp> System<N> {
         Ok(())
     }
 
-    fn set_scales(&mut self, nlp: &N, scales: Scales) {
+    fn set_scales<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scales: Scales) {
         for (plan, block) in self.blocks.iter_mut().zip(nlp.blocks()) {
             plan.scale(block, &scales);
         }
@@ -142,7 +179,7 @@ impl<N: Nlp> System<N> {
     }
 
     /// Writes a point in the program's own units, within the bounds to the last bit.
-    fn unscale(&mut self, nlp: &N, scaled: &[f64]) {
+    fn unscale<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scaled: &[f64]) {
         let limits = nlp.limits();
         for (j, x) in self.x.iter_mut().enumerate() {
             *x = (scaled[j] * self.scales.variables[j]).max(limits.lower[j]).min(limits.upper[j]);
@@ -150,13 +187,18 @@ impl<N: Nlp> System<N> {
     }
 
     /// A scaled point in the program's own units.
-    pub(super) fn point(&mut self, nlp: &N, scaled: &[f64]) -> &[f64] {
+    pub(super) fn point<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scaled: &[f64]) -> &[f64] {
         self.unscale(nlp, scaled);
         &self.x
     }
 
     /// Writes all quantities at a scaled point.
-    pub(super) fn values(&mut self, nlp: &N, scaled: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
+    pub(super) fn values<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), NotFinite> {
         self.unscale(nlp, scaled);
         nlp.values(&self.x, &mut self.work, &mut self.trial)?;
         self.copy_quantities(&self.trial, scaled, out);
@@ -165,7 +207,7 @@ impl<N: Nlp> System<N> {
 
     /// Moves to a scaled point with multipliers of all quantities: all quantities, and derivatives
     /// for the methods below.
-    pub(super) fn derivatives(
+    pub(super) fn derivatives<N: Nlp<Workspace = W>>(
         &mut self,
         nlp: &N,
         scaled: &[f64],

@@ -1,15 +1,19 @@
 //! Every constraint's largest violation, at the points and between them, and its multipliers.
 
-use super::fine::Fine;
+use super::fine::Plan;
 use super::{ConstraintReport, Worst, multipliers};
 use crate::nlp::Nlp;
 use crate::sqp::Outcome;
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
-use crate::transcribe::{Transcription, names};
+use crate::transcribe::{SetupError, Transcription, names};
 
-/// One entry for each constraint of the spec.
-pub(super) fn constraints(nlp: &Transcription, outcome: &Outcome, fine: &Fine) -> Vec<ConstraintReport> {
+/// One entry for each constraint of the spec, and the terms on the finer grid.
+pub(super) fn constraints(
+    nlp: &Transcription,
+    outcome: &Outcome,
+    fine: &mut Plan,
+) -> Result<(Vec<ConstraintReport>, Vec<f64>), SetupError> {
     let structure = &nlp.model.structure;
     let (mut work, mut out) = nlp.workspace();
     // Where a value is not finite, the status says so.
@@ -35,12 +39,12 @@ pub(super) fn constraints(nlp: &Transcription, outcome: &Outcome, fine: &Fine) -
         keep(nlp, &outcome.x, &mut report.points, (out.rows[row], bounds, unit), &info.point);
         multipliers::add(nlp, outcome, row, report);
     }
-    for checked in &fine.checked {
+    let terms = fine.evaluate(nlp, &outcome.x, |checked| {
         let report = &mut reports[checked.constraint];
         let unit = report.unit.factor;
         keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, unit), &checked.point);
-    }
-    reports
+    })?;
+    Ok((reports, terms))
 }
 
 /// Replaces the worst place so far by this one, if this one is worse.

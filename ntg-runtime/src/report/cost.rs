@@ -1,12 +1,12 @@
 //! The objective by terms, as discretised and on the finer grid.
 
-use super::{TermReport, fine::Fine};
+use super::TermReport;
 use crate::nlp::Nlp;
 use crate::transcribe::Transcription;
 use ntg_structure::Row;
 
 /// One entry for each term, in the user's sense and the term's unit.
-pub(super) fn terms(nlp: &Transcription, x: &[f64], fine: &Fine) -> Vec<TermReport> {
+pub(super) fn terms(nlp: &Transcription, x: &[f64], fine: &[f64]) -> Vec<TermReport> {
     let structure = &nlp.model.structure;
     let mut sums = vec![0.0; structure.terms.len()];
     let (mut work, mut out) = nlp.workspace();
@@ -24,7 +24,7 @@ pub(super) fn terms(nlp: &Transcription, x: &[f64], fine: &Fine) -> Vec<TermRepo
         }
     }
     let sign = if structure.maximize { -1.0 } else { 1.0 };
-    let terms = structure.terms.iter().zip(sums).zip(&fine.terms);
+    let terms = structure.terms.iter().zip(sums).zip(fine);
     let report = terms.map(|((term, value), fine)| TermReport {
         name: term.name.clone().unwrap_or_else(|| term.place.text.clone()),
         value: sign * value / term.unit.factor,

@@ -1,52 +1,120 @@
 //! Constraints and cost on a finer grid (docs/maths.md, section 9).
 //!
-//! Takes a point and how much finer; evaluates every group again, integrands at composite Gauss
-//! points, constraints at equally spaced points with both one-sided limits at breakpoints.
-//! Integrals that are variables are first replaced by their finer values.
+//! A [`Plan`] holds every group at composite Gauss points and at equally spaced points with both
+//! one-sided limits at breakpoints. To build it costs far more than to evaluate it, so a problem that is
+//! solved again keeps it. Integrals that are variables are first replaced by their finer values.
 
-use crate::transcribe::batch::batches;
+use crate::transcribe::batch::{Batch, BatchWork, evaluators};
 use crate::transcribe::elements::sites;
 use crate::transcribe::node::Site;
 use crate::transcribe::points::{Point, fine_quadrature, fine_set};
-use crate::transcribe::rows::group_bounds;
+use crate::transcribe::rows::{Pair, group_bounds};
 use crate::transcribe::{SetupError, Transcription};
-use ntg_structure::{Domain, Group, Row};
+use ntg_structure::{Domain, Row};
 use std::collections::BTreeMap;
 
 /// A constraint's value somewhere, with its bounds, SI.
-pub(super) struct Checked {
+pub(super) struct Checked<'a> {
     pub(super) constraint: usize,
     pub(super) point: Point,
     pub(super) value: f64,
-    pub(super) bounds: (f64, f64),
+    pub(super) bounds: Pair,
     /// The group of the structure that computes it.
     pub(super) group: usize,
     /// The indices of the loops around it.
-    pub(super) indices: Vec<i64>,
+    pub(super) indices: &'a [i64],
 }
 
-/// The problem on the finer grid.
-#[derive(Default)]
-pub(super) struct Fine {
-    /// Minimised value of every term, SI.
-    pub(super) terms: Vec<f64>,
-    /// Every constraint everywhere.
-    pub(super) checked: Vec<Checked>,
+/// A problem on the finer grid.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    /// Groups with integrands, at Gauss points.
+    quadrature: Vec<Part>,
+    /// Groups with constraints, at equally spaced points.
+    checks: Vec<Part>,
+}
+
+/// One group at points of one shape.
+#[derive(Debug)]
+struct Part {
+    group: usize,
+    batch: Batch,
+    work: BatchWork,
+    /// The bounds of the rows from an element on, where the indices change there.
+    bounds: Vec<(usize, Vec<Pair>)>,
 }
 
 /// Constraint and member of a row that has parts elsewhere.
 type Member = (usize, Vec<i64>);
 
-impl Fine {
-    pub(super) fn new(nlp: &Transcription, x: &[f64], samples: usize) -> Result<Self, SetupError> {
-        let structure = &nlp.model.structure;
-        let mut fine = Self { terms: vec![0.0; structure.terms.len()], ..Self::default() };
-        let x = integrals(nlp, x, samples)?;
+impl Plan {
+    /// Plans `samples` stretches for each point of the transcription.
+    pub(crate) fn new(nlp: &Transcription, samples: usize) -> Result<Self, SetupError> {
+        let frame = nlp.frame();
+        let mut plan = Self { quadrature: vec![], checks: vec![] };
+        for (index, group) in nlp.model.structure.groups.iter().enumerate() {
+            let checked = |row: &Row| matches!(row, Row::Constraint { .. });
+            let add = |parts: &mut Vec<Part>, sites| -> Result<(), SetupError> {
+                for batch in evaluators(&frame, &group.call, sites)? {
+                    let work = batch.work();
+                    parts.push(Part { group: index, batch, work, bounds: vec![] });
+                }
+                Ok(())
+            };
+            if !group.rows.iter().all(checked) {
+                let fine =
+                    |points: &_, breakpoints: &[f64], phase| fine_quadrature(points, breakpoints, phase, samples);
+                add(&mut plan.quadrature, sites(&frame, group, fine)?)?;
+            }
+            if group.rows.iter().any(checked) {
+                let fine = |points: &_, breakpoints: &[f64], phase| fine_set(points, breakpoints, phase, samples);
+                add(&mut plan.checks, sites(&frame, group, fine)?)?;
+            }
+        }
+        plan.set_bounds(nlp)?;
+        Ok(plan)
+    }
+
+    /// Takes in other values of parameters, where layout and clock are those of the plan.
+    pub(crate) fn take_data(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
+        let frame = nlp.frame();
+        for part in self.quadrature.iter_mut().chain(&mut self.checks) {
+            let call = &nlp.model.structure.groups[part.group].call;
+            part.batch.take_data(&frame, call)?;
+            part.work = part.batch.work();
+        }
+        self.set_bounds(nlp)
+    }
+
+    fn set_bounds(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
+        let frame = nlp.frame();
+        for Part { group, batch, bounds, .. } in &mut self.checks {
+            let group = &nlp.model.structure.groups[*group];
+            bounds.clear();
+            for (element, site) in batch.sites.iter().enumerate() {
+                if element == 0 || batch.sites[element - 1].indices != site.indices {
+                    bounds.push((element, group_bounds(&frame, group, &site.indices)?));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Evaluates everything: calls `visit` with every constraint everywhere, and gives the minimised value of
+    /// every term, SI.
+    pub(super) fn evaluate(
+        &mut self,
+        nlp: &Transcription,
+        x: &[f64],
+        mut visit: impl FnMut(&Checked<'_>),
+    ) -> Result<Vec<f64>, SetupError> {
+        let x = self.integrals(nlp, x)?;
+        let mut terms = vec![0.0; nlp.model.structure.terms.len()];
         let mut parts: BTreeMap<Member, f64> = BTreeMap::new();
-        for group in &structure.groups {
-            integrands(nlp, group, &x, samples, |row, site, value| match row {
+        for part in &mut self.quadrature {
+            part.integrands(nlp, &x, |row, site, value| match row {
                 Row::Cost { term } => {
-                    if let Some(sum) = fine.terms.get_mut(*term) {
+                    if let Some(sum) = terms.get_mut(*term) {
                         *sum += value;
                     }
                 }
@@ -55,103 +123,83 @@ impl Fine {
                     *parts.entry((*constraint, index)).or_insert(0.0) += value;
                 }
                 Row::Constraint { .. } | Row::Integral { .. } => {}
-            })?;
+            });
         }
-        for group in 0..structure.groups.len() {
-            fine.check(nlp, group, &x, samples, &parts)?;
+        for part in &mut self.checks {
+            part.check(nlp, &x, &parts, &mut visit);
         }
-        Ok(fine)
+        Ok(terms)
+    }
+
+    /// The variables with every integral replaced by its finer value.
+    fn integrals(&mut self, nlp: &Transcription, x: &[f64]) -> Result<Vec<f64>, SetupError> {
+        /// Integrals may depend on integrals.
+        const NESTING: usize = 3;
+        let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+        let mut x = x.to_vec();
+        for _ in 0..if structure.integrals.is_empty() { 0 } else { NESTING } {
+            let mut sums: BTreeMap<u32, f64> = BTreeMap::new();
+            let mut failed = None;
+            for part in &mut self.quadrature {
+                part.integrands(nlp, &x, |row, site, value| {
+                    let Row::Integral { integral, index } = row else { return };
+                    let index: Vec<i64> = index.iter().map(|affine| affine.at(&site.indices)).collect();
+                    match layout.integral(structure, *integral, &index) {
+                        Ok(variable) => *sums.entry(variable).or_insert(0.0) += value,
+                        Err(error) => failed = Some(error),
+                    }
+                });
+            }
+            if let Some(error) = failed {
+                return Err(error);
+            }
+            sums.into_iter().for_each(|(variable, value)| x[variable as usize] = value);
+        }
+        Ok(x)
+    }
+}
+
+impl Part {
+    /// Calls `add` with every row that adds to a sum, its value times its weight.
+    fn integrands(&mut self, nlp: &Transcription, x: &[f64], mut add: impl FnMut(&Row, &Site, f64)) {
+        let group = &nlp.model.structure.groups[self.group];
+        self.batch.values(nlp.problem, &nlp.model.tables, x, &mut self.work);
+        let sites = &self.batch.sites;
+        for (row, meaning) in group.rows.iter().enumerate() {
+            if matches!(meaning, Row::Constraint { .. }) {
+                continue;
+            }
+            for (element, site) in sites.iter().enumerate() {
+                let weight = if matches!(group.domain, Domain::Path { .. }) { site.point.weight } else { 1.0 };
+                add(meaning, site, weight * self.work.node.values[row * sites.len() + element]);
+            }
+        }
     }
 
     fn check(
         &mut self,
         nlp: &Transcription,
-        index: usize,
         x: &[f64],
-        samples: usize,
         parts: &BTreeMap<Member, f64>,
-    ) -> Result<(), SetupError> {
-        let group = &nlp.model.structure.groups[index];
-        if !group.rows.iter().any(|row| matches!(row, Row::Constraint { .. })) {
-            return Ok(());
-        }
-        let frame = nlp.frame();
-        let sites = sites(&frame, group, |points, breakpoints, phase| fine_set(points, breakpoints, phase, samples))?;
-        for (batch, _) in batches(&frame, &group.call, sites)? {
-            let mut work = batch.work();
-            batch.values(nlp.problem, &nlp.model.tables, x, &mut work);
-            let mut bounds = (vec![], vec![]);
-            for (element, site) in batch.sites.iter().enumerate() {
-                if element == 0 || bounds.0 != site.indices {
-                    bounds = (site.indices.clone(), group_bounds(&frame, group, &site.indices)?);
-                }
+        visit: &mut impl FnMut(&Checked<'_>),
+    ) {
+        let group = &nlp.model.structure.groups[self.group];
+        self.batch.values(nlp.problem, &nlp.model.tables, x, &mut self.work);
+        let sites = &self.batch.sites;
+        let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
+        for ((first, bounds), end) in self.bounds.iter().zip(ends) {
+            for element in *first..end {
+                let Site { indices, point } = &sites[element];
                 for (row, meaning) in group.rows.iter().enumerate() {
                     let Row::Constraint { constraint, .. } = meaning else { continue };
-                    let indices = site.indices.clone();
-                    let mut value = work.node.values[row * batch.sites.len() + element];
-                    if site.point.phase.is_none() {
-                        value += parts.get(&(*constraint, site.indices.clone())).copied().unwrap_or(0.0);
+                    let (constraint, bounds) = (*constraint, bounds[row]);
+                    let mut value = self.work.node.values[row * sites.len() + element];
+                    if point.phase.is_none() {
+                        value += parts.get(&(constraint, indices.clone())).copied().unwrap_or(0.0);
                     }
-                    let (constraint, point) = (*constraint, site.point);
-                    let bounds = bounds.1[row];
-                    self.checked.push(Checked { constraint, point, value, bounds, group: index, indices });
+                    visit(&Checked { constraint, point: *point, value, bounds, group: self.group, indices });
                 }
             }
         }
-        Ok(())
     }
-}
-
-/// The variables with every integral replaced by its finer value.
-fn integrals(nlp: &Transcription, x: &[f64], samples: usize) -> Result<Vec<f64>, SetupError> {
-    /// Integrals may depend on integrals.
-    const NESTING: usize = 3;
-    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
-    let mut x = x.to_vec();
-    for _ in 0..if structure.integrals.is_empty() { 0 } else { NESTING } {
-        let mut sums: BTreeMap<u32, f64> = BTreeMap::new();
-        let mut failed = None;
-        for group in &structure.groups {
-            integrands(nlp, group, &x, samples, |row, site, value| {
-                let Row::Integral { integral, index } = row else { return };
-                let index: Vec<i64> = index.iter().map(|affine| affine.at(&site.indices)).collect();
-                match layout.integral(structure, *integral, &index) {
-                    Ok(variable) => *sums.entry(variable).or_insert(0.0) += value,
-                    Err(error) => failed = Some(error),
-                }
-            })?;
-        }
-        if let Some(error) = failed {
-            return Err(error);
-        }
-        sums.into_iter().for_each(|(variable, value)| x[variable as usize] = value);
-    }
-    Ok(x)
-}
-
-/// Calls `add` with every row that adds to a sum, its value times its weight.
-fn integrands(
-    nlp: &Transcription,
-    group: &Group,
-    x: &[f64],
-    samples: usize,
-    mut add: impl FnMut(&Row, &Site, f64),
-) -> Result<(), SetupError> {
-    if !group.rows.iter().any(|row| !matches!(row, Row::Constraint { .. })) {
-        return Ok(());
-    }
-    let frame = nlp.frame();
-    let sites =
-        sites(&frame, group, |points, breakpoints, phase| fine_quadrature(points, breakpoints, phase, samples))?;
-    for (batch, _) in batches(&frame, &group.call, sites)? {
-        let mut work = batch.work();
-        batch.values(nlp.problem, &nlp.model.tables, x, &mut work);
-        for (row, meaning) in group.rows.iter().enumerate() {
-            for (element, site) in batch.sites.iter().enumerate() {
-                let weight = if matches!(group.domain, Domain::Path { .. }) { site.point.weight } else { 1.0 };
-                add(meaning, site, weight * work.node.values[row * batch.sites.len() + element]);
-            }
-        }
-    }
-    Ok(())
 }

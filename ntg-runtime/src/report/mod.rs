@@ -6,13 +6,12 @@
 mod constraints;
 mod cost;
 mod display;
-mod fine;
+pub(crate) mod fine;
 mod multipliers;
 mod traces;
 
 pub use traces::Trace;
 
-use crate::settings::Settings;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};
 use crate::sqp::Outcome;
 use crate::status::{Residuals, Status};
@@ -191,13 +190,12 @@ impl Report {
     pub(crate) fn new(
         nlp: &Transcription,
         outcome: Outcome,
-        settings: &Settings,
+        fine: &mut fine::Plan,
         history: Vec<StepReport>,
     ) -> Result<Self, SetupError> {
         let structure = &nlp.model.structure;
-        let fine = fine::Fine::new(nlp, &outcome.x, settings.samples)?;
-        let terms = cost::terms(nlp, &outcome.x, &fine);
-        let constraints = constraints::constraints(nlp, &outcome, &fine);
+        let (constraints, fine_terms) = constraints::constraints(nlp, &outcome, fine)?;
+        let terms = cost::terms(nlp, &outcome.x, &fine_terms);
         let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };
@@ -216,7 +214,7 @@ impl Report {
             advice: outcome.status.advice(),
             status: outcome.status,
             objective: user(nlp, outcome.objective),
-            objective_fine: user(nlp, fine.terms.iter().sum()),
+            objective_fine: user(nlp, fine_terms.iter().sum()),
             objective_unit: structure.objective_unit.clone(),
             terms,
             constraints,

@@ -1,7 +1,7 @@
 //! Every member of every constraint over time, with its bounds and multipliers: what plots and
 //! reports show.
 
-use super::fine::{Checked, Fine};
+use super::fine::Plan;
 use super::multipliers;
 use crate::problem::Problem;
 use crate::solution::{Inner, Solution};
@@ -45,17 +45,17 @@ impl Solution {
     pub fn traces(&self, problem: &dyn Problem, samples: usize) -> Result<Vec<Trace>, SetupError> {
         let inner = &self.inner;
         let nlp = Transcription::with(problem, inner.model.structure.clone())?;
-        let fine = Fine::new(&nlp, &inner.x, samples.max(1))?;
-        let mut sets: BTreeMap<(Key, usize), Vec<&Checked>> = BTreeMap::new();
-        for checked in &fine.checked {
-            let key = key(checked.constraint, checked.point, &checked.indices);
-            sets.entry((key, checked.group)).or_default().push(checked);
-        }
+        let mut sets: BTreeMap<(Key, usize), Set> = BTreeMap::new();
+        Plan::new(&nlp, samples.max(1))?.evaluate(&nlp, &inner.x, |checked| {
+            let key = key(checked.constraint, checked.point, checked.indices);
+            let set = sets.entry((key, checked.group)).or_insert(Set { bounds: checked.bounds, values: vec![] });
+            set.values.push((checked.point, checked.value));
+        })?;
         // A constraint that stands in several point sets (Gauss points and breakpoints) is shown
         // by the finest.
         let mut found: BTreeMap<Key, Trace> = BTreeMap::new();
         for ((key, _), set) in sets {
-            let trace = trace(inner, &set);
+            let trace = trace(inner, &key, &set);
             if found.get(&key).is_none_or(|held| held.points.len() < trace.points.len()) {
                 found.insert(key, trace);
             }
@@ -92,24 +92,29 @@ fn unit(inner: &Inner, constraint: usize) -> f64 {
     inner.model.structure.constraints[constraint].unit.factor
 }
 
+/// What was checked of one member.
+struct Set {
+    bounds: (f64, f64),
+    values: Vec<(Point, f64)>,
+}
+
 /// The trace of one member from its checked values, without multipliers.
-fn trace(inner: &Inner, set: &[&Checked]) -> Trace {
+fn trace(inner: &Inner, (constraint, phase, indices): &Key, set: &Set) -> Trace {
     let (structure, layout, x) = (&inner.model.structure, &inner.model.layout, &inner.x);
-    let first = set[0];
-    let factor = unit(inner, first.constraint);
-    let phase = first.point.phase;
+    let factor = unit(inner, *constraint);
+    let phase = *phase;
     let around = phase.map_or(0, |phase| {
         let member = &layout.phases[phase];
         usize::from(layout.agents[member.agent].index.is_some()) + usize::from(member.index.is_some())
     });
     let time = |point: &Point| phase.map_or(f64::NAN, |p| layout.start(p, x) + point.tau * layout.duration(p, x));
     Trace {
-        constraint: first.constraint,
+        constraint: *constraint,
         phase: phase.map(|phase| names::phase(structure, layout, phase)).unwrap_or_default(),
-        indices: first.indices.get(around..).unwrap_or(&[]).to_vec(),
-        points: set.iter().map(|c| (time(&c.point), c.value / factor)).collect(),
-        lower: first.bounds.0 / factor,
-        upper: first.bounds.1 / factor,
+        indices: indices.get(around..).unwrap_or(&[]).to_vec(),
+        points: set.values.iter().map(|(point, value)| (time(point), value / factor)).collect(),
+        lower: set.bounds.0 / factor,
+        upper: set.bounds.1 / factor,
         multipliers: vec![],
         density: false,
     }

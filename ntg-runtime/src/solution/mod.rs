@@ -12,6 +12,7 @@ pub use family::Family;
 pub use signal::Signal;
 pub use trajectory::Trajectory;
 
+use crate::outcome::Multipliers;
 use crate::transcribe::instances::family_members;
 use crate::transcribe::rows::RowInfo;
 use crate::transcribe::{Model, names};
@@ -228,6 +229,11 @@ pub(crate) fn spaced(start: f64, end: f64, count: usize) -> Vec<f64> {
 }
 
 impl Inner {
+    /// The multipliers, for a solve that starts from here.
+    pub(crate) fn multipliers(&self) -> Multipliers<'_> {
+        Multipliers { rows: &self.row_multipliers, bounds: &self.bound_multipliers }
+    }
+
     /// Which of these consecutive phases holds time `t` (clamped), and the scaled time in it.
     pub(crate) fn locate(&self, phases: &Range<usize>, t: f64) -> Option<(usize, f64)> {
         let layout = &self.model.layout;

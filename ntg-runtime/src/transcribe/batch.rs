@@ -7,8 +7,8 @@ use super::compose::{Composition, PlanWork};
 use super::error::SetupError;
 use super::frame::Frame;
 use super::node::{Node, NodeWork, Site};
-use super::shape::{Shape, Traced, trace};
-use super::slots::{AffineMap, SlotMaps};
+use super::shape::{Traced, trace};
+use super::slots::{AffineMap, SlotMaps, Source};
 use crate::nlp::BlockValues;
 use crate::problem::{Derivatives, Lanes, Problem};
 use ntg_splines::Table;
@@ -20,6 +20,8 @@ pub(crate) struct Batch {
     pub(crate) node: Node,
     pub(crate) slots: SlotMaps,
     pub(crate) sites: Vec<Site>,
+    /// What the slots of the first element stand for.
+    sources: Vec<Source>,
     composition: Option<Composition>,
 }
 
@@ -37,30 +39,75 @@ pub(crate) type Mapped = (Batch, Vec<Vec<AffineMap>>);
 
 /// One batch for each shape among the sites, in order of first appearance.
 pub(crate) fn batches(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Mapped>, SetupError> {
-    let mut shapes: Vec<(Shape, Vec<Site>, Vec<Traced>)> = vec![];
+    let shaped = shaped(frame, call, sites)?.into_iter();
+    let mapped = shaped.map(|Shaped { sites, of, traced }| {
+        let map = |(site, of): (&Site, &usize)| {
+            traced[*of].sources.iter().map(|source| frame.layout.affine(*source, &site.point)).collect()
+        };
+        let maps: Vec<Vec<AffineMap>> = sites.iter().zip(&of).map(map).collect();
+        let slots = SlotMaps::new(traced[0].sources.len(), &maps);
+        Ok((Batch::new(frame, call, sites, slots, &traced[0])?, maps))
+    });
+    mapped.collect()
+}
+
+/// As [`batches`], where only values are wanted: without the maps of single elements.
+pub(crate) fn evaluators(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Batch>, SetupError> {
+    let shaped = shaped(frame, call, sites)?.into_iter();
+    let batch = shaped.map(|Shaped { sites, of, traced }| {
+        let slots = SlotMaps::of_sources(frame.layout, &sites, |element| &traced[of[element]].sources);
+        Batch::new(frame, call, sites, slots, &traced[0])
+    });
+    batch.collect()
+}
+
+/// Sites of one shape.
+struct Shaped {
+    sites: Vec<Site>,
+    /// Which of `traced` each site is.
+    of: Vec<usize>,
+    /// The first one is that of the first site.
+    traced: Vec<Traced>,
+}
+
+/// Sorts sites by their shapes. Sites of the same phase with the same indices differ in their points
+/// alone, and are walked once.
+fn shaped(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Shaped>, SetupError> {
+    let mut shapes: Vec<Shaped> = vec![];
+    let mut last = 0;
     for site in sites {
-        let traced = trace(frame, call, &site)?;
-        match shapes.iter_mut().find(|(shape, ..)| *shape == traced.shape) {
-            Some((_, sites, all)) => {
-                sites.push(site);
-                all.push(traced);
-            }
-            None => shapes.push((traced.shape.clone(), vec![site], vec![traced])),
+        let known = shapes.get(last).and_then(|shaped: &Shaped| shaped.sites.last());
+        if known.is_some_and(|known| known.point.phase == site.point.phase && known.indices == site.indices) {
+            let shaped = &mut shapes[last];
+            shaped.of.push(shaped.traced.len() - 1);
+            shaped.sites.push(site);
+            continue;
         }
+        let traced = trace(frame, call, &site)?;
+        last = shapes.iter().position(|shaped| shaped.traced[0].shape == traced.shape).unwrap_or_else(|| {
+            shapes.push(Shaped { sites: vec![], of: vec![], traced: vec![] });
+            shapes.len() - 1
+        });
+        let shaped = &mut shapes[last];
+        shaped.of.push(shaped.traced.len());
+        shaped.traced.push(traced);
+        shaped.sites.push(site);
     }
-    shapes.into_iter().map(|(_, sites, traced)| Batch::new(frame, call, sites, &traced)).collect()
+    Ok(shapes)
 }
 
 impl Batch {
-    fn new(frame: &Frame, call: &Call, sites: Vec<Site>, traced: &[Traced]) -> Result<Mapped, SetupError> {
-        let node = Node::build(frame, call, &sites, &traced[0].sources)?;
-        let map = |(site, traced): (&Site, &Traced)| {
-            traced.sources.iter().map(|source| frame.layout.affine(*source, &site.point)).collect()
-        };
-        let maps: Vec<Vec<AffineMap>> = sites.iter().zip(traced).map(map).collect();
-        let slots = SlotMaps::new(traced[0].sources.len(), &maps);
+    fn new(frame: &Frame, call: &Call, sites: Vec<Site>, slots: SlotMaps, traced: &Traced) -> Result<Self, SetupError> {
+        let sources = traced.sources.clone();
+        let node = Node::build(frame, call, &sites, &sources)?;
         let composition = (!node.edges.is_empty()).then(|| Composition::new(&node, &frame.structure.kernels));
-        Ok((Self { node, slots, sites, composition }, maps))
+        Ok(Self { node, slots, sites, sources, composition })
+    }
+
+    /// Takes in other values of parameters. Layout and clock are those with which the batch was built.
+    pub(crate) fn take_data(&mut self, frame: &Frame, call: &Call) -> Result<(), SetupError> {
+        self.node = Node::build(frame, call, &self.sites, &self.sources)?;
+        Ok(())
     }
 
     /// Patterns of the elements' first and second derivatives.

@@ -133,6 +133,29 @@ impl Elements {
         Ok(())
     }
 
+    /// Takes in other values of parameters: data and bounds. Layout and clock are the same.
+    pub(crate) fn take_data(&mut self, frame: &Frame) -> Result<(), SetupError> {
+        let Self { blocks, batches, lower, upper, rows, .. } = self;
+        for (number, (block, GroupBatch { group, batch })) in blocks.iter().zip(batches).enumerate() {
+            let group = &frame.structure.groups[*group];
+            batch.take_data(frame, &group.call)?;
+            let mut bounds = vec![];
+            for (element, site) in batch.sites.iter().enumerate() {
+                if element == 0 || batch.sites[element - 1].indices != site.indices {
+                    bounds = group_bounds(frame, group, &site.indices)?;
+                }
+                for (row, bounds) in bounds.iter().enumerate() {
+                    let Target::Row(target) = block.target[row * block.elements + element] else { continue };
+                    let target = target as usize;
+                    if rows[target].maker == (number, element, row) {
+                        (lower[target], upper[target]) = *bounds;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn add_row(&mut self, constraint: usize, site: &Site, bounds: (f64, f64), maker: (usize, usize, usize)) -> Target {
         let row = narrow(self.rows.len());
         if site.point.phase.is_none() {

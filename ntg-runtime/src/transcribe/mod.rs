@@ -69,6 +69,34 @@ pub struct Transcription<'p> {
     pub(crate) linear: LinearSystem,
 }
 
+/// A transcription without its problem, to be kept until the problem is solved again.
+#[derive(Debug)]
+pub(crate) struct Kept {
+    model: Arc<Model>,
+    elements: Elements,
+    limits: Limits,
+    linear: LinearSystem,
+}
+
+/// What of a transcription another structure has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// Nothing.
+    Nothing,
+    /// Values of parameters and tables, and what they decide but for times.
+    Data,
+    /// Anything.
+    All,
+}
+
+impl Kept {
+    /// The transcription again; `problem` is the one that it had, or one that differs in parameters.
+    pub(crate) fn of(self, problem: &dyn Problem) -> Transcription<'_> {
+        let Self { model, elements, limits, linear } = self;
+        Transcription { problem, model, elements, limits, linear }
+    }
+}
+
 impl<'p> Transcription<'p> {
     /// Transcribes a problem with the present values of its parameters.
     ///
@@ -85,15 +113,41 @@ impl<'p> Transcription<'p> {
         let bounds = rows::variable_bounds(&frame)?;
         let elements = elements::elements(&frame)?;
         let linear = contradictions::linear_system(&frame, &elements, &bounds)?;
-        let limits = Limits {
-            lower: bounds.iter().map(|b| b.0).collect(),
-            upper: bounds.iter().map(|b| b.1).collect(),
-            scale: vec![1.0; bounds.len()],
-            row_lower: elements.lower.clone(),
-            row_upper: elements.upper.clone(),
-            row_scale: vec![1.0; elements.rows.len()],
-        };
+        let limits = limits(&elements, &bounds);
         Ok(Self { problem, model: Arc::new(model), elements, limits, linear })
+    }
+
+    /// Changes to another structure of the same problem, and makes anew only what differs.
+    ///
+    /// # Errors
+    /// As [`Transcription::new`]. The transcription is then that of neither.
+    pub(crate) fn take(&mut self, structure: Structure) -> Result<Change, SetupError> {
+        let own = &self.model.structure;
+        if *own == structure {
+            return Ok(Change::Nothing);
+        }
+        if !differs_in_data_only(own, &structure) {
+            *self = Self::with(self.problem, structure)?;
+            return Ok(Change::All);
+        }
+        let model = Model::new(self.problem, structure)?;
+        if !model.clock.is_same(&self.model.clock) {
+            *self = Self::with(self.problem, model.structure)?;
+            return Ok(Change::All);
+        }
+        let frame = model.frame(self.problem);
+        let bounds = rows::variable_bounds(&frame)?;
+        self.elements.take_data(&frame)?;
+        self.linear = contradictions::linear_system(&frame, &self.elements, &bounds)?;
+        self.limits = limits(&self.elements, &bounds);
+        self.model = Arc::new(model);
+        Ok(Change::Data)
+    }
+
+    /// Everything but the problem.
+    pub(crate) fn keep(self) -> Kept {
+        let Self { model, elements, limits, linear, .. } = self;
+        Kept { model, elements, limits, linear }
     }
 
     /// How many of the variables are spline coefficients; the others (free durations, free
@@ -152,6 +206,29 @@ impl<'p> Transcription<'p> {
             }
         }
         format!("variable {variable}")
+    }
+}
+
+/// Whether two structures of one problem differ in values of parameters and tables, guesses and steps of a
+/// continuation at most.
+fn differs_in_data_only(a: &Structure, b: &Structure) -> bool {
+    let sizes = |structure: &Structure| structure.parameters.iter().map(|p| p.value.len()).collect::<Vec<_>>();
+    (&a.name, a.maximize, &a.variables, &a.agents, &a.phases)
+        == (&b.name, b.maximize, &b.variables, &b.agents, &b.phases)
+        && (&a.kernels, &a.groups, &a.constraints) == (&b.kernels, &b.groups, &b.constraints)
+        && (&a.terms, &a.integrals) == (&b.terms, &b.integrals)
+        && sizes(a) == sizes(b)
+}
+
+/// Bounds without sizes.
+fn limits(elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
+    Limits {
+        lower: bounds.iter().map(|b| b.0).collect(),
+        upper: bounds.iter().map(|b| b.1).collect(),
+        scale: vec![1.0; bounds.len()],
+        row_lower: elements.lower.clone(),
+        row_upper: elements.upper.clone(),
+        row_scale: vec![1.0; elements.rows.len()],
     }
 }
 

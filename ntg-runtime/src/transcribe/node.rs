@@ -17,7 +17,7 @@ use super::reduce;
 use super::slots::Source;
 use crate::problem::Problem;
 use ntg_splines::Table;
-use ntg_structure::{Call, ReduceOp};
+use ntg_structure::{Call, Data, ReduceOp};
 
 /// Where one lane is: the loops' indices and the point.
 #[derive(Clone, Debug)]
@@ -122,8 +122,15 @@ impl Node {
         }
         let mut inputs = vec![0.0; (slots + reductions) * lanes];
         for data in &call.data {
-            for site in sites {
-                inputs.push(frame.data(data, site)?);
+            match (data, sites.first()) {
+                (Data::Parameter { index: None, .. }, Some(any)) => {
+                    inputs.resize(inputs.len() + lanes, frame.data(data, any)?);
+                }
+                _ => {
+                    for site in sites {
+                        inputs.push(frame.data(data, site)?);
+                    }
+                }
             }
         }
         let edges = call.reductions.iter();

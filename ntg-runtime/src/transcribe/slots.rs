@@ -5,6 +5,7 @@
 //! scaled time.
 
 use super::layout::{Layout, Time, narrow};
+use super::node::Site;
 use super::points::Point;
 use ntg_splines::basis::derivative;
 use ntg_splines::{MAX_ORDER, Side};
@@ -108,6 +109,22 @@ impl SlotMaps {
         for slot in 0..slots {
             for element in maps {
                 let map = &element[slot];
+                all.offset.push(map.offset);
+                all.variables.extend(map.terms.iter().map(|t| t.0));
+                all.coefficients.extend(map.terms.iter().map(|t| t.1));
+                all.start.push(narrow(all.variables.len()));
+            }
+        }
+        all
+    }
+
+    /// The maps of the sources of every site, which all have equally many.
+    pub(crate) fn of_sources<'a>(layout: &Layout, sites: &[Site], sources: impl Fn(usize) -> &'a [Source]) -> Self {
+        let slots = if sites.is_empty() { 0 } else { sources(0).len() };
+        let mut all = Self { elements: sites.len(), slots, start: vec![0], ..Self::default() };
+        for slot in 0..slots {
+            for (element, site) in sites.iter().enumerate() {
+                let map = layout.affine(sources(element)[slot], &site.point);
                 all.offset.push(map.offset);
                 all.variables.extend(map.terms.iter().map(|t| t.0));
                 all.coefficients.extend(map.terms.iter().map(|t| t.1));

@@ -94,6 +94,11 @@ impl Buffers {
         Self { slot: vec![], local: vec![], second: vec![], half: vec![], element: vec![], convexifier }
     }
 
+    /// Takes another convexifier, for variables of other sizes.
+    pub(super) fn set_convexifier(&mut self, convexifier: Convexifier<LANES>) {
+        self.convexifier = convexifier;
+    }
+
     /// Makes room for a block.
     pub(super) fn fit(&mut self, plan: &BlockPlan) {
         let grow = |buffer: &mut Vec<Pack>, len: usize| buffer.resize(buffer.len().max(len), [0.0; LANES]);

@@ -4,15 +4,13 @@
 //! A rough guess (a polygon with corners) asks more of a method the finer the knots are, since corners
 //! are sharper there. On few knots it is mended cheaply, and each finer level begins near its solution.
 
-use crate::guess::{Guess, start};
-use crate::method::{self, Start};
-use crate::outcome::Outcome;
+use super::Session;
+use crate::guess::Guess;
 use crate::problem::Problem;
 use crate::settings::Settings;
-use crate::solution::{Inner, Solution};
-use crate::transcribe::{SetupError, Transcription};
+use crate::solution::Solution;
+use crate::transcribe::SetupError;
 use ntg_structure::{Points, Structure};
-use std::sync::Arc;
 use std::time::Instant;
 
 /// Up to so many intervals a problem is solved at once.
@@ -26,23 +24,24 @@ const ROUGH: f64 = 1e-5;
 
 /// A start near a solution of `structure`, found on coarser knots; none where the knots are few, the
 /// guess is a solution already, or the coarser problem has no solution. The second number is how many
-/// iterations were spent.
-pub(crate) fn start_from_coarse(
-    problem: &dyn Problem,
+/// iterations were spent. `coarser` holds the coarser problem for the next time.
+pub(super) fn start_from_coarse(
+    coarser: &mut Option<Box<Session>>,
+    (problem, guess): (&dyn Problem, Option<&Guess>),
     structure: &Structure,
-    guess: Option<&Guess>,
     settings: &Settings,
 ) -> Result<(Option<Solution>, usize), SetupError> {
     let most = intervals(structure);
     if most <= FEW || guess.is_some_and(Guess::is_near) {
         return Ok((None, 0));
     }
-    solution_on(problem, coarsened(structure, most.div_ceil(FINER)), guess, settings)
+    let session = coarser.get_or_insert_default();
+    session.rough_solution((problem, guess), coarsened(structure, most.div_ceil(FINER)), &rough(settings))
 }
 
 /// A start near a solution of `structure` where no method came to one from the guess: from fewer and fewer
 /// knots, on which a guess with loops and corners becomes a smooth curve.
-pub(crate) fn start_from_fewer(
+pub(super) fn start_from_fewer(
     problem: &dyn Problem,
     structure: &Structure,
     guess: Option<&Guess>,
@@ -53,33 +52,14 @@ pub(crate) fn start_from_fewer(
     while most > FEWEST {
         most = most.div_ceil(2);
         let coarse = coarsened(structure, most);
-        let (found, iterations) = solution_on(problem, coarse, guess, &settings.after(began.elapsed()))?;
+        let settings = rough(&settings.after(began.elapsed()));
+        let (found, iterations) = Session::default().rough_solution((problem, guess), coarse, &settings)?;
         spent += iterations;
         if found.is_some() {
             return Ok((found, spent));
         }
     }
     Ok((None, spent))
-}
-
-/// A rough solution of `coarse`, itself found on coarser knots where it has many.
-fn solution_on(
-    problem: &dyn Problem,
-    coarse: Structure,
-    guess: Option<&Guess>,
-    settings: &Settings,
-) -> Result<(Option<Solution>, usize), SetupError> {
-    let (earlier, spent) = start_from_coarse(problem, &coarse, guess, settings)?;
-    let rough = rough(settings);
-    let mut nlp = Transcription::with(problem, coarse)?;
-    let (first, from) = match &earlier {
-        Some(solution) => (start(&nlp, Some(&Guess::from(solution)))?, Start::Near),
-        None => (start(&nlp, guess)?, Start::Cold),
-    };
-    nlp.set_scales(&first, settings)?;
-    let outcome = method::solve_from(&nlp, &first, from, &rough);
-    let iterations = spent + outcome.iterations;
-    Ok((outcome.status.is_solved().then(|| solution(&nlp, outcome)), iterations))
 }
 
 /// The most intervals of any output.
@@ -115,18 +95,6 @@ fn rough(settings: &Settings) -> Settings {
     let tolerance = settings.tolerance.max(ROUGH);
     let constraint_tolerance = settings.constraint_tolerance.max(ROUGH);
     Settings { tolerance, constraint_tolerance, ..settings.clone() }
-}
-
-fn solution(nlp: &Transcription, outcome: Outcome) -> Solution {
-    Solution {
-        inner: Arc::new(Inner {
-            model: nlp.model.clone(),
-            x: outcome.x,
-            rows: nlp.elements.rows.clone(),
-            row_multipliers: outcome.row_multipliers,
-            bound_multipliers: outcome.bound_multipliers,
-        }),
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,96 @@
+//! A problem that is solved again and again, with other parameters or from a measured state.
+
+use crate::error::Error;
+use crate::guess::Guess;
+use crate::problem::Problem;
+use crate::report::Report;
+use crate::session::Session;
+use crate::settings::Settings;
+use crate::solution::Solution;
+
+/// Solves one problem many times and keeps everything that does not change between the solves: the
+/// transcription, the plans of the method and of the check on the finer grid, and the last solution.
+///
+/// `S` is what a solve gives: a [`Report`], or the typed solution of generated code, whose problems make one
+/// by `problem.solver(&settings)`.
+///
+/// ```
+/// use ntg_runtime::prelude::*;
+/// # use ntg_runtime::structure::Structure;
+/// # fn fly<P: Problem>(problem: P, measure: impl Fn(&mut P)) -> Result<(), ntg_runtime::Error> {
+/// let mut solver = Solver::new(problem, &Settings::default());
+/// let plan = solver.solve()?; // From the guess of the spec.
+/// for _ in 0..100 {
+///     measure(&mut solver.problem); // The present state, as parameters of the problem.
+///     let plan = solver.resolve()?; // From the last solution.
+/// }
+/// # Ok(())
+/// # }
+/// ```
+pub struct Solver<P, S = Report> {
+    /// The problem, whose parameters may be set between solves.
+    pub problem: P,
+    /// How it is solved.
+    pub settings: Settings,
+    session: Session,
+    last: Option<Solution>,
+    typed: fn(&P, Report) -> S,
+}
+
+impl<P: Problem> Solver<P> {
+    /// A solver that gives reports.
+    pub fn new(problem: P, settings: &Settings) -> Self {
+        Self::typed(problem, settings, |_, report| report)
+    }
+}
+
+impl<P: Problem, S> Solver<P, S> {
+    /// A solver that gives what `typed` makes of reports.
+    pub fn typed(problem: P, settings: &Settings, typed: fn(&P, Report) -> S) -> Self {
+        Self { problem, settings: settings.clone(), session: Session::default(), last: None, typed }
+    }
+
+    /// Solves from the guess of the spec, by continuation where the spec says so.
+    ///
+    /// # Errors
+    /// The problem cannot be set up with its present parameters, or a setting is out of its range.
+    pub fn solve(&mut self) -> Result<S, Error> {
+        let report = self.session.solve((&self.problem, None), &self.settings)?;
+        Ok(self.keep(report))
+    }
+
+    /// As [`Solver::solve`], from a guess of the program.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`]; and the guess does not fit the problem.
+    pub fn solve_from(&mut self, guess: &Guess) -> Result<S, Error> {
+        let report = self.session.solve((&self.problem, Some(guess)), &self.settings)?;
+        Ok(self.keep(report))
+    }
+
+    /// Solves from the last solution and its multipliers, at once and without continuation. Where there is
+    /// no last solution, or no way from it to a new one, solves from the guess of the spec.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn resolve(&mut self) -> Result<S, Error> {
+        if let Some(last) = self.last.clone()
+            && let Some(report) = self.session.solve_again(&self.problem, &last, &self.settings)?
+        {
+            return Ok(self.keep(report));
+        }
+        self.solve()
+    }
+
+    /// The last solution that was found; none before the first.
+    pub fn last(&self) -> Option<&Solution> {
+        self.last.as_ref()
+    }
+
+    fn keep(&mut self, report: Report) -> S {
+        if report.is_solved() {
+            self.last = Some(report.solution.clone());
+        }
+        (self.typed)(&self.problem, report)
+    }
+}

@@ -1,0 +1,108 @@
+//! Solving again: what a solver keeps changes no answer, and a new solution is near the last one.
+
+use super::support::{Shipped, close};
+use ntg::prelude::*;
+
+/// All numbers of a report that a solve decides.
+fn numbers(report: &Report) -> (usize, u64, Vec<u64>, [u64; 2]) {
+    let x = report.solution.coefficients().iter().map(|c| c.to_bits()).collect();
+    let Report { iterations, objective, violation, objective_fine, .. } = report;
+    (*iterations, objective.to_bits(), x, [objective_fine.to_bits(), violation.between.to_bits()])
+}
+
+#[track_caller]
+fn solved(report: Result<Report, Error>) -> Report {
+    let report = report.unwrap_or_else(|error| panic!("{error}"));
+    assert!(report.is_solved(), "{report}");
+    report
+}
+
+/// A problem whose duration is a parameter, so that a parameter changes more than data.
+const RACE: &str = "
+    problem Race {
+        param long = 4;
+        duration T = long;
+        output x: spline(order = 5, intervals = 6, smoothness = 3);
+        collocation gauss(points = 5);
+        param far = 1;
+        initial { x == 0; der(x) == 0; }
+        final { x == far; der(x) == 0; }
+        minimize integral(der(x, 2)^2);
+    }";
+
+#[test]
+fn a_solver_finds_to_the_bit_what_a_fresh_solve_finds_whatever_it_solved_before() {
+    let cases = [
+        (Shipped::spec("low_observable"), "signature_max", [4.2, 7.0, 4.2, 5.0]),
+        (Shipped::edited("low_observable_gauss", &[("const l = 8;", "const l = 30;")]), "x_start", [
+            -100.0, -98.0, -98.0, -100.0,
+        ]),
+        (Shipped::spec("multi_vehicle_simultaneous"), "v_max", [0.25, 0.24, 0.25, 0.25]),
+        (Shipped::text(RACE), "long", [4.0, 2.0, 3.0, 4.0]),
+        (Shipped::text(RACE), "far", [1.0, 2.0, 2.0, 1.0]),
+    ];
+    for (shipped, parameter, values) in cases {
+        let mut solver = shipped.solver();
+        for value in values {
+            Shipped::set(&mut solver, parameter, value);
+            let kept = solved(solver.solve());
+            let fresh = solved(solve(&solver.problem, &solver.settings));
+            assert_eq!(numbers(&kept), numbers(&fresh), "{parameter} = {value}");
+        }
+    }
+}
+
+#[test]
+fn of_a_problem_with_a_closed_form_every_parameter_gives_its_own_answer() {
+    // A cubic: 12 far^2 / long^3.
+    let mut solver = Shipped::text(RACE).solver();
+    solved(solver.solve());
+    for (long, far) in [(4.0, 1.0), (4.0, 2.0), (2.0, 2.0), (3.0, -1.0), (3.0, -1.5)] {
+        Shipped::set(&mut solver, "long", long);
+        Shipped::set(&mut solver, "far", far);
+        close(solved(solver.resolve()).objective, 12.0 * far * far / (long * long * long), 1e-10);
+    }
+}
+
+#[test]
+fn a_moved_start_takes_a_third_of_a_cold_solve_at_most() {
+    let mut solver = Shipped::spec("low_observable").solver();
+    let cold = solved(solver.solve()).iterations;
+    for (x, y) in [(-98.0, -100.0), (-100.0, -98.0), (-101.4, -101.4)] {
+        Shipped::set(&mut solver, "x_start", x);
+        Shipped::set(&mut solver, "y_start", y);
+        let again = solved(solver.resolve());
+        assert!(3 * again.iterations <= cold, "{} iterations, but {cold} from the guess", again.iterations);
+        let fresh = solved(solve(&solver.problem, &solver.settings));
+        close(again.objective, fresh.objective, 1e-8);
+    }
+}
+
+#[test]
+fn a_thousand_random_moves_in_a_row_are_all_solved_and_none_wrong() {
+    let mut solver = Shipped::spec("low_observable").solver();
+    solved(solver.solve());
+    let mut random = fastrand::Rng::with_seed(2026);
+    for round in 0..1000 {
+        let (angle, far) = (random.f64() * std::f64::consts::TAU, 2.0 * random.f64().sqrt());
+        Shipped::set(&mut solver, "x_start", -100.0 + far * angle.cos());
+        Shipped::set(&mut solver, "y_start", -100.0 + far * angle.sin());
+        let again = solved(solver.resolve());
+        assert!(again.residuals.scaled.largest() <= solver.settings.tolerance, "{again}");
+        assert!(again.violation.points <= 1e-7, "{again}");
+        if round % 50 == 0 {
+            close(again.objective, solved(solve(&solver.problem, &solver.settings)).objective, 1e-8);
+        }
+    }
+}
+
+#[test]
+fn without_a_last_solution_and_where_it_does_not_help_the_guess_is_the_start() {
+    let mut solver = Shipped::spec("low_observable").solver();
+    let first = solved(solver.resolve());
+    assert_eq!(first.history.len(), 5, "by continuation");
+    // The flight from the other side of the radar has nothing in common with the last one.
+    Shipped::set(&mut solver, "x_start", 100.0);
+    let other = solved(solver.resolve());
+    close(other.objective, solved(solve(&solver.problem, &solver.settings)).objective, 1e-8);
+}
