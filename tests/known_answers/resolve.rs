@@ -34,9 +34,11 @@ const RACE: &str = "
 fn a_solver_finds_to_the_bit_what_a_fresh_solve_finds_whatever_it_solved_before() {
     let cases = [
         (Shipped::spec("low_observable"), "signature_max", [4.2, 7.0, 4.2, 5.0]),
-        (Shipped::edited("low_observable_gauss", &[("const l = 8;", "const l = 30;")]), "x_start", [
-            -100.0, -98.0, -98.0, -100.0,
-        ]),
+        (
+            Shipped::edited("low_observable_gauss", &[("const l = 8;", "const l = 30;")]),
+            "x_start",
+            [-100.0, -98.0, -98.0, -100.0],
+        ),
         (Shipped::spec("multi_vehicle_simultaneous"), "v_max", [0.25, 0.24, 0.25, 0.25]),
         (Shipped::text(RACE), "long", [4.0, 2.0, 3.0, 4.0]),
         (Shipped::text(RACE), "far", [1.0, 2.0, 2.0, 1.0]),
