@@ -14,7 +14,7 @@ BEGIN, END = "<!-- written by bench/run --publish: begin -->", "<!-- written by 
 TEXT = """
 Median processor time in milliseconds, and how many times slower the peers are beside what ntg is meant to reach.
 bench/README.md says what is timed; `bench/results.json` holds every batch, on the processor and on the wall.
-Shares of a solve, and the column "without report" that follows from them, are measured on the wall within single solves: where the load is above the number of cores they are not to be relied on.
+Shares of a solve, and the column "without check" that follows from them, are measured on the wall within single solves: where the load is above the number of cores they are not to be relied on.
 """
 
 

@@ -44,8 +44,8 @@ def agreement(row, result):
 
 
 HEAD = (
-    "| problem | n | ntg | its | CasADi + IPOPT | its | ratio / target | without report | sqpmethod | ratio / target "
-    "| ripopt | its | ratio / target | one objective |\n" + "|---" * 14 + "|"
+    "| problem | n | ntg | its | CasADi + IPOPT | its | ratio / target | without check | sqpmethod | ratio / target "
+    "| ripopt | its | ratio / target | ntg once | one objective |\n" + "|---" * 15 + "|"
 )
 
 
@@ -68,18 +68,19 @@ def line(row, variables, result):
         milliseconds(result.get("ripopt")),
         str(result.get("ripopt", {}).get("iterations", "–")),
         against(ratios[2], row.ripopt),
+        f"{1e3 * ours['once']:.3g}" if ours and ours.get("once") else "–",
         agreement(row, result),
     ]
     return "| " + " | ".join(cells) + " |"
 
 
-PARTS_HEAD = "| problem | ntg's transcription | solver | report | ripopt's evaluations | solver |\n|---|---|---|---|---|---|"
+PARTS_HEAD = "| problem | ntg's solver | check and report | ripopt's evaluations | solver |\n|---|---|---|---|---|"
 
 
 def parts(row, result):
     """Where the time goes in the two solvers that run ntg's own functions."""
     ours, theirs = (result.get(name, {}).get("shares", {}) for name in ("ntg", "ripopt"))
-    shares = [ours.get(name) for name in ("transcription", "solver", "report")]
+    shares = [ours.get(name) for name in ("solver", "report")]
     shares += [theirs.get(name) for name in ("evaluation", "solver")]
     return f"| {row.name} | " + " | ".join("–" if s is None else f"{100 * s:.0f} %" for s in shares) + " |"
 

@@ -61,6 +61,8 @@ pub type Parts = Vec<(&'static str, f64)>;
 pub struct Answer {
     /// How long each solve took.
     pub taken: Vec<Seconds>,
+    /// How long a single solve takes that has everything to do for the first time, if that was asked.
+    pub once: Option<Seconds>,
     /// In the objective's unit.
     pub objective: f64,
     /// Whether the solver says so.
@@ -83,6 +85,7 @@ impl Answer {
         json!({
             "wall": self.taken.iter().map(|one| one.wall).collect::<Vec<_>>(),
             "cpu": self.taken.iter().map(|one| one.cpu).collect::<Vec<_>>(),
+            "once": self.once.map(|once| once.cpu),
             "objective": self.objective,
             "solved": self.solved,
             "status": self.status,

@@ -49,6 +49,7 @@ fn once(problem: &Adapted<'_>, guess: Option<&Guess>) -> Result<Answer, String> 
     let (status, objective, residual) = end.ok_or("a continuation has no step")?;
     Ok(Answer {
         taken: vec![taken],
+        once: None,
         objective: problem.in_its_unit(objective),
         solved: status == SolveStatus::Optimal,
         status: format!("{status:?}"),

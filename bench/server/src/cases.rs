@@ -16,13 +16,13 @@ mod specs {
         ntg::ntg_file!("../specs/free.ntg");
     }
     pub(super) mod cosine {
-        ntg::ntg_file!("../specs/low_observable_cosine.ntg");
+        ntg::ntg_file!("../../specs/low_observable_cosine.ntg");
     }
     pub(super) mod phases {
-        ntg::ntg_file!("../specs/low_observable_phases.ntg");
+        ntg::ntg_file!("../../specs/low_observable_phases.ntg");
     }
     pub(super) mod phases_cosine {
-        ntg::ntg_file!("../specs/low_observable_phases_cosine.ntg");
+        ntg::ntg_file!("../../specs/low_observable_phases_cosine.ntg");
     }
     pub(super) mod intercept {
         ntg::ntg_file!("../../specs/missile_intercept.ntg");

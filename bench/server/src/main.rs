@@ -44,7 +44,7 @@ fn answer(line: &str) -> Result<Value, String> {
         solves: asked["solves"].as_u64().unwrap_or(1).max(1) as usize,
     };
     match asked["by"].as_str() {
-        Some("ntg") => by_ntg::answer(&problem, guess.as_ref(), run).map(|answer| answer.json()),
+        Some("ntg") => by_ntg::answer(problem, guess.as_ref(), run).map(|answer| answer.json()),
         Some("ripopt") => by_ripopt::answer(&problem, guess.as_ref(), run).map(|answer| answer.json()),
         Some("start") => start::describe(&problem, guess.as_ref()),
         _ => Err("`by` is ntg, ripopt or start".into()),

@@ -8,9 +8,9 @@ use crate::outcome::Multipliers;
 /// How far inside their bounds the first point lies, relative to bound and room.
 pub(super) const INSIDE: f64 = 1e-6;
 /// The first barrier parameter without multipliers.
-pub(super) const NEAR_BARRIER: f64 = 1e-4;
+pub(super) const NEAR_BARRIER: f64 = 1e-6;
 /// The first barrier parameter with multipliers.
-const BARRIER: f64 = 1e-5;
+const BARRIER: f64 = 1e-6;
 
 impl<N: Nlp> Core<'_, N> {
     /// Distances and multipliers from those of a solution nearby.
