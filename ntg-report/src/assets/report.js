@@ -53,9 +53,12 @@
     ctx.strokeStyle = css("--quiet"); ctx.lineWidth = px; ctx.setLineDash([7 * px, 5 * px]);
     chart.marks.forEach(([at, name], i) => {
       const x = u.valToPos(at, "x", true);
-      if (x < left || x > left + 0.97 * width) return; // Its name would not fit.
+      if (x < left || x > left + width) return;
       ctx.beginPath(); ctx.moveTo(x, top); ctx.lineTo(x, top + height); ctx.stroke();
-      ctx.fillText(name, x + 4 * px, top + (12 + 13 * (i % 4)) * px);
+      // Before the line where it does not fit behind it.
+      const fits = x + 4 * px + ctx.measureText(name).width <= left + width;
+      ctx.textAlign = fits ? "left" : "right";
+      ctx.fillText(name, x + (fits ? 4 : -4) * px, top + (12 + 13 * (i % 4)) * px);
     });
     ctx.restore();
   };
