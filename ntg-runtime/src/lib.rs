@@ -25,6 +25,7 @@ mod solve;
 mod solver;
 pub mod sqp;
 pub mod status;
+mod stops;
 pub mod transcribe;
 
 pub use error::Error;

@@ -7,8 +7,9 @@ use super::system::System;
 use crate::method::Start;
 use crate::nlp::{Limits, Nlp, NotFinite, Scales};
 use crate::outcome::IterationRecord;
-use crate::settings::{Control, Progress, Settings};
+use crate::settings::Settings;
 use crate::status::Status;
+use crate::stops::Stage;
 use std::time::Instant;
 
 /// The first barrier parameter (scaled): of 1, 0.1, 0.01 and 0.001 the one that took the fewest
@@ -28,8 +29,6 @@ const POWER: f64 = 1.5;
 const INSIDE: f64 = 1e-2;
 /// Where the mean multiplier exceeds this, dual residuals are measured relative to it.
 const LARGE: f64 = crate::nlp::kkt::LARGE_MULTIPLIER;
-/// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
-const UNBOUNDED: f64 = 1e10;
 /// Most history records for which room is made at once.
 const HISTORY: usize = 4096;
 
@@ -110,7 +109,7 @@ impl<'a, N: Nlp> Core<'a, N> {
             if matches!(from, Start::Cold) { INSIDE } else { super::warm::INSIDE },
         );
         system.rescale(nlp, &x, settings.scaling)?;
-        let sides = Sides::new(&scaled_limits(nlp.limits(), &system.scales), system.first_variable());
+        let sides = Sides::new(&system.scales.limits(nlp.limits()), system.first_variable());
         let unit = (MANY_SIDES / sides.side.len().max(1) as f64).min(1.0);
         let count = system.quantities();
         let (step, rows) = (super::direction::Direction::new(n, count, &sides, &system), sides.w.clone());
@@ -216,34 +215,10 @@ impl<'a, N: Nlp> Core<'a, N> {
     }
 
     /// Whether the solve is over, and why.
-    pub(super) fn stops(&mut self) -> Option<Status> {
-        let found = self.record.residuals.scaled;
-        let tolerance = self.settings.tolerance;
-        let feasible = found.primal <= self.settings.constraint_tolerance;
-        if feasible && found.dual <= tolerance && found.complementarity <= tolerance {
-            return Some(Status::Solved);
-        }
-        let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-        if self.quantities[self.system.objective()] < -UNBOUNDED || largest > UNBOUNDED {
-            return Some(Status::Unbounded);
-        }
-        if let Some(watch) = &self.settings.on_iteration {
-            let progress = Progress {
-                iteration: self.iterations,
-                objective: self.record.objective,
-                primal: found.primal,
-                dual: found.dual,
-                step: self.history.last().map_or(0.0, |last| last.step),
-                seconds: self.begin.elapsed().as_secs_f64(),
-            };
-            if watch(&progress) == Control::Cancel {
-                return Some(Status::Cancelled);
-            }
-        }
-        if self.settings.time_limit.is_some_and(|limit| self.begin.elapsed() >= limit) {
-            return Some(Status::TimeLimit);
-        }
-        (self.iterations >= self.settings.max_iterations).then_some(Status::IterationLimit)
+    pub(super) fn stops(&self) -> Option<Status> {
+        let Self { settings, record, history, iterations, begin, x, .. } = self;
+        let objective = self.quantities[self.system.objective()];
+        Stage { settings, record, history, iterations: *iterations, begin: *begin, objective, x }.stops()
     }
 
     /// The barrier parameter that ends the sequence.
@@ -290,17 +265,5 @@ fn move_inside(x: &mut [f64], limits: &Limits, sizes: &[f64], inside: f64) {
         if upper.is_finite() {
             x[j] = x[j].min(upper - margin(upper));
         }
-    }
-}
-
-fn scaled_limits(limits: &Limits, scales: &Scales) -> Limits {
-    let divide = |bounds: &[f64]| bounds.iter().zip(&scales.variables).map(|(b, size)| b / size).collect();
-    let multiply = |bounds: &[f64]| bounds.iter().zip(&scales.rows).map(|(b, factor)| b * factor).collect();
-    Limits {
-        lower: divide(&limits.lower),
-        upper: divide(&limits.upper),
-        row_lower: multiply(&limits.row_lower),
-        row_upper: multiply(&limits.row_upper),
-        ..Limits::default()
     }
 }

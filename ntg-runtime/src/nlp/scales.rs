@@ -55,6 +55,19 @@ impl Scales {
         Self::from_slopes(limits, scaling, &Slopes { rows, objective, curvature })
     }
 
+    /// Scaled bounds; they have no sizes of their own.
+    pub fn limits(&self, limits: &Limits) -> Limits {
+        let divide = |bounds: &[f64]| bounds.iter().zip(&self.variables).map(|(b, size)| b / size).collect();
+        let multiply = |bounds: &[f64]| bounds.iter().zip(&self.rows).map(|(b, factor)| b * factor).collect();
+        Limits {
+            lower: divide(&limits.lower),
+            upper: divide(&limits.upper),
+            row_lower: multiply(&limits.row_lower),
+            row_upper: multiply(&limits.row_upper),
+            ..Limits::default()
+        }
+    }
+
     /// The typical size of each variable: 1 where none is known.
     pub fn sizes(limits: &Limits) -> Vec<f64> {
         limits.scale.iter().map(|&size| positive(size)).collect()

@@ -3,11 +3,8 @@
 use super::run::Run;
 use crate::nlp::{Nlp, kkt};
 use crate::outcome::{IterationRecord, Outcome};
-use crate::settings::{Control, Progress};
 use crate::status::{Bounded, Status, Violation};
-
-/// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
-const UNBOUNDED: f64 = 1e10;
+use crate::stops::Stage;
 
 impl<N: Nlp> Run<'_, N> {
     /// Computes the residuals of the present point, (6.2) to (6.5).
@@ -20,34 +17,10 @@ impl<N: Nlp> Run<'_, N> {
     }
 
     /// Whether the solve is over, and why.
-    pub(super) fn stops(&mut self) -> Option<Status> {
-        let found = self.record.residuals.scaled;
-        let tolerance = self.settings.tolerance;
-        let feasible = found.primal <= self.settings.constraint_tolerance;
-        if feasible && found.dual <= tolerance && found.complementarity <= tolerance {
-            return Some(Status::Solved);
-        }
-        let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-        if self.program.objective < -UNBOUNDED || largest > UNBOUNDED {
-            return Some(Status::Unbounded);
-        }
-        if let Some(watch) = &self.settings.on_iteration {
-            let progress = Progress {
-                iteration: self.iterations,
-                objective: self.record.objective,
-                primal: found.primal,
-                dual: found.dual,
-                step: self.history.last().map_or(0.0, |last| last.step),
-                seconds: self.begin.elapsed().as_secs_f64(),
-            };
-            if watch(&progress) == Control::Cancel {
-                return Some(Status::Cancelled);
-            }
-        }
-        if self.settings.time_limit.is_some_and(|limit| self.begin.elapsed() >= limit) {
-            return Some(Status::TimeLimit);
-        }
-        (self.iterations >= self.settings.max_iterations).then_some(Status::IterationLimit)
+    pub(super) fn stops(&self) -> Option<Status> {
+        let Self { settings, record, history, iterations, begin, x, .. } = self;
+        let objective = self.program.objective;
+        Stage { settings, record, history, iterations: *iterations, begin: *begin, objective, x }.stops()
     }
 
     /// What is violated at the present point, the worst first.

@@ -54,7 +54,7 @@ impl<'a, N: Nlp> Program<'a, N> {
         assembly.first(nlp.blocks(), &at);
         assembly.hessian(nlp.blocks(), &at, |_, _, _| {});
         let scales = Scales::new(nlp.limits(), scaling, &assembly.gradient, &assembly.jacobian, &assembly.hessian);
-        let limits = scaled_limits(nlp.limits(), &scales);
+        let limits = scales.limits(nlp.limits());
         let convexifier = Convexifier::new(nlp.blocks(), &scales.variables);
         let (jacobian, hessian) = (assembly.jacobian.clone(), assembly.hessian.clone());
         Ok(Self {
@@ -191,18 +191,5 @@ fn scale_hessian(hessian: &Csc, sizes: &[f64], out: &mut Csc) {
         for at in hessian.start[j]..hessian.start[j + 1] {
             out.value[at] = hessian.value[at] * size * sizes[hessian.row[at]];
         }
-    }
-}
-
-fn scaled_limits(limits: &Limits, scales: &Scales) -> Limits {
-    let divide = |bounds: &[f64]| bounds.iter().zip(&scales.variables).map(|(b, size)| b / size).collect();
-    let multiply = |bounds: &[f64]| bounds.iter().zip(&scales.rows).map(|(b, factor)| b * factor).collect();
-    Limits {
-        lower: divide(&limits.lower),
-        upper: divide(&limits.upper),
-        row_lower: multiply(&limits.row_lower),
-        row_upper: multiply(&limits.row_upper),
-        scale: Vec::new(),
-        row_scale: Vec::new(),
     }
 }
