@@ -111,7 +111,7 @@ fn bounds_alone_put_an_output_in_their_middle() {
 fn a_name_that_nothing_bears_is_refused_with_the_known_ones() {
     let problem = problems::double_integrator(3.0, 2.0, false);
     let error = solve_from(&problem, &Guess::new().output("z", |t| t), &Settings::default()).expect_err("no z");
-    assert_eq!(error.to_string(), "a guess is given for `z`, which is none of `x`, `T`");
+    assert_eq!(error.to_string(), "a guess is given for `z`, which is none of `x`, `T` [E065]");
     let error = solve_from(&problem, &Guess::raw(vec![0.0; 2]), &Settings::default()).expect_err("five wanted");
     assert!(error.to_string().contains("2 numbers"), "{error}");
 }
