@@ -85,6 +85,13 @@
     for (let power = first; power <= last; power += step) found.push(10 ** power);
     return found;
   };
+  // With as many decimals as it takes to tell one from the next.
+  const told = (ticks) => {
+    const short = ticks.map(number);
+    if (new Set(short).size === short.length) return short;
+    const decimals = 1 - Math.floor(Math.log10(ticks[1] - ticks[0]));
+    return ticks.map((v) => v.toFixed(Math.min(Math.max(decimals, 0), 12)));
+  };
   // As wide as its longest number.
   const room = (u, values) => 22 + 7 * Math.max(4, ...(values || []).map((text) => (text || "").length));
   const whole = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
@@ -103,7 +110,7 @@
         { ...axis(chart.x), ...(log ? { incrs: whole } : {}) },
         {
           ...axis(chart.y), size: room, ...(log ? { splits: decades, filter: (u, splits) => splits } : {}),
-          values: (u, ticks) => ticks.map((v) => (v == null ? null : log ? `1e${Math.round(Math.log10(v))}` : number(v))),
+          values: (u, ticks) => (log ? ticks.map((v) => `1e${Math.round(Math.log10(v))}`) : told(ticks)),
         },
       ],
       cursor: { sync: log ? undefined : { key: "t" }, drag: { x: true, y: false } },
