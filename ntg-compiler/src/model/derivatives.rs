@@ -9,16 +9,40 @@ use std::collections::HashMap;
 
 use super::dimension::Ratio;
 use super::elaborator::Elaborator;
-use super::problem::{Leaf, PhaseAt};
+use super::problem::{Form, IndexId, Leaf, Leaves, Loop, PhaseAt, Problem};
 use super::scope::{Context, Entity, look_up};
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{InputId, NodeId, forward};
+use crate::expr::{Again, Dag, InputId, NodeId, SecondIndex, forward};
 use crate::source::Span;
 use crate::syntax::ast::{Call, Expr, ExprKind};
 
 /// The highest derivative that may be asked for at once: far above the order of any useful spline.
 const MAX_DERIVATIVE: i64 = 32;
+
+/// Second indices over the ranges of products.
+struct MoreIndices<'p> {
+    leaves: &'p mut Leaves,
+    ranges: &'p mut Vec<Loop>,
+    next: &'p mut u32,
+}
+
+impl Again for MoreIndices<'_> {
+    fn again(&mut self, dag: &mut Dag, index: u32, range: u32) -> SecondIndex {
+        let second = Loop { index: IndexId(*self.next), ..self.ranges[range as usize].clone() };
+        *self.next += 1;
+        let mut number = |index: IndexId| {
+            let input = self.leaves.id(Leaf::Index(Form::index(index)));
+            dag.input(input)
+        };
+        let (first, other) = (number(IndexId(index)), number(second.index));
+        let (below, above) = (dag.less_eq(first, other), dag.less_eq(other, first));
+        let same = dag.mul(below, above);
+        let made = SecondIndex { index: second.index.0, range: self.ranges.len() as u32, same };
+        self.ranges.push(second);
+        made
+    }
+}
 
 impl<'a> Elaborator<'a> {
     /// `der(e)`, `der(e, j)`.
@@ -85,17 +109,9 @@ impl<'a> Elaborator<'a> {
         if !sound {
             return None;
         }
-        match forward(&mut self.problem.dag, node, |input| rates.get(&input).copied()) {
-            Ok(rate) => Some(rate),
-            Err(_) => {
-                let message = "the second derivative of a product over an index is not supported";
-                self.report(
-                    Diagnostic::new(Code::WrongPartial, span, message)
-                        .help("write the product as `exp(sum(i in ..., log(...)))`, or without an index"),
-                );
-                None
-            }
-        }
+        let Problem { dag, leaves, ranges, .. } = &mut self.problem;
+        let mut again = MoreIndices { leaves, ranges, next: &mut self.next_index };
+        Some(forward(dag, node, |input| rates.get(&input).copied(), &mut again))
     }
 
     fn rate_of_tau(&mut self, cx: &Context<'a>) -> Option<NodeId> {
@@ -206,11 +222,9 @@ impl<'a> Elaborator<'a> {
             return value.at(span);
         }
         let one = self.problem.dag.constant(1.0);
-        let Ok(slope) = forward(&mut self.problem.dag, value.node, |input| (input == id).then_some(one)) else {
-            let message = "the second derivative of a product over an index is not supported";
-            let finding = Diagnostic::new(Code::WrongPartial, span, message).help("differentiate it by hand");
-            return self.refuse(finding, span);
-        };
+        let Problem { dag, leaves, ranges, .. } = &mut self.problem;
+        let mut again = MoreIndices { leaves, ranges, next: &mut self.next_index };
+        let slope = forward(dag, value.node, |input| (input == id).then_some(one), &mut again);
         let node = self.problem.dag.substitute(&[slope], |input| (input == id).then_some(argument.node))[0];
         let dimension = value.dimension.zip(argument.dimension).map(|(v, a)| v.over(&a));
         value.map(node, dimension.or(value.dimension), span)

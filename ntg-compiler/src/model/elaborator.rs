@@ -123,7 +123,7 @@ pub(super) struct Elaborator<'a> {
     pub(super) kinds: Kinds,
     pub(super) found: Vec<Diagnostic>,
     reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
-    next_index: u32,
+    pub(super) next_index: u32,
     pub(super) next_symbol: u32,
     steps: usize,
     depth: usize,

@@ -11,38 +11,58 @@ use crate::expr::node::{Fold, InputId, Node, NodeId};
 /// `None` means that it does not change.
 ///
 /// Inputs that depend on the index of a reduction have tangents that depend on it in the
-/// same way.
-/// Fails at the second derivative of a product over an index.
+/// same way. `again` makes other indices over the ranges of products.
 pub fn forward(
     dag: &mut Dag,
     root: NodeId,
-    tangent: impl FnMut(InputId) -> Option<NodeId>,
-) -> Result<NodeId, DerivativeError> {
-    Ok(forward_all(dag, &[root], tangent)?[0])
-}
-
-/// As [`forward`], for several roots in one sweep.
-pub fn forward_all(
-    dag: &mut Dag,
-    roots: &[NodeId],
     mut tangent: impl FnMut(InputId) -> Option<NodeId>,
-) -> Result<Vec<NodeId>, DerivativeError> {
-    tangents(dag, roots, |dag, id| match dag.node(id) {
+    again: &mut dyn Again,
+) -> NodeId {
+    let known = |dag: &Dag, id: NodeId| match dag.node(id) {
         Node::Input(input) => Some(tangent(*input)),
         _ => None,
-    })
+    };
+    sweep(dag, &[root], known, Some(again)).expect("products have their indices")[0]
+}
+
+/// Makes a second index over the range of a reduction.
+pub trait Again {
+    /// An index over the same values as `index` over `range`.
+    fn again(&mut self, dag: &mut Dag, index: u32, range: u32) -> SecondIndex;
+}
+
+/// An index that runs over the values of another.
+#[derive(Clone, Copy, Debug)]
+pub struct SecondIndex {
+    /// The client's name for it.
+    pub index: u32,
+    /// The client's name for its range.
+    pub range: u32,
+    /// A node that is not 0 exactly where both indices have one value.
+    pub same: NodeId,
 }
 
 /// The sweep itself. `known` ends the descent: `Some(t)` at a node says that its tangent is
 /// `t` (or zero), and that its operands do not matter.
+///
+/// Fails at a product over an index: whoever asks here has taken reductions apart.
 pub(super) fn tangents(
     dag: &mut Dag,
     roots: &[NodeId],
+    known: impl FnMut(&Dag, NodeId) -> Option<Option<NodeId>>,
+) -> Result<Vec<NodeId>, DerivativeError> {
+    sweep(dag, roots, known, None)
+}
+
+fn sweep(
+    dag: &mut Dag,
+    roots: &[NodeId],
     mut known: impl FnMut(&Dag, NodeId) -> Option<Option<NodeId>>,
+    mut again: Option<&mut dyn Again>,
 ) -> Result<Vec<NodeId>, DerivativeError> {
     let mut rates: Map<NodeId, Option<NodeId>> = Map::default();
     for id in schedule_to_known(dag, roots, &mut rates, &mut known) {
-        let rate = push(dag, id, &rates)?;
+        let rate = push(dag, id, &rates, &mut again)?;
         let zero = dag.constant(0.0);
         rates.insert(id, rate.filter(|rate| *rate != zero));
     }
@@ -80,7 +100,12 @@ fn schedule_to_known(
 }
 
 /// The rate of one node, given those of its operands.
-fn push(dag: &mut Dag, id: NodeId, rates: &Map<NodeId, Option<NodeId>>) -> Result<Option<NodeId>, DerivativeError> {
+fn push(
+    dag: &mut Dag,
+    id: NodeId,
+    rates: &Map<NodeId, Option<NodeId>>,
+    again: &mut Option<&mut dyn Again>,
+) -> Result<Option<NodeId>, DerivativeError> {
     let mut moves = false;
     dag.node(id).for_each_operand(|x| moves |= rates[&x].is_some());
     if !moves {
@@ -88,7 +113,12 @@ fn push(dag: &mut Dag, id: NodeId, rates: &Map<NodeId, Option<NodeId>>) -> Resul
     }
     if let Node::Reduce { fold, index, range, body } = *dag.node(id) {
         let rate = rates[&body].expect("a reduction moves only if its body does");
-        return reduction(dag, id, Family { fold, index, range }, body, rate).map(Some);
+        let family = Family { fold, index, range };
+        if fold == Fold::Product {
+            let Some(again) = again else { return Err(DerivativeError::Reduction(id)) };
+            return Ok(Some(product(dag, family, (body, rate), &mut **again)));
+        }
+        return Ok(Some(reduction(dag, id, family, body, rate)));
     }
     let zero = dag.constant(0.0);
     Ok(match rule(dag, id, |x| rates[&x].is_some()) {
@@ -126,59 +156,29 @@ impl Family {
     }
 }
 
-fn reduction(
-    dag: &mut Dag,
-    value: NodeId,
-    family: Family,
-    body: NodeId,
-    rate: NodeId,
-) -> Result<NodeId, DerivativeError> {
-    match family.fold {
-        Fold::Sum => Ok(family.sum(dag, rate)),
-        Fold::Product if is_product_without_zeros(dag, body) => Err(DerivativeError::ProductTwice(value)),
-        Fold::Product => Ok(product(dag, family, body, rate)),
-        Fold::Min | Fold::Max => {
-            // Members that attain the value share the rate equally.
-            let attains = match family.fold {
-                Fold::Min => dag.less_eq(body, value),
-                _ => dag.less_eq(value, body),
-            };
-            let zero = dag.constant(0.0);
-            let share = dag.select(attains, rate, zero);
-            let total = family.sum(dag, share);
-            let count = family.sum(dag, attains);
-            Ok(dag.div(total, count))
-        }
+/// The rate of a sum, or of the largest or smallest member.
+fn reduction(dag: &mut Dag, value: NodeId, family: Family, body: NodeId, rate: NodeId) -> NodeId {
+    if family.fold == Fold::Sum {
+        return family.sum(dag, rate);
     }
+    // Members that attain the value share the rate equally.
+    let attains = match family.fold {
+        Fold::Min => dag.less_eq(body, value),
+        _ => dag.less_eq(value, body),
+    };
+    let zero = dag.constant(0.0);
+    let share = dag.select(attains, rate, zero);
+    let total = family.sum(dag, share);
+    let count = family.sum(dag, attains);
+    dag.div(total, count)
 }
 
-/// The rate of a product, also where members vanish (docs/maths.md, (2.8)): with no zero
-/// among the members it is the product times the sum of the logarithmic rates; with one,
-/// the rate of that member times the product of the others; with more, 0.
-fn product(dag: &mut Dag, family: Family, body: NodeId, rate: NodeId) -> NodeId {
-    let (zero, one) = (dag.constant(0.0), dag.constant(1.0));
-    let divisor = dag.select(body, body, one);
-    let others = dag.reduce(Fold::Product, family.index, family.range, divisor);
-    let is_zero = dag.select(body, zero, one);
-    let zeros = family.sum(dag, is_zero);
-
-    let ratio = dag.div(rate, divisor);
-    let ratio = dag.select(body, ratio, zero);
-    let regular = family.sum(dag, ratio);
-    let rate_at_zero = dag.select(body, zero, rate);
-    let singular = family.sum(dag, rate_at_zero);
-
-    let at_most_one = dag.less_eq(zeros, one);
-    let with_zeros = dag.select(at_most_one, singular, zero);
-    let total = dag.select(zeros, with_zeros, regular);
-    dag.mul(others, total)
-}
-
-/// Whether a body is the one that `product` makes: itself, or 1 where it vanishes.
-/// Differentiating that again would be wrong exactly where a member vanishes.
-fn is_product_without_zeros(dag: &Dag, body: NodeId) -> bool {
-    match dag.node(body) {
-        Node::Select { condition, then, otherwise } => condition == then && dag.is(*otherwise, 1.0),
-        _ => false,
-    }
+/// The rate of a product (docs/maths.md, (2.8)): the sum over a second index of the product in which
+/// the member of that index is replaced by its rate. It is exact also where members vanish, and is
+/// made of products again, so that it can be differentiated as often as one likes.
+fn product(dag: &mut Dag, family: Family, (body, rate): (NodeId, NodeId), again: &mut dyn Again) -> NodeId {
+    let second = again.again(dag, family.index, family.range);
+    let member = dag.select(second.same, rate, body);
+    let replaced = dag.reduce(Fold::Product, family.index, family.range, member);
+    dag.reduce(Fold::Sum, second.index, second.range, replaced)
 }

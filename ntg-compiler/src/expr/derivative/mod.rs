@@ -19,7 +19,7 @@ use std::fmt;
 
 use super::node::NodeId;
 
-pub use forward::{forward, forward_all};
+pub use forward::{Again, SecondIndex, forward};
 pub use hessian::{Entry, hessian};
 pub use reverse::gradient;
 
@@ -29,17 +29,12 @@ pub enum DerivativeError {
     /// The reverse mode and Hessians stop at a reduction that depends on the variables;
     /// its members have to be differentiated one by one.
     Reduction(NodeId),
-    /// The second derivative of a product over an index is not supported.
-    ProductTwice(NodeId),
 }
 
 impl fmt::Display for DerivativeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Reduction(_) => write!(f, "a reduction over an index cannot be differentiated in reverse"),
-            Self::ProductTwice(_) => {
-                write!(f, "the second derivative of a product over an index is not supported")
-            }
         }
     }
 }

@@ -9,7 +9,7 @@ mod reductions;
 mod strength;
 mod structure;
 
-use super::{Dag, InputId, NodeId, eval};
+use super::{Again, Dag, InputId, NodeId, SecondIndex, eval};
 
 /// A graph with its first inputs.
 fn inputs(dag: &mut Dag, count: u32) -> Vec<NodeId> {
@@ -26,6 +26,15 @@ fn values(dag: &Dag, roots: &[NodeId], point: &[f64]) -> Vec<f64> {
 #[track_caller]
 fn value(dag: &Dag, root: NodeId, point: &[f64]) -> f64 {
     values(dag, &[root], point)[0]
+}
+
+/// For graphs without products over an index.
+struct NoProducts;
+
+impl Again for NoProducts {
+    fn again(&mut self, _: &mut Dag, index: u32, _: u32) -> SecondIndex {
+        panic!("index {index} is of no product of this test")
+    }
 }
 
 #[track_caller]
