@@ -49,7 +49,7 @@ messages! {
     a_comment_that_never_ends: errors("problem P { let a = 1;\n/* /* */\n}");
     documentation_of_nothing: inside("guess {\n/// one\nx = 1; }\nlet a = 1 +\n/// two\n2;\ntrajectory { x <= 1;\n/// three\n}\n/// four");
     names_that_cannot_be: inside("let _a = 1;\nlet _ = 1;\nlet self = 1;\nlet Self = 1;\nlet super = 1;\nlet crate = 1;");
-    reserved_words_as_names: inside("let table = 1;\nparam start = 1;\nlet t = 1;\nlet if = 1;\noutput x, unit: spline(order = 3);\nfn f(in) = 1;\nphase final { }\nlet a = b * let;");
+    reserved_words_as_names: inside("let table = 1;\nparam start = 1;\nlet t = 1;\nlet if = 1;\noutput x, unit: spline(order = 3);\nfn f(in) = 1;\nphase final { }\nlet a = b * let;\nfinal { at: x == 1; }\nguess { soft = 2; }");
     relations: inside("trajectory { x < 1; x > 1; x != 1; x = 1; x =< 1; x => 1; }");
     chains: inside("trajectory { a <= b >= c; a == b == c; a <= b == c; a <= b <= c <= d; }");
     an_expression_is_missing: inside("let a = ;\nlet b = x + ;\nlet c = x + * y;\nlet d = f();\nlet e = f(1,);\nlet g = +1;\nlet h = 2 ** 3;\nlet i = [1, 2];\nlet j = (1, 2);\nlet k = 5 km;");

@@ -20,6 +20,15 @@ use crate::syntax::ast::{Call, Expr, ExprKind};
 /// The highest derivative that may be asked for at once: far above the order of any useful spline.
 const MAX_DERIVATIVE: i64 = 32;
 
+/// A derivative that a spline does not have.
+pub(super) struct Lacking {
+    /// The output and where it is declared.
+    name: String,
+    declared: Span,
+    /// The highest derivative of it that was on its way there.
+    highest: usize,
+}
+
 /// Second indices over the ranges of products.
 struct MoreIndices<'p> {
     leaves: &'p mut Leaves,
@@ -51,7 +60,10 @@ impl<'a> Elaborator<'a> {
             None => Some(1),
             Some(order) => self.derivative_order(cx, order),
         };
+        let within = times.map_or(0, |times| times as usize);
+        self.derivatives_around += within;
         let value = self.value(cx, of);
+        self.derivatives_around -= within;
         let Some(times) = times else { return self.poison(span) };
         if !value.is_sound() {
             let dimension = value.dimension.map(|d| d.over(&self.time.power(Ratio::whole(times))));
@@ -59,8 +71,8 @@ impl<'a> Elaborator<'a> {
         }
         let mut node = value.node;
         let mut dimension = value.dimension;
-        for remaining in (0..times).rev() {
-            let Some(rate) = self.rate(cx, node, span, remaining == 0) else { return self.poison(span) };
+        for remaining in (0..times as usize).rev() {
+            let Some(rate) = self.rate(cx, node, span, remaining) else { return self.poison(span) };
             node = rate;
             dimension = dimension.map(|d| d.over(&self.time));
         }
@@ -77,8 +89,9 @@ impl<'a> Elaborator<'a> {
         None
     }
 
-    /// The derivative of a node with respect to real time; whether it jumps is told of the last only.
-    fn rate(&mut self, cx: &Context<'a>, node: NodeId, span: Span, is_last: bool) -> Option<NodeId> {
+    /// The derivative of a node with respect to real time, to be differentiated `remaining` times more;
+    /// whether it jumps is told of the last only.
+    fn rate(&mut self, cx: &Context<'a>, node: NodeId, span: Span, remaining: usize) -> Option<NodeId> {
         let mut rates: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.
         let mut sound = true;
         for input in self.problem.dag.inputs_of(&[node]) {
@@ -86,8 +99,8 @@ impl<'a> Elaborator<'a> {
             let rate = match leaf {
                 Leaf::Flat { phase, at, output, index, order } => {
                     let order = order + 1;
-                    sound &= self.has_derivative(&phase, output, order, span);
-                    if sound && is_last {
+                    sound &= self.has_derivative(&phase, output, (order, remaining), span);
+                    if sound && remaining == 0 {
                         self.note_jump(&phase, output, order, span);
                     }
                     Some(self.leaf(Leaf::Flat { phase, at, output, index, order }))
@@ -121,21 +134,37 @@ impl<'a> Elaborator<'a> {
         Some(self.problem.dag.div(one, duration))
     }
 
-    /// Tells of a derivative that a spline does not have.
-    fn has_derivative(&mut self, phase: &PhaseAt, output: usize, order: usize, span: Span) -> bool {
+    /// Whether a spline has a derivative, which is to be differentiated `more` times; tells if not.
+    fn has_derivative(&mut self, phase: &PhaseAt, output: usize, (order, more): (usize, usize), span: Span) -> bool {
         let output = &self.problem.phases[phase.phase].outputs[output];
-        let (name, spline, declared) = (output.name.clone(), &output.spline, output.span);
-        let k = spline.order;
-        if order >= k {
-            let message = format!("`{name}` has no derivative of order {order}: its spline is of order {k}");
-            let finding = Diagnostic::new(Code::NoDerivative, span, message)
-                .label(span, format!("needs the derivative of order {order} of `{name}`"))
-                .label(declared, format!("`order = {k}`: derivatives up to {}", k.saturating_sub(1)))
-                .help(format!("declare `{name}` with `order = {}` or more", order + 1));
-            self.report(finding);
-            return false;
+        let (name, k, declared) = (output.name.clone(), output.spline.order, output.span);
+        if order < k {
+            return true;
         }
-        true
+        let highest = order + more + self.derivatives_around;
+        let message = format!("`{name}` has no derivative of order {order}: its spline is of order {k}");
+        self.report(
+            Diagnostic::new(Code::NoDerivative, span, message)
+                .label(span, format!("needs the derivative of order {order} of `{name}`"))
+                .label(declared, format!("`order = {k}`: derivatives up to {}", k.saturating_sub(1))),
+        );
+        self.lacking.push(Lacking { name, declared, highest });
+        false
+    }
+
+    /// Helps where derivatives are missing, when all are known: a spline needs the order of the highest.
+    pub(super) fn orders_needed(&mut self) {
+        let mut lacking = std::mem::take(&mut self.lacking);
+        lacking.sort_by_key(|lack| lack.highest); // The highest has the last word.
+        for Lacking { name, declared, highest } in lacking {
+            let lacks = |finding: &&mut Diagnostic| {
+                let of_this = finding.labels.iter().any(|(span, _)| *span == declared);
+                finding.code == Code::NoDerivative && of_this
+            };
+            for finding in self.found.iter_mut().filter(lacks) {
+                finding.help = Some(format!("declare `{name}` with `order = {}` or more", highest + 1));
+            }
+        }
     }
 
     /// Notes a derivative that jumps at the knots.

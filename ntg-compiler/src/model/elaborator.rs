@@ -12,6 +12,7 @@ use ntg_structure::Unit;
 
 use super::Loader;
 use super::definitions::{Memo, MemoKey};
+use super::derivatives::Lacking;
 use super::dimension::Dimension;
 use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
@@ -122,6 +123,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) memo: HashMap<MemoKey, Memo>,
     pub(super) kinds: Kinds,
     pub(super) found: Vec<Diagnostic>,
+    /// Derivatives that splines do not have.
+    pub(super) lacking: Vec<Lacking>,
+    /// How many times the expression at hand is going to be differentiated.
+    pub(super) derivatives_around: usize,
     reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
     pub(super) next_index: u32,
     pub(super) next_symbol: u32,
@@ -162,6 +167,8 @@ impl<'a> Elaborator<'a> {
             memo: HashMap::new(),
             kinds: Kinds::default(),
             found: Vec::new(),
+            lacking: Vec::new(),
+            derivatives_around: 0,
             reported: HashSet::new(),
             next_index: 0,
             next_symbol: 0,

@@ -95,6 +95,7 @@ impl<'a> Elaborator<'a> {
         self.constraints();
         self.named();
         self.guesses();
+        self.orders_needed();
         self.check();
     }
 }

@@ -32,7 +32,7 @@ impl<'a> Elaborator<'a> {
         let inner = Context { lexical: inner.scope, point: Point::Nowhere, ..inner };
         match self.inside(inner.scope, last.name.text.as_str()) {
             Some(entity) => self.entity(&inner, entity, last, path.span),
-            None => self.unknown(inner.scope, last, false),
+            None => self.unknown(&inner, last, false),
         }
     }
 
@@ -65,13 +65,13 @@ impl<'a> Elaborator<'a> {
         }
         match look_up(&self.scopes, cx.scope, text) {
             Some((_, declared)) => self.entity(cx, declared.entity, segment, span),
-            None => self.unknown(cx.scope, segment, true),
+            None => self.unknown(cx, segment, true),
         }
     }
 
     /// Tells of a name that nothing has.
-    fn unknown(&mut self, scope: ScopeId, segment: &Segment, outwards: bool) -> Value {
-        let text = &segment.name.text;
+    fn unknown(&mut self, cx: &Context<'a>, segment: &Segment, outwards: bool) -> Value {
+        let (scope, text) = (cx.scope, &segment.name.text);
         let names: Vec<&str> = if outwards {
             visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
         } else {
@@ -82,13 +82,26 @@ impl<'a> Elaborator<'a> {
             let help = format!("`{text}` is an index: it has a value only inside its `for`, its sum or its family");
             return self.refuse(finding.label(*bound, "bound here").help(help), segment.span);
         }
-        let finding = match (self.elsewhere(text), nearest(text, names.iter().copied())) {
+        let elsewhere = self.lacking_in_phase(cx, text).or_else(|| self.elsewhere(text));
+        let finding = match (elsewhere, nearest(text, names.iter().copied())) {
             (Some(help), _) => finding.help(help),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
             (None, None) if names.is_empty() => finding.help("nothing is declared here"),
             (None, None) => finding.help(format!("known names are {}", listed(&names))),
         };
         self.refuse(finding, segment.span)
+    }
+
+    /// What to write for a name in a template that one phase defines and another does not.
+    fn lacking_in_phase(&self, cx: &Context<'a>, name: &str) -> Option<String> {
+        let (here, text) = (&self.scopes[cx.scope], &self.scopes[cx.lexical]);
+        let phase = here.phase.filter(|_| text.phase.is_none())?;
+        let own = &self.phases[phase].item?.name.text;
+        let (path, scope) = self.declared_within(name)?;
+        let is_sister = self.scopes[scope].phase.is_some() && self.scopes[scope].agent == here.agent;
+        is_sister.then(|| {
+            format!("`{path}` has its own `{name}`, but `{own}` has none: define it there, or once outside the phases")
+        })
     }
 
     /// What to write for a name that an agent or phase declares.

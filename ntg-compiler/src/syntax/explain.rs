@@ -145,14 +145,16 @@ impl Here<'_> {
         let token = self.token.filter(|token| token.kind == TokenKind::Word)?;
         let word = text(self.scan, token);
         let starts_statement = ITEM_WORDS.contains(&word) && begins_line(self.scan, self.index);
-        if !is_reserved(word) || starts_statement || !self.expected.wants_a_name() {
+        let for_later = LATER_WORDS.contains(&word);
+        let is_named = self.expected.wants_a_name() || (for_later && self.expected.wants_a_condition());
+        if !is_reserved(word) || starts_statement || !is_named {
             return None;
         }
         let finding = Diagnostic::new(Code::ReservedWord, token.span, format!("`{word}` is a reserved word"));
         Some(match word {
             "t" | "tau" | "pi" if self.expected.has(Rule::name) => finding
                 .help(format!("`{word}` has a meaning in every expression; choose another name, such as `{word}_`")),
-            _ if LATER_WORDS.contains(&word) => {
+            _ if for_later => {
                 finding.help(format!("it is kept for later versions; choose another name, such as `{word}_`"))
             }
             _ => finding.help(format!("choose another name, such as `{word}_`")),

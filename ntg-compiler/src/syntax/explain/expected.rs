@@ -31,6 +31,11 @@ impl Expected {
         self.has_expression() || self.rules.iter().any(|rule| kind(*rule) == Kind::Name)
     }
 
+    /// Whether a constraint or a guess would have done, which may begin with a name.
+    pub(super) fn wants_a_condition(&self) -> bool {
+        self.rules.iter().any(|rule| matches!(kind(*rule), Kind::Constraint | Kind::Guess))
+    }
+
     /// Whether only parts of a unit would have done.
     pub(super) fn is_inside_unit(&self) -> bool {
         let of_unit = |rule: &Rule| matches!(kind(*rule), Kind::Unit | Kind::Power) && *rule != Rule::unit;

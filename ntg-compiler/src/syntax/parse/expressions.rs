@@ -69,6 +69,7 @@ impl Build {
             return Expr { span, ..inner };
         }
         let list = self.tuple(pair);
+        self.unused_unit(&list);
         if list.elements.len() > 1 || list.unit.is_none() {
             let help = "a list may stand alone after `=` in `param`, `continuation` and settings, and in `through`";
             self.report(Code::Misplaced, span, "a list may not stand in an expression", help);

@@ -1,7 +1,7 @@
 //! The guess: values, routes, loops around them.
 
 use super::Build;
-use super::lists::{List, give_unit, own_unit};
+use super::lists::{List, give_units, own_unit};
 use super::parts::Parts;
 use crate::diagnostic::Code;
 use crate::syntax::ast::{Assign, Event, Guess, GuessKind, Path, Point, Route, Statement, Target};
@@ -58,6 +58,9 @@ impl Build {
         }
         let mut lists: Vec<List> = parts.map(|pair| self.list(pair)).collect();
         share_route_unit(&mut lists);
+        for list in &lists {
+            self.unused_unit(list);
+        }
         if let Some(last) = lists.last() {
             span.end = last.span.end; // Without the semicolon.
         }
@@ -84,8 +87,9 @@ fn share_route_unit(points: &mut [List]) {
         },
         _ => return,
     };
-    for element in points.iter_mut().flat_map(|point| &mut point.elements) {
-        give_unit(element, &unit);
+    let reached = give_units(points.iter_mut().flat_map(|point| &mut point.elements), &unit);
+    if let Some(last) = points.last_mut() {
+        last.unit_is_used |= reached;
     }
 }
 

@@ -11,8 +11,9 @@ use crate::syntax::grammar::{Pair, Rule};
 pub(super) struct List {
     pub(super) elements: Vec<Expr>,
     pub(super) is_tuple: bool,
-    /// The unit after the parenthesis.
+    /// The unit after the parenthesis, and whether it reached an element.
     pub(super) unit: Option<Unit>,
+    pub(super) unit_is_used: bool,
     pub(super) span: Span,
 }
 
@@ -20,6 +21,7 @@ impl Build {
     /// An expression or a tuple.
     pub(super) fn values(&mut self, pair: Pair<'_>) -> Values {
         let mut list = self.list(pair);
+        self.unused_unit(&list);
         share_last_unit(&mut list.elements);
         Values { elements: list.elements, is_tuple: list.is_tuple, span: list.span }
     }
@@ -32,6 +34,7 @@ impl Build {
             && let Some(only) = parts.pop()
         {
             let mut list = self.list_of(only);
+            self.unused_unit(&list);
             share_last_unit(&mut list.elements);
             return Values { elements: list.elements, is_tuple: list.is_tuple, span };
         }
@@ -51,7 +54,15 @@ impl Build {
         }
         let element = self.expression(expression);
         let span = element.span;
-        List { elements: vec![element], is_tuple: false, unit: None, span }
+        List { elements: vec![element], is_tuple: false, unit: None, unit_is_used: false, span }
+    }
+
+    /// A unit after a parenthesis is refused if it reached nothing.
+    pub(super) fn unused_unit(&mut self, list: &List) {
+        if let Some(unit) = list.unit.as_ref().filter(|_| !list.unit_is_used) {
+            let help = "write it after a number, `5 [km]`, or multiply by one, `x * 1 [km]`";
+            self.report(Code::MalformedUnit, unit.span, "this unit belongs to no number", help);
+        }
     }
 
     /// `(1, 2) [km]`: the unit reaches the elements that are bare signed literals.
@@ -64,17 +75,8 @@ impl Build {
         }
         parts.optional(Rule::trailing_comma);
         let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
-        if let Some(unit) = &unit {
-            let mut used = false;
-            for element in &mut elements {
-                used |= give_unit(element, unit);
-            }
-            if !used {
-                let help = "write it after a number, `5 [km]`, or multiply by one, `x * 1 [km]`";
-                self.report(Code::MalformedUnit, unit.span, "this unit belongs to no number", help);
-            }
-        }
-        List { elements, is_tuple: true, unit, span }
+        let unit_is_used = unit.as_ref().is_some_and(|unit| give_units(&mut elements, unit));
+        List { elements, is_tuple: true, unit, unit_is_used, span }
     }
 
     /// `lower .. upper`; either may be left out.
@@ -112,13 +114,16 @@ impl Build {
 pub(super) fn share_last_unit(elements: &mut [Expr]) {
     let Some((last, others)) = elements.split_last_mut() else { return };
     let Some(unit) = own_unit(last) else { return };
-    for other in others {
-        give_unit(other, &unit);
-    }
+    give_units(others, &unit);
+}
+
+/// Gives a unit to those of several expressions that are bare literals; says whether there were any.
+pub(super) fn give_units<'e>(elements: impl IntoIterator<Item = &'e mut Expr>, unit: &Unit) -> bool {
+    elements.into_iter().fold(false, |given, element| give_unit(element, unit) || given)
 }
 
 /// Gives a unit to an expression that is a bare signed literal without one; says whether it was.
-pub(super) fn give_unit(expr: &mut Expr, unit: &Unit) -> bool {
+fn give_unit(expr: &mut Expr, unit: &Unit) -> bool {
     let number = match &mut expr.kind {
         ExprKind::Number(number) => number,
         ExprKind::Neg(inner) => match &mut inner.kind {
