@@ -153,6 +153,15 @@ snapshots! {
         "output x, y: spline(order = 4, intervals = 2); minimize integral(der(x, 2)^2 + y^2); phase a { duration = 1; } \
          phase b after a { duration = 1; output x: spline(order = 3, intervals = 1); jump y; continuous x up to 0; }"
         => ["fn phases()", "fn constraints()"];
+    a_phase_may_have_its_own_points_and_outputs:
+        "output x: spline(order = 4, intervals = 2); minimize integral(der(x, 2)^2); phase a { duration = 1; } \
+         phase b after a { duration = 1; collocation gauss(points = 4, equalities = 3); \
+         output e: spline(order = 4, intervals = 2, smoothness = 1); initial { e == 0; } trajectory { der(e) == x^2; } final { e <= 3; } }"
+        => ["fn phases()", "fn groups()"];
+    time_and_scaled_time_are_those_of_the_agent_and_the_phase:
+        "output x: spline(order = 4, intervals = 1); minimize integral((x - t)^2 + tau * x); \
+         phase a { duration in 1 .. 2; } phase b after a { duration in 1 .. 2; }"
+        => ["mod kernels", "fn groups()"];
     a_template_is_resolved_in_each_phase:
         "output x: spline(order = 4, intervals = 1); minimize integral(force^2); let force = mass * der(x, 2); \
          phase a { duration = 1; let mass = 2; } phase b after a { duration in 1 .. 2; let mass = 2 - t / 10; }"
@@ -161,6 +170,16 @@ snapshots! {
         "agent uav[i in 1 .. 3] { start in 0 .. 60 [s]; duration T in 1 .. 9 [s]; output x [m]: spline(order = 4, intervals = 1); \
          let gone = integral(x); minimize integral(der(x, 2)^2); }"
         => ["fn agents()", "impl PSolution", "impl PUav", "fn named()"];
+    a_fixed_start_is_data:
+        "agent one { start = 10 [s]; duration T in 1 .. 9 [s]; output x [m]: spline(order = 4, intervals = 1); minimize integral(t * der(x, 2)^2); } \
+         agent two { start = one_s; duration T = 5 [s]; output x [m]: spline(order = 4, intervals = 1); minimize integral(t * der(x, 2)^2); } \
+         param one_s = 3 [s];"
+        => ["fn agents()"];
+    numbers_of_a_phase_are_named_by_its_path:
+        "output x: spline(order = 4, intervals = 1); minimize integral(der(x, 2)^2); variable v in 1 .. 2; \
+         phase a { duration D in 1 .. 2; let late = 2 * D; } phase b after a { duration in 1 .. 2; } \
+         temporal { a.D <= v; a.late >= duration(b); }"
+        => ["fn groups()"];
     event_times_meet_in_temporal:
         "agent a { output x: spline(order = 4, intervals = 1); minimize integral(der(x, 2)^2); \
          phase p { duration in 1 .. 2; } phase q after p { duration in 1 .. 2; } } \
