@@ -62,6 +62,17 @@ impl Dag {
         }
     }
 
+    /// The square root of the sum of the squares of any number of nodes. Pairs of pairs by `hypot` would have
+    /// no derivative where the first two vanish.
+    pub fn norm(&mut self, nodes: &[NodeId]) -> NodeId {
+        let zero = self.constant(0.0);
+        let sum = nodes.iter().fold(zero, |sum, node| {
+            let square = self.powi(*node, 2);
+            self.add(sum, square)
+        });
+        self.sqrt(sum)
+    }
+
     /// `x^n`; `x^0` is 1, also at 0.
     pub fn powi(&mut self, x: NodeId, n: i32) -> NodeId {
         if let Some(c) = self.is_constant(x)

@@ -247,7 +247,8 @@ impl<'a> Elaborator<'a> {
             Rule::Min => (nodes[1..].iter().fold(nodes[0], |a, b| dag.min(a, *b)), joined.dimension),
             Rule::Max => (nodes[1..].iter().fold(nodes[0], |a, b| dag.max(a, *b)), joined.dimension),
             _ if nodes.len() == 1 => (dag.abs(nodes[0]), joined.dimension),
-            _ => (nodes[1..].iter().fold(nodes[0], |a, b| dag.hypot(a, *b)), joined.dimension),
+            _ if nodes.len() == 2 => (dag.hypot(nodes[0], nodes[1]), joined.dimension),
+            _ => (dag.norm(&nodes), joined.dimension),
         };
         let unit = if builtin.rule == Rule::Angle { None } else { joined.unit.clone() };
         joined.map(node, dimension, call.span).shown_in(unit)

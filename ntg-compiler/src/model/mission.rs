@@ -76,8 +76,9 @@ impl<'a> Elaborator<'a> {
             let message = "a family of phases or agents has one member at least";
             let finding = Diagnostic::new(Code::EmptyFamily, range.span, message);
             self.report(finding.help(format!("write `{} in 1 .. N` with `N` at least 1", range.index.text)));
-            return None;
         }
+        // Go on as if there was one, so that its index means something.
+        let last = last.max(first);
         Some(self.new_index(Form::number(first), Form::number(last)))
     }
 

@@ -156,6 +156,23 @@ fn derivatives_of_constants_products_and_chains_are_the_textbook_nodes() {
 }
 
 #[test]
+fn a_norm_of_three_has_derivatives_wherever_one_of_them_is_not_zero() {
+    let mut dag = Dag::new();
+    let x = inputs(&mut dag, 3);
+    let wrt = [InputId(0), InputId(1), InputId(2)];
+    let root = dag.norm(&x);
+    let slopes = gradient(&mut dag, root, &wrt).expect("no reductions");
+    assert_eq!(values(&dag, &slopes, &[0.0, 0.0, -4.0]), [0.0, 0.0, -1.0]);
+    assert_eq!(values(&dag, &slopes, &[2.0, -3.0, 6.0]), [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0]);
+    let one = dag.constant(1.0);
+    let second = hessian(&mut dag, &[(one, root)], &wrt).expect("no reductions");
+    let at_rest: Vec<f64> = second.iter().map(|entry| value(&dag, entry.value, &[0.0, 0.0, -4.0])).collect();
+    let on_the_diagonal =
+        second.iter().map(|entry| if entry.row == entry.column && entry.row < 2 { 0.25 } else { 0.0 });
+    assert_eq!(at_rest, on_the_diagonal.collect::<Vec<_>>());
+}
+
+#[test]
 fn an_operand_used_twice_counts_twice() {
     let mut dag = Dag::new();
     let x = inputs(&mut dag, 1)[0];
