@@ -1,5 +1,6 @@
 //! Laws of missions: what holds for phases, agents and their events whatever the problem is.
 
+mod constructs;
 mod growth;
 mod multipliers;
 mod times;
