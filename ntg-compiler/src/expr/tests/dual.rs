@@ -74,7 +74,9 @@ impl Environment<HyperDual64> for Point<'_> {
     fn table(&mut self, _: u32, args: &[HyperDual64], derivative: &[u8]) -> Option<HyperDual64> {
         let value = args[0].sin() * (args[1] * 0.25).exp();
         let is_value = derivative.iter().all(|order| *order == 0);
-        debug_assert!(!is_value || (value.re - table(&[args[0].re, args[1].re], derivative)).abs() < 1e-12);
+        // The reference's own functions overflow where ours do not: the tangent of a large number.
+        let is_known = is_value && args.iter().all(|arg| arg.re.is_finite());
+        debug_assert!(!is_known || (value.re - table(&[args[0].re, args[1].re], derivative)).abs() < 1e-12);
         is_value.then_some(value)
     }
 
