@@ -119,7 +119,7 @@ pub(super) fn share_last_unit(elements: &mut [Expr]) {
 
 /// Gives a unit to those of several expressions that are bare literals; says whether there were any.
 pub(super) fn give_units<'e>(elements: impl IntoIterator<Item = &'e mut Expr>, unit: &Unit) -> bool {
-    elements.into_iter().fold(false, |given, element| give_unit(element, unit) || given)
+    elements.into_iter().filter_map(|element| give_unit(element, unit).then_some(())).count() > 0
 }
 
 /// Gives a unit to an expression that is a bare signed literal without one; says whether it was.
