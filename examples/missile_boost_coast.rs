@@ -7,14 +7,17 @@ mod drawing;
 
 use std::path::Path;
 
-use drawing::chart::Stroke;
+use drawing::chart::{Line, Stroke};
 use drawing::history::{Panel, samples};
 use drawing::missile::{Look, Scene, Shot, shots};
 use drawing::track::Track;
-use drawing::{BLUE, Drawn, GREEN, VERMILION};
+use drawing::{BLUE, Drawn, GREEN, INK, VERMILION};
 use ntg::prelude::*;
 
 ntg_file!("specs/missile_boost_coast.ntg");
+
+/// When the motor stops, as the spec has it.
+const BURN_OUT: f64 = 6.0;
 
 fn main() -> Drawn {
     let spare = MissileBoostCoast::default();
@@ -25,10 +28,13 @@ fn main() -> Drawn {
         shot("30 m/s^2 allowed", ((VERMILION, Stroke::Solid), (20, 48)), &little)?,
         shot("target pulls up", ((GREEN, Stroke::Dashed), (20, -44)), &evading)?,
     ];
-    let panel = |name, range, limits| Panel { name, range, lines: vec![], limits };
+    let panel = |name, range: std::ops::Range<f64>, limits| {
+        let event = vec![(BURN_OUT, range.start), (BURN_OUT, range.end)];
+        Panel { name, range, lines: vec![Line::new("", INK, Stroke::Fine, event)], limits }
+    };
     let scene = Scene {
         title: "Six seconds of thrust, then coasting to an oncoming target",
-        sentence: "Dots every 2 s. When the motor stops, the thrust jumps, and drag slows the missile.",
+        sentence: "Dots every 2 s. Dotted upright: the motor stops, the thrust jumps, and drag slows the missile.",
         x: ("downrange [km]", -0.5..22.0),
         y: ("height [km]", 4.0..14.5),
         every: 2.0,

@@ -22,6 +22,7 @@ use std::fs;
 use std::path::Path;
 
 use plotters::coord::Shift;
+pub(crate) use plotters::prelude::RGBColor;
 use plotters::prelude::*;
 
 /// What drawing may end in: a file that cannot be written.
