@@ -152,7 +152,7 @@ impl<N: Nlp> Core<'_, N> {
         if self.system.factorise(0.0) {
             return true;
         }
-        self.assemble(Curvature::Convex);
+        self.system.make_convex();
         self.record.mixed = true;
         let mut shift = 0.0;
         while shift <= LARGEST_SHIFT {

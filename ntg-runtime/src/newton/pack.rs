@@ -54,6 +54,12 @@ pub(super) fn product(a: &Pack, b: &Pack) -> Pack {
     std::array::from_fn(|lane| a[lane] * b[lane])
 }
 
+/// `a - b`.
+#[inline(always)]
+pub(super) fn difference(a: &Pack, b: &Pack) -> Pack {
+    std::array::from_fn(|lane| a[lane] - b[lane])
+}
+
 /// The numbers from `at` on, as far as there are any; zeros after them.
 #[inline(always)]
 pub(super) fn load(numbers: &[f64], at: usize, end: usize) -> Pack {

@@ -264,6 +264,13 @@ impl<W> System<W> {
         }
     }
 
+    /// Makes each element of the matrix convex. Before: [`System::assemble`].
+    pub(super) fn make_convex(&mut self) {
+        for block in &self.blocks {
+            block.make_convex(&mut self.buffers, &mut self.matrix);
+        }
+    }
+
     /// Sets the diagonal of a row of the border to `-compliance`.
     pub(super) fn set_border(&mut self, border: usize, compliance: f64) {
         let unknown = self.order.band + self.order.border + border;

@@ -40,30 +40,41 @@ impl<const L: usize> Convexifier<L> {
     /// Replaces the symmetric matrices `k` of elements of `block` by the nearest positive
     /// semidefinite ones, in the norm of scaled slots; exact where they are already.
     pub(crate) fn clip(&mut self, k: &mut [Lanes<L>], block: usize) {
-        self.change(k, block, |value| value.max(0.0));
+        _ = self.change(k, block, |value| value.max(0.0));
     }
 
     /// As [`Convexifier::clip`], with negative curvature taken as positive: a direction of descent that
-    /// was bent downwards keeps a measure of length.
+    /// was bent downwards keeps a measure of length. Whether any of them was not convex.
     #[inline(always)]
-    pub(crate) fn reflect(&mut self, k: &mut [Lanes<L>], block: usize) {
-        self.change(k, block, f64::abs);
+    pub(crate) fn reflect(&mut self, k: &mut [Lanes<L>], block: usize) -> bool {
+        self.change(k, block, f64::abs)
+    }
+
+    /// Which matrices are positive semidefinite already.
+    #[inline(always)]
+    pub(crate) fn convex(&mut self, k: &[Lanes<L>], block: usize) -> [bool; L] {
+        let sizes = &self.sizes[block];
+        let matrix = &mut self.matrix[..sizes.len() * sizes.len()];
+        scale(matrix, k, sizes);
+        semidefinite(matrix, sizes.len())
     }
 
     #[inline(always)]
-    fn change(&mut self, k: &mut [Lanes<L>], block: usize, value: impl Fn(f64) -> f64) {
+    fn change(&mut self, k: &mut [Lanes<L>], block: usize, value: impl Fn(f64) -> f64) -> bool {
+        let mut convex = self.convex(k, block);
+        if convex == [true; L] {
+            return false;
+        }
         let sizes = &self.sizes[block];
         let n = sizes.len();
         let (matrix, vectors) = (&mut self.matrix[..n * n], &mut self.vectors[..n * n]);
         scale(matrix, k, sizes);
-        let mut convex = semidefinite(matrix, n);
-        if convex == [true; L] {
-            return;
-        }
-        scale(matrix, k, sizes);
         eigen(matrix, vectors, n);
         for (lane, convex) in convex.iter_mut().enumerate() {
             *convex |= (0..n).all(|i| matrix[i * n + i][lane] >= 0.0);
+        }
+        if convex == [true; L] {
+            return false;
         }
         for e in 0..n {
             matrix[e * n + e] = matrix[e * n + e].map(&value);
@@ -84,6 +95,7 @@ impl<const L: usize> Convexifier<L> {
                 k[j * n + i] = k[i * n + j];
             }
         }
+        true
     }
 }
 
@@ -252,8 +264,9 @@ mod tests {
     #[test]
     fn reflected_curvature_has_the_same_size_and_no_sign() {
         let mut k = [[-3.0], [0.0], [0.0], [2.0]];
-        of(&[1.0, 1.0]).reflect(&mut k, 0);
+        assert!(of(&[1.0, 1.0]).reflect(&mut k, 0));
         assert_eq!(k, [[3.0], [0.0], [0.0], [2.0]]);
+        assert!(!of(&[1.0, 1.0]).reflect(&mut k, 0));
     }
 
     #[test]

@@ -92,14 +92,17 @@ pub(crate) fn fine_set(points: &Points, breakpoints: &[f64], phase: usize, sampl
     fine
 }
 
-/// Composite Gauss points for the true cost: each interval in `samples` parts
-/// (docs/maths.md, equation 9.2). The rule has at least three points a part.
+/// Composite Gauss points for the true cost, in a quarter as many parts as the check of constraints has stretches
+/// (docs/maths.md, equation 9.2). The rule has at least three points a part, so its error falls with the sixth
+/// power of their width.
 pub(crate) fn fine_quadrature(points: &Points, breakpoints: &[f64], phase: usize, samples: usize) -> Vec<Point> {
     /// Gauss points in each part where the transcription itself uses no Gauss rule.
     const POINTS: usize = 3;
+    /// Stretches of the check to a part of the quadrature.
+    const STRETCHES: usize = 4;
     let (order, parts) = match *points {
-        Points::Gauss { points } => (points.max(POINTS), samples),
-        Points::Uniform { points } => (POINTS, (samples * points).div_ceil(breakpoints.len() - 1)),
+        Points::Gauss { points } => (points.max(POINTS), samples.div_ceil(STRETCHES)),
+        Points::Uniform { points } => (POINTS, (samples * points).div_ceil(STRETCHES * (breakpoints.len() - 1))),
         Points::Breakpoints | Points::LeftLimits => return vec![],
     };
     let refined: Vec<f64> = breakpoints

@@ -59,8 +59,6 @@ pub(super) enum Curvature {
     None,
     /// As they are.
     Exact,
-    /// Each element's, with its condensed rows, made positive semidefinite.
-    Convex,
 }
 
 /// What the matrix is made of.
@@ -83,6 +81,12 @@ pub(super) struct Buffers {
     second: Vec<Pack>,
     /// `K E`.
     half: Vec<Pack>,
+    /// The second derivatives of all packs of each block, at the pairs that the matrix connects.
+    kept: Vec<Vec<Pack>>,
+    /// Elements of a block that are not convex: pack and lane.
+    concave: Vec<(usize, usize)>,
+    /// What makes them convex, a lane each.
+    change: Vec<Pack>,
     /// Second derivatives between slots, to be made convex.
     element: Vec<Pack>,
     convexifier: Convexifier<LANES>,
@@ -91,7 +95,17 @@ pub(super) struct Buffers {
 impl Buffers {
     /// Without room.
     pub(super) fn new(convexifier: Convexifier<LANES>) -> Self {
-        Self { slot: vec![], local: vec![], second: vec![], half: vec![], element: vec![], convexifier }
+        Self {
+            slot: vec![],
+            local: vec![],
+            second: vec![],
+            half: vec![],
+            kept: vec![],
+            concave: vec![],
+            change: vec![],
+            element: vec![],
+            convexifier,
+        }
     }
 
     /// Takes another convexifier, for variables of other sizes.
@@ -106,6 +120,10 @@ impl Buffers {
         grow(&mut self.local, plan.map.locals);
         grow(&mut self.second, plan.slots * plan.slots);
         grow(&mut self.element, plan.slots * plan.slots);
+        self.kept.resize(self.kept.len().max(plan.block + 1), vec![]);
+        self.kept[plan.block].resize(plan.map.packs * plan.pairs.len(), [0.0; LANES]);
+        grow(&mut self.change, plan.map.packs * plan.pairs.len());
+        self.concave.reserve(plan.map.packs * LANES);
         grow(&mut self.half, plan.slots * plan.map.locals);
     }
 }

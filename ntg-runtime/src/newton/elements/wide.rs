@@ -35,6 +35,12 @@ impl BlockPlan {
     ) {
         dispatch(Assemble { plan: self, at, weights, buffers, matrix });
     }
+
+    /// Adds what makes the second derivatives of every element, with its condensed rows, positive semidefinite.
+    /// Before: [`BlockPlan::assemble`].
+    pub(in super::super) fn make_convex(&self, buffers: &mut Buffers, matrix: &mut [f64]) {
+        dispatch(MakeConvex { plan: self, buffers, matrix });
+    }
 }
 
 struct Gradient<'a> {
@@ -79,5 +85,18 @@ impl Task for Assemble<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
         self.plan.assemble_packs(self.at, self.weights, self.buffers, self.matrix);
+    }
+}
+
+struct MakeConvex<'a> {
+    plan: &'a BlockPlan,
+    buffers: &'a mut Buffers,
+    matrix: &'a mut [f64],
+}
+
+impl Task for MakeConvex<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        self.plan.make_packs_convex(self.buffers, self.matrix);
     }
 }

@@ -1,7 +1,7 @@
 //! What the elements of one block do, a pack at a time: gradients, products with the Jacobian, and
 //! the condensed matrix (docs/maths.md, section 11.2).
 
-use super::super::pack::{LANES, Pack, add_product, add_row, load, product, row_product};
+use super::super::pack::{LANES, Pack, add_product, add_row, difference, load, product, row_product};
 use super::{BlockPlan, BorderRow, Buffers, Curvature, Weights};
 use crate::nlp::BlockValues;
 
@@ -71,9 +71,7 @@ impl BlockPlan {
         for pack in 0..self.map.packs {
             if !self.pairs.is_empty() {
                 self.second(at, pack, weights, buffers);
-                if weights.curvature == Curvature::Convex {
-                    self.convexify(buffers);
-                }
+                self.keep(pack, buffers);
                 self.scatter(pack, buffers, matrix);
             }
             for border in &self.border {
@@ -94,32 +92,92 @@ impl BlockPlan {
             second[i.max(j) * n + i.min(j)] =
                 load(&at.hessian, entry * self.elements + pack * LANES, (entry + 1) * self.elements);
         }
+        let gradient = &mut buffers.slot;
         for (row, entries) in self.row_entries.iter().enumerate().filter(|(row, _)| self.condensed[*row]) {
             let weight = &self.weight[pack * self.rows + row];
             let factor = product(weight, &self.factor(pack, row, weights.sigma));
-            for (k, &(entry, i)) in entries.iter().enumerate() {
-                let scaled = product(&factor, &self.jacobian(at, entry, pack));
-                for &(other, j) in &entries[..=k] {
-                    add_product(&mut second[i.max(j) * n + i.min(j)], &scaled, &self.jacobian(at, other, pack));
+            for (to, &(entry, _)) in gradient.iter_mut().zip(entries) {
+                *to = self.jacobian(at, entry, pack);
+            }
+            for (k, &(_, i)) in entries.iter().enumerate() {
+                let scaled = product(&factor, &gradient[k]);
+                for (other, &(_, j)) in gradient.iter().zip(&entries[..=k]) {
+                    add_product(&mut second[i.max(j) * n + i.min(j)], &scaled, other);
                 }
             }
         }
     }
 
-    /// Makes the second derivatives of every lane positive semidefinite.
+    /// Keeps the second derivatives of a pack for [`BlockPlan::make_packs_convex`].
     #[inline(always)]
-    fn convexify(&self, buffers: &mut Buffers) {
-        let n = self.slots;
-        let Buffers { second, element, convexifier, .. } = buffers;
-        let element = &mut element[..n * n];
-        element.fill([0.0; LANES]);
-        for &(i, j) in &self.pairs {
-            element[i * n + j] = second[i * n + j];
-            element[j * n + i] = second[i * n + j];
+    fn keep(&self, pack: usize, buffers: &mut Buffers) {
+        let kept = &mut buffers.kept[self.block][pack * self.pairs.len()..];
+        for (kept, &(i, j)) in kept.iter_mut().zip(&self.pairs) {
+            *kept = buffers.second[i * self.slots + j];
         }
-        convexifier.reflect(element, self.block);
-        for &(i, j) in &self.pairs {
-            second[i * n + j] = element[i * n + j];
+    }
+
+    /// Adds to the matrix what makes the second derivatives of every lane positive semidefinite. Most are so
+    /// already; the others are collected, so that no lane is worked on in vain.
+    #[inline(always)]
+    pub(super) fn make_packs_convex(&self, buffers: &mut Buffers, matrix: &mut [f64]) {
+        let (n, pairs) = (self.slots, self.pairs.len());
+        if pairs == 0 {
+            return;
+        }
+        buffers.concave.clear();
+        for pack in 0..self.map.packs {
+            let Buffers { element, kept, convexifier, concave, .. } = &mut *buffers;
+            let kept = &mut kept[self.block][pack * pairs..][..pairs];
+            self.fill(&mut element[..n * n], |pair| kept[pair]);
+            let convex = convexifier.convex(&element[..n * n], self.block);
+            concave.extend((0..LANES).filter(|lane| !convex[*lane]).map(|lane| (pack, lane)));
+        }
+        for first in (0..buffers.concave.len()).step_by(LANES) {
+            self.reflect(first, buffers);
+        }
+        let mut next = 0;
+        while let Some(&(pack, _)) = buffers.concave.get(next) {
+            let Buffers { second, change, concave, .. } = &mut *buffers;
+            self.pairs.iter().for_each(|&(i, j)| second[i * n + j] = [0.0; LANES]);
+            while let Some((_, lane)) = concave.get(next).filter(|(of, _)| *of == pack) {
+                for (pair, &(i, j)) in self.pairs.iter().enumerate() {
+                    second[i * n + j][*lane] = change[next / LANES * pairs + pair][next % LANES];
+                }
+                next += 1;
+            }
+            self.scatter(pack, buffers, matrix);
+        }
+    }
+
+    /// What is to be added to the collected elements from the one with this number on, a lane each.
+    #[inline(always)]
+    fn reflect(&self, first: usize, buffers: &mut Buffers) {
+        let (n, pairs) = (self.slots, self.pairs.len());
+        let Buffers { element, kept, convexifier, concave, change, .. } = buffers;
+        let element = &mut element[..n * n];
+        let of = &concave[first..concave.len().min(first + LANES)];
+        let change = &mut change[first / LANES * pairs..][..pairs];
+        for (pair, change) in change.iter_mut().enumerate() {
+            *change = [0.0; LANES];
+            for (to, &(pack, lane)) in change.iter_mut().zip(of) {
+                *to = kept[self.block][pack * pairs + pair][lane];
+            }
+        }
+        self.fill(element, |pair| change[pair]);
+        _ = convexifier.reflect(element, self.block);
+        for (change, &(i, j)) in change.iter_mut().zip(&self.pairs) {
+            *change = difference(&element[i * n + j], change);
+        }
+    }
+
+    /// A full symmetric matrix from its entries at the pairs.
+    #[inline(always)]
+    fn fill(&self, element: &mut [Pack], entry: impl Fn(usize) -> Pack) {
+        element.fill([0.0; LANES]);
+        for (pair, &(i, j)) in self.pairs.iter().enumerate() {
+            element[i * self.slots + j] = entry(pair);
+            element[j * self.slots + i] = entry(pair);
         }
     }
 
