@@ -140,10 +140,10 @@ impl Solution {
         let (model, x) = (&self.inner.model, &self.inner.x);
         let (structure, layout) = (&model.structure, &model.layout);
         let mut found = vec![];
-        let mut events = |name: &str, start: f64, duration: f64| {
+        let mut events = |name: &str, (start, end): (f64, f64), duration: f64| {
             if !name.is_empty() {
                 found.push((format!("start({name})"), start));
-                found.push((format!("end({name})"), start + duration));
+                found.push((format!("end({name})"), end));
                 found.push((format!("duration({name})"), duration));
             }
         };
@@ -151,7 +151,10 @@ impl Solution {
         for (agent, member) in layout.agents.iter().enumerate() {
             let path = names::agent(structure, layout, agent);
             let whole: f64 = member.phases.clone().map(|p| layout.duration(p, x)).sum();
-            events(&path, member.start.at(x), whole);
+            // The end is that of its last phase, to the last bit.
+            let start = member.start.at(x);
+            let end = member.phases.clone().fold(start, |t, p| t + layout.duration(p, x));
+            events(&path, (start, end), whole);
             match &structure.agents[member.agent].duration_name {
                 Some(name) => durations.push((names::join(&path, name), whole)),
                 // The one timeline without a name: its duration is called what a guess calls it.
@@ -163,7 +166,8 @@ impl Solution {
             for phase in member.phases.clone() {
                 let (own, duration) = (&layout.phases[phase], layout.duration(phase, x));
                 let path = names::phase(structure, layout, phase);
-                events(&path, layout.start(phase, x), duration);
+                let start = layout.start(phase, x);
+                events(&path, (start, start + duration), duration);
                 if let Some(name) = &structure.phases[own.phase].duration_name {
                     durations.push((names::join(&path, name), duration));
                 }
