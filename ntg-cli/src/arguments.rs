@@ -160,6 +160,10 @@ pub(crate) struct Solve {
     /// guesses), list the local minima, and go on with the best.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) starts: Option<u32>,
+    /// Solve again on finer and finer meshes, until cost and constraints are exact to that relative
+    /// error; with `--starts`, every minimum.
+    #[arg(long, value_name = "ERROR")]
+    pub(crate) refine: Option<f64>,
     /// The seed of the random starts: the same seed gives the same starts.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "starts")]
     pub(crate) seed: u64,

@@ -7,6 +7,7 @@ use ntg_report::Run;
 use ntg_report::run::Recording;
 use ntg_runtime::settings::Settings;
 
+use crate::solve::explained;
 use crate::watch::{Interrupt, Watch};
 use crate::{files, setup, values};
 
@@ -47,8 +48,9 @@ fn run(path: &Path, set: &[String], interrupt: &Interrupt) -> Result<Run, String
     if !report.is_solved() {
         eprintln!("warning: {}: {}; what follows is the last point", path.display(), report.status);
     }
-    let notes = &compiled.notes;
-    let recording = Recording { problem: &problem, report: &report, source: &source, notes, iterations: &iterations };
+    let explanation = explained(&report, &problem, &settings, interrupt);
+    let (explanation, notes, iterations) = (explanation.as_ref(), &compiled.notes, &iterations);
+    let recording = Recording { problem: &problem, report: &report, explanation, source: &source, notes, iterations };
     Ok(recording.run())
 }
 

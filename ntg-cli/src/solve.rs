@@ -8,11 +8,13 @@ use std::time::{Duration, Instant};
 
 use ntg_interp::Interpreted;
 use ntg_report::run::Recording;
+use ntg_runtime::explain::Explanation;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::multistart::{MultiReport, multistart_from};
+use ntg_runtime::refine::{Refined, Refinement};
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::{Method, Settings};
-use ntg_runtime::{Error, status::Status};
+use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
@@ -27,6 +29,7 @@ struct Solved<'a> {
     problem: &'a Interpreted,
     report: &'a Report,
     starts: Option<&'a MultiReport>,
+    explanation: Option<&'a Explanation>,
     samples: usize,
     compile_seconds: f64,
 }
@@ -57,13 +60,13 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let mut iterations = vec![];
     let found = match starts::wanted(arguments, &interrupt) {
         Some(starts) => {
-            starts::cancellable(&mut settings, &interrupt);
+            interrupt.over(&mut settings);
             multistart_from(&problem, &guess, &starts, &settings).map(Found::Many)
         }
         None => {
             let watch = Watch::new(&interrupt);
             watch.over(&mut settings);
-            let report = ntg_runtime::solve_from(&problem, &guess, &settings);
+            let report = solve_from(&problem, &guess, &settings);
             iterations = watch.end(is_cancelled(&report));
             report.map(|report| Found::One(Box::new(report)))
         }
@@ -73,19 +76,22 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         Found::One(report) => (&**report, None),
         Found::Many(starts) => (starts.best().ok_or_else(|| starts.to_string())?, Some(starts)),
     };
+    let explanation = explained(report, &problem, &settings, &interrupt);
 
     let samples = arguments.samples as usize;
-    let solved = Solved { problem: &problem, report, starts, samples, compile_seconds };
+    let explanation = explanation.as_ref();
+    let solved = Solved { problem: &problem, report, starts, explanation, samples, compile_seconds };
     match arguments.format {
         Format::Text => files::print(&text::document(&solved)),
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
         let notes = &compiled.notes;
-        let run = Recording { problem: &problem, report, source: &source, notes, iterations: &iterations }.run();
+        let iterations = &iterations;
+        let run = Recording { problem: &problem, report, explanation, source: &source, notes, iterations }.run();
         write::whole(path, arguments.force, run.text().as_bytes())?;
     }
-    Ok(match report.is_solved() {
+    Ok(match report.is_solved() && report.refined.as_ref().is_none_or(Refined::is_met) {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,
         false => Exit::NotSolved,
@@ -95,6 +101,19 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
 /// Whether a solve was stopped from outside.
 pub(crate) fn is_cancelled(solved: &Result<Report, Error>) -> bool {
     solved.as_ref().is_ok_and(|report| report.status == Status::Cancelled)
+}
+
+/// Why there is no solution; the line of progress is gone, but Ctrl-C ends the search for reasons.
+pub(crate) fn explained(
+    report: &Report,
+    problem: &Interpreted,
+    settings: &Settings,
+    interrupt: &Interrupt,
+) -> Option<Explanation> {
+    let mut settings = settings.clone();
+    interrupt.over(&mut settings);
+    // A problem that was set up to be solved can be set up to be explained.
+    report.explain(problem, &settings).ok().flatten()
 }
 
 /// What the command line says about the start; none for the spec's own guess.
@@ -118,6 +137,7 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;
     }
+    settings.refine = arguments.refine.map(Refinement::to);
     settings.method = match arguments.method {
         arguments::Method::Auto => Method::Auto,
         arguments::Method::Sqp => Method::Sqp,

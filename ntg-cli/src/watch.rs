@@ -33,6 +33,13 @@ impl Interrupt {
     pub(crate) fn is_pressed(&self) -> bool {
         self.0.load(Ordering::SeqCst)
     }
+
+    /// Lets it end solves with these settings, without a line of progress.
+    pub(crate) fn over(&self, settings: &mut Settings) {
+        let interrupt = self.clone();
+        let watch = move |_: &_| if interrupt.is_pressed() { Control::Cancel } else { Control::Continue };
+        settings.on_iteration = Some(Arc::new(watch));
+    }
 }
 
 /// What one watch has seen of a solve.

@@ -8,6 +8,7 @@
 //! method. [`solve()`] goes the whole way. The mathematics is in docs/maths.md, sections 3 to 9.
 
 mod error;
+pub mod explain;
 pub mod guess;
 pub mod lanes;
 pub mod math;
@@ -17,6 +18,7 @@ pub mod newton;
 pub mod nlp;
 pub mod outcome;
 pub mod problem;
+pub mod refine;
 pub mod report;
 mod session;
 pub mod settings;

@@ -3,6 +3,7 @@
 //! Settings are plain data with defaults that suit most problems; [`Settings::validate`] says in
 //! words which field is out of its range. They can be cloned and sent to other threads.
 
+use crate::refine::Refinement;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -117,6 +118,9 @@ pub struct Settings {
     /// After a solve, constraints and cost are checked on a grid with this many points for each
     /// point of the transcription; at least 1. Default 20.
     pub samples: usize,
+    /// Whether a solve is followed by others on finer meshes, and how far
+    /// (docs/maths.md, section 14). Default none.
+    pub refine: Option<Refinement>,
     /// Whether steps are corrected for the curvature of the constraints
     /// (docs/maths.md, section 6, second-order correction). Default true.
     pub second_order_correction: bool,
@@ -137,6 +141,7 @@ impl Default for Settings {
             scaling: Scaling::Automatic,
             scales: Vec::new(),
             samples: 20,
+            refine: None,
             second_order_correction: true,
             exact_hessian: true,
         }
@@ -155,6 +160,7 @@ impl fmt::Debug for Settings {
             .field("scaling", &self.scaling)
             .field("scales", &self.scales)
             .field("samples", &self.samples)
+            .field("refine", &self.refine)
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
             .finish()
@@ -219,6 +225,9 @@ impl Settings {
         }
         if self.samples == 0 {
             return invalid("samples", "it must be at least 1".into());
+        }
+        if let Some(refinement) = &self.refine {
+            refinement.validate()?;
         }
         match self.scales.iter().find(|(_, size)| !(size.is_finite() && *size > 0.0)) {
             Some((name, size)) => {

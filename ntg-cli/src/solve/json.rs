@@ -37,6 +37,12 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         })).collect::<Vec<_>>(),
         "history": history(report),
     });
+    if let Some(explanation) = solved.explanation {
+        document["explanation"] = json!(ntg_report::run::Explanation::from(explanation));
+    }
+    if let Some(refined) = &report.refined {
+        document["refinement"] = json!(ntg_report::run::Refinement::from(refined));
+    }
     if let Some(starts) = solved.starts {
         document["starts"] = super::starts::document(starts);
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use ntg_runtime::multistart::{MultiReport, StartKind, StartProgress, Starts};
-use ntg_runtime::settings::{Control, Settings};
+use ntg_runtime::settings::Control;
 use serde_json::{Value, json};
 
 use crate::arguments::{Kind, Solve};
@@ -35,13 +35,6 @@ pub(super) fn wanted(arguments: &Solve, interrupt: &Interrupt) -> Option<Starts>
     };
     let (count, seed) = (arguments.starts? as usize, arguments.seed);
     Some(Starts { count, seed, kind, on_start: Some(Arc::new(on_start)) })
-}
-
-/// Lets Ctrl-C end the solves that have begun.
-pub(super) fn cancellable(settings: &mut Settings, interrupt: &Interrupt) {
-    let interrupt = interrupt.clone();
-    let watch = move |_: &_| if interrupt.is_pressed() { Control::Cancel } else { Control::Continue };
-    settings.on_iteration = Some(Arc::new(watch));
 }
 
 /// What the starts found, for programs.

@@ -12,7 +12,9 @@ const LEAST_WIDTH: usize = 11;
 
 pub(super) fn document(solved: &Solved<'_>) -> String {
     let mut lines: Vec<String> = solved.starts.map(|starts| format!("{starts}\n")).into_iter().collect();
-    lines.extend([solved.report.to_string(), String::new()]);
+    lines.push(solved.report.to_string());
+    lines.extend(solved.explanation.map(ToString::to_string));
+    lines.push(String::new());
     let problem: &dyn Problem = solved.problem;
     let solution = &solved.report.solution;
     let trajectories = solution.trajectories();

@@ -5,6 +5,7 @@
 
 mod data;
 mod spec;
+mod study;
 mod tables;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -47,6 +48,7 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                 (head(first))
                 main {
                     (summary(first))
+                    (study::explanation(first))
                     @if runs.len() > 1 { (tables::comparison(runs)) }
                     (charts("tracks", "Tracks", &data.tracks))
                     (charts("outputs", "Outputs", &data.outputs))
@@ -58,6 +60,7 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                     (tables::quantities(first))
                     (charts("convergence", "Convergence", &data.convergence))
                     (tables::history(first))
+                    (study::refinement(first))
                     (tables::discretisation(first))
                 }
                 footer { "Made by ntg " (env!("CARGO_PKG_VERSION")) ". Charts by uPlot (MIT licence, Leon Sorokin). This page needs no network." }

@@ -6,9 +6,11 @@
 mod layout;
 mod numbers;
 mod record;
+mod study;
 
 pub use layout::layout;
 pub use record::Recording;
+pub use study::{Explanation, Part, Refinement, Round};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -52,6 +54,12 @@ pub struct Run {
     pub seconds: f64,
     /// Largest relative violations.
     pub violation: Violation,
+    /// Why there is no solution; none where there is one, or nobody asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explanation: Option<Explanation>,
+    /// How the mesh was refined; none where it was not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refinement: Option<Refinement>,
     /// What the meaning of `unknowns` depends on.
     pub layout: Value,
     /// All variables of the optimisation problem, SI.

@@ -3,12 +3,10 @@
 use indexmap::IndexMap;
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
 use ntg_compiler::source::Source;
-use ntg_runtime::nlp::Nlp;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::report::{ConstraintReport, Report, Trace};
 use ntg_runtime::settings::Progress;
 use ntg_runtime::structure::{Block, Points, Structure, Unit};
-use ntg_runtime::transcribe::Transcription;
 
 use super::{
     Constraint, Discretisation, FORMAT, Finding, Grid, Iteration, Member, Multiplier, Phase, Quantity, Run, Series,
@@ -28,6 +26,8 @@ pub struct Recording<'a> {
     pub problem: &'a dyn Problem,
     /// What the solve said.
     pub report: &'a Report,
+    /// Why there is no solution, where someone asked.
+    pub explanation: Option<&'a ntg_runtime::explain::Explanation>,
     /// The spec.
     pub source: &'a Source,
     /// What the compiler had to say about it.
@@ -55,6 +55,8 @@ impl Recording<'_> {
             iterations: report.iterations,
             seconds: report.seconds,
             violation: Violation { points: report.violation.points, between: report.violation.between },
+            explanation: self.explanation.map(Into::into),
+            refinement: report.refined.as_ref().map(Into::into),
             layout: layout(structure),
             unknowns: solution.coefficients().to_vec(),
             outputs: self.outputs(),
@@ -135,12 +137,12 @@ impl Recording<'_> {
     }
 
     fn discretisation(&self) -> Discretisation {
-        let structure = self.report.solution.structure();
-        let Ok(nlp) = Transcription::new(self.problem) else { return Discretisation::default() };
+        let solution = &self.report.solution;
+        let structure = solution.structure();
         Discretisation {
-            variables: nlp.variables(),
-            coefficients: nlp.coefficients(),
-            rows: nlp.rows(),
+            variables: solution.coefficients().len(),
+            coefficients: solution.spline_coefficients().len(),
+            rows: solution.rows(),
             phases: structure.phases.iter().map(|phase| grid(structure, phase)).collect(),
         }
     }

@@ -21,9 +21,23 @@ struct Candidate {
     curves: Vec<Vec<f64>>,
 }
 
-/// The minima, the best first, each with the starts that led to it. `solved` holds starts with
-/// their reports, in order.
-pub(super) fn minima(solved: Vec<(usize, Report)>) -> Vec<(Minimum, Vec<usize>)> {
+/// Solves that ended at one minimum.
+pub(super) struct Group {
+    /// The numbers of their starts, increasing.
+    pub(super) starts: Vec<usize>,
+    /// The best of them.
+    pub(super) report: Report,
+}
+
+impl Group {
+    pub(super) fn minimum(self) -> Minimum {
+        let first = self.starts.first().copied().unwrap_or(0);
+        Minimum { count: self.starts.len(), first, report: self.report }
+    }
+}
+
+/// The minima, the best first. `solved` holds starts with their reports, in order.
+pub(super) fn minima(solved: Vec<(usize, Report)>) -> Vec<Group> {
     let maximize = solved.first().is_some_and(|(_, r)| r.solution.structure().maximize);
     let mut candidates: Vec<Candidate> = solved
         .into_iter()
@@ -42,11 +56,11 @@ pub(super) fn minima(solved: Vec<(usize, Report)>) -> Vec<(Minimum, Vec<usize>)>
             }
         }
     }
-    let minimum = |(candidate, starts): (Candidate, Vec<usize>)| {
-        let Candidate { start, report, .. } = candidate;
-        (Minimum { count: starts.len(), first: start, report }, starts)
+    let group = |(candidate, mut starts): (Candidate, Vec<usize>)| {
+        starts.sort_unstable();
+        Group { starts, report: candidate.report }
     };
-    found.into_iter().map(minimum).collect()
+    found.into_iter().map(group).collect()
 }
 
 /// Every output at equal parts of its agent's time.

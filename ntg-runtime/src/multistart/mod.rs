@@ -155,7 +155,7 @@ pub struct Minimum {
     pub count: usize,
     /// The first of them, as an index into [`MultiReport::starts`].
     pub first: usize,
-    /// The solve of that start.
+    /// The best of their solves.
     pub report: Report,
 }
 

@@ -7,6 +7,7 @@ use super::{lattice, minima, random};
 use crate::error::Error;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
+use crate::refine::{Refinement, refine};
 use crate::report::Report;
 use crate::settings::{Control, InvalidSetting, Settings};
 use crate::solve::solve_from;
@@ -19,7 +20,9 @@ use std::time::{Duration, Instant};
 /// Solves a problem from many starts around the spec's own guess.
 ///
 /// `Settings::time_limit` holds for everything; starts that have not begun by then are not tried.
-/// `Settings::on_iteration` is called from several threads at once.
+/// `Settings::on_iteration` is called from several threads at once. `Settings::refine` holds for the
+/// minima: starts are solved on the problem's own mesh, then every minimum is refined, and those that
+/// turn out to be the same are put together.
 ///
 /// # Errors
 /// [`Error`] if the problem cannot be set up. A start that fails is no error.
@@ -57,11 +60,14 @@ pub fn multistart_from(
         if watch.cancelled.load(Ordering::Relaxed) || remaining == Some(Duration::ZERO) {
             return None;
         }
-        let settings = Settings { time_limit: remaining, ..settings.clone() };
+        let settings = Settings { time_limit: remaining, refine: None, ..settings.clone() };
         Some(watch.done(plan.solve(problem, number, &settings), nlp.model.structure.maximize))
     });
     let solved: Vec<One> = solved.collect::<Vec<_>>().into_iter().flatten().collect();
     let mut report = gather(solved);
+    if let Some(wanted) = &settings.refine {
+        report.refine(problem, wanted, &settings.after(began.elapsed()))?;
+    }
     report.problem.clone_from(&nlp.model.structure.name);
     report.notes = plan.notes;
     report.seconds = began.elapsed().as_secs_f64();
@@ -213,11 +219,29 @@ fn gather(all: Vec<One>) -> MultiReport {
             Err(_) => {}
         }
     }
-    let mut minima = minima::minima(solved);
-    for (index, (_, members)) in minima.iter().enumerate() {
-        members.iter().for_each(|start| starts[*start].minimum = Some(index));
+    let minima = minima::minima(solved);
+    for (index, minimum) in minima.iter().enumerate() {
+        minimum.starts.iter().for_each(|start| starts[*start].minimum = Some(index));
     }
-    let minima: Vec<_> = minima.drain(..).map(|(minimum, _)| minimum).collect();
+    let minima = minima.into_iter().map(minima::Group::minimum).collect::<Vec<_>>();
     let nearest = nearest.filter(|_| minima.is_empty());
     MultiReport { problem: String::new(), starts, minima, nearest, notes: vec![], seconds: 0.0 }
+}
+
+impl MultiReport {
+    /// Refines every minimum, and puts those together that are one on finer meshes.
+    fn refine(&mut self, problem: &dyn Problem, wanted: &Refinement, settings: &Settings) -> Result<(), Error> {
+        let coarse = std::mem::take(&mut self.minima);
+        let refined = coarse.into_par_iter().map(|minimum| refine(problem, minimum.report, wanted, settings));
+        let refined = refined.collect::<Result<Vec<Report>, Error>>()?;
+        let groups = minima::minima(refined.into_iter().enumerate().collect());
+        let now = |before: usize| groups.iter().position(|group| group.starts.contains(&before));
+        self.starts.iter_mut().for_each(|start| start.minimum = start.minimum.and_then(now));
+        for (index, group) in groups.into_iter().enumerate() {
+            let own = self.starts.iter().enumerate().filter(|(_, start)| start.minimum == Some(index));
+            let starts = own.map(|(number, _)| number).collect();
+            self.minima.push(minima::Group { starts, ..group }.minimum());
+        }
+        Ok(())
+    }
 }

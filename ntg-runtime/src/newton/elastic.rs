@@ -37,6 +37,10 @@ const SHORTEST: f64 = 1e-12;
 pub(super) struct Elastic {
     /// The price of a violation.
     pub(super) price: f64,
+    /// The highest price.
+    pub(super) most: f64,
+    /// The barrier parameter from which on violations count.
+    pub(super) barrier: f64,
     /// The slack of each side; 0 for the bounds of variables.
     pub(super) n: Vec<f64>,
     /// The slacks of each equality, from below and from above.
@@ -67,7 +71,7 @@ fn split_equality(c: f64, price: f64, mu: f64) -> (f64, f64) {
 impl Elastic {
     fn new(sides: &Sides, price: f64) -> Self {
         let (n, below) = (vec![0.0; sides.side.len()], vec![0.0; sides.equality.len()]);
-        Self { price, n, above: below.clone(), below }
+        Self { price, most: LARGEST_PRICE, barrier: f64::INFINITY, n, above: below.clone(), below }
     }
 
     /// The best slacks at a point, and the distances that belong to them; the penalty and barrier.
@@ -232,12 +236,12 @@ impl<N: Nlp> Core<'_, N> {
     pub(super) fn reconsider_price(&mut self) -> Option<Status> {
         let violation = self.sides.violation(&self.quantities);
         let Some(elastic) = &mut self.elastic else { return None };
-        if violation <= self.settings.constraint_tolerance.max(self.mu) {
+        if violation <= self.settings.constraint_tolerance.max(self.mu) || self.mu > elastic.barrier {
             return None;
         }
         let largest = self.sides.z.iter().chain(&self.sides.y).fold(0.0, |most: f64, z| most.max(z.abs()));
         if largest > NEAR * elastic.price {
-            if elastic.price >= LARGEST_PRICE {
+            if elastic.price >= elastic.most {
                 return Some(Status::Infeasible { rows: self.violations() });
             }
             elastic.price *= RAISE;

@@ -74,6 +74,23 @@ pub fn solve_elastic<N: Nlp>(nlp: &N, start: &[f64], settings: &Settings) -> Out
     run(&mut Memory::default(), nlp, (start, Start::Cold), settings, prepare)
 }
 
+/// As [`solve`], with elastic bounds at one price from beginning to end: where the constraints cannot
+/// be met, the sum of violations (scaled) is least, and the objective decides only among such points.
+/// Multipliers are at most the price. That something is violated is believed at this barrier parameter.
+pub(crate) fn solve_at_price<N: Nlp>(
+    nlp: &N,
+    start: &[f64],
+    (price, barrier): (f64, f64),
+    settings: &Settings,
+) -> Outcome {
+    run(&mut Memory::default(), nlp, (start, Start::Cold), settings, |core| {
+        core.enter_elastic(price);
+        if let Some(elastic) = &mut core.elastic {
+            (elastic.most, elastic.barrier) = (price, barrier);
+        }
+    })
+}
+
 fn run<N: Nlp>(
     memory: &mut Memory<N::Workspace>,
     nlp: &N,

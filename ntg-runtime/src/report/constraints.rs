@@ -67,7 +67,7 @@ fn keep(
 }
 
 /// The larger finite bound, or the unit where both are zero or missing (equation 9.3).
-fn scale(lower: f64, upper: f64, unit: f64) -> f64 {
+pub(super) fn scale(lower: f64, upper: f64, unit: f64) -> f64 {
     let largest = bound_size((lower, upper));
     if largest > 0.0 { largest } else { unit }
 }

@@ -33,6 +33,9 @@ impl fmt::Display for Report {
         writeln!(f, "  iterations  {}{steps}, {:.3} ms", self.iterations, 1e3 * self.seconds)?;
         let (points, between) = (self.violation.points, self.violation.between);
         write!(f, "  violation   {points:.1e} at the points, {between:.1e} between them (relative)")?;
+        if let Some(refined) = &self.refined {
+            write!(f, "\n{refined}")?;
+        }
         for time in self.solution.event_times().iter().filter(|(name, _)| !name.contains('(')) {
             write!(f, "\n  {:<11} {} s", time.0, brief(time.1))?;
         }

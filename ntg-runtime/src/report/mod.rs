@@ -12,10 +12,12 @@ mod traces;
 
 pub use traces::Trace;
 
+use crate::refine::Refined;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};
 use crate::sqp::Outcome;
 use crate::status::{Residuals, Status};
 use crate::transcribe::{SetupError, Singular, Transcription};
+use fine::Plan;
 use ntg_structure::{Block, Place, Unit};
 use std::sync::Arc;
 
@@ -80,6 +82,8 @@ pub struct Report {
     pub seconds: f64,
     /// The steps of a continuation in order; one without continuation.
     pub history: Vec<StepReport>,
+    /// What mesh refinement did, where it was asked for.
+    pub refined: Option<Refined>,
     /// What was found; where the status is not solved, the last point.
     pub solution: Solution,
 }
@@ -190,7 +194,7 @@ impl Report {
     pub(crate) fn new(
         nlp: &Transcription,
         outcome: Outcome,
-        fine: &mut fine::Plan,
+        fine: &mut Plan,
         history: Vec<StepReport>,
     ) -> Result<Self, SetupError> {
         let structure = &nlp.model.structure;
@@ -224,6 +228,7 @@ impl Report {
             iterations: history.iter().map(|step| step.iterations).sum(),
             seconds: history.iter().map(|step| step.seconds).sum(),
             history,
+            refined: None,
             solution,
         })
     }
@@ -235,4 +240,19 @@ pub(crate) fn user(nlp: &Transcription, minimised: f64) -> f64 {
     let value = minimised / structure.objective_unit.factor;
     // No negative zero: a person would wonder.
     if structure.maximize { 0.0 - value } else { value }
+}
+
+/// Every relative violation on the finer grid: phase, scaled time, and by how much.
+pub(crate) fn violations(nlp: &Transcription, x: &[f64], samples: usize) -> Result<Vec<(usize, f64, f64)>, SetupError> {
+    let mut found = vec![];
+    Plan::new(nlp, samples)?.evaluate(nlp, x, |checked| {
+        let (lower, upper) = checked.bounds;
+        let unit = nlp.model.structure.constraints[checked.constraint].unit.factor;
+        let missed = crate::nlp::kkt::violation(checked.value, lower, upper);
+        let relative = missed / constraints::scale(lower, upper, unit);
+        if let Some(phase) = checked.point.phase.filter(|_| relative > 0.0) {
+            found.push((phase, checked.point.tau, relative));
+        }
+    })?;
+    Ok(found)
 }

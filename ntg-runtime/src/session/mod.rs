@@ -18,6 +18,7 @@ use crate::method::{self, Start};
 use crate::newton::Memory;
 use crate::outcome::Outcome;
 use crate::problem::Problem;
+use crate::refine::refine;
 use crate::report::fine::Plan;
 use crate::report::{Report, StepReport, user};
 use crate::settings::Settings;
@@ -52,10 +53,19 @@ struct Fine {
 pub(crate) type Task<'a> = (&'a dyn Problem, Option<&'a Guess>);
 
 impl Session {
-    /// Solves a problem from a guess, by continuation where it says so.
+    /// Solves a problem from a guess, by continuation where it says so, and on finer meshes where the
+    /// settings say so.
     pub(crate) fn solve(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
         settings.validate()?;
         let settings = &settings.remembering();
+        let report = self.solve_on_own_mesh(task, settings)?;
+        match &settings.refine {
+            Some(wanted) => refine(task.0, report, wanted, settings),
+            None => Ok(report),
+        }
+    }
+
+    fn solve_on_own_mesh(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
         let began = Instant::now();
         let (problem, guess) = task;
         let structure = problem.structure();
@@ -131,7 +141,10 @@ impl Session {
         let step = record(&nlp, &structure.structure, &[], &once, began);
         let mut report = self.report(nlp, once, vec![step], settings)?;
         report.seconds = began.elapsed().as_secs_f64();
-        Ok(Some(report))
+        match &settings.refine {
+            Some(wanted) => refine(problem, report, wanted, settings).map(Some),
+            None => Ok(Some(report)),
+        }
     }
 
     /// A solution to a rough tolerance, to start from; and the iterations that were spent.

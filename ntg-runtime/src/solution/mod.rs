@@ -102,6 +102,28 @@ impl Solution {
         &self.inner.model.structure
     }
 
+    /// Multipliers of the nonlinear program's rows, SI, of the minimised objective: positive at a lower
+    /// bound, negative at an upper one.
+    pub fn row_multipliers(&self) -> &[f64] {
+        &self.inner.row_multipliers
+    }
+
+    /// Multipliers of the bounds of the nonlinear program's variables, in the sense of
+    /// [`Solution::row_multipliers`].
+    pub fn bound_multipliers(&self) -> &[f64] {
+        &self.inner.bound_multipliers
+    }
+
+    /// How many constraint rows the nonlinear program has.
+    pub fn rows(&self) -> usize {
+        self.inner.rows.len()
+    }
+
+    /// Those of [`Solution::coefficients`] that are coefficients of splines.
+    pub fn spline_coefficients(&self) -> &[f64] {
+        &self.inner.x[..self.inner.model.layout.coefficients]
+    }
+
     /// The variables of the nonlinear program in SI units: spline coefficients first.
     pub fn coefficients(&self) -> &[f64] {
         &self.inner.x

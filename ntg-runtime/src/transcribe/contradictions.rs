@@ -1,12 +1,13 @@
 //! Conditions that boundary conditions alone decide, checked before any iteration.
 //!
 //! Takes the elements; gives the system of linear equalities at single points, from which the
-//! default guess takes known values. Finds: equalities that contradict each other, and rows at
-//! the ends of phases whose inputs are all fixed and that miss their bounds. A row exactly on its
-//! bound is no contradiction.
+//! default guess takes known values. Finds: linear rows that miss their bounds whatever durations and
+//! variables are within theirs, equalities that contradict each other, and rows at the ends of phases
+//! whose inputs are all fixed and that miss their bounds. A row exactly on its bound is no
+//! contradiction.
 
 use super::elements::{Elements, GroupBatch};
-use super::error::SetupError;
+use super::error::{SetupError, Why};
 use super::frame::Frame;
 use super::linear::{Combination, LinearSystem};
 use super::names;
@@ -33,13 +34,24 @@ pub(crate) fn linear_system(
         }
     }
     let mut combinations = combinations(frame, elements);
+    for (row, combination) in combinations.iter().enumerate() {
+        let Some(combination) = combination.as_ref() else { continue };
+        let ((least, most), rounding) = (combination.range(bounds), combination.tolerance());
+        if least > elements.upper[row] {
+            check(frame, elements, (row, least), rounding, Why::Bounds)?;
+        }
+        if most < elements.lower[row] {
+            check(frame, elements, (row, most), rounding, Why::Bounds)?;
+        }
+    }
     for (row, combination) in combinations.iter_mut().enumerate() {
         let Some(combination) = combination else { continue };
         let bound = elements.lower[row];
         if bound == elements.upper[row] {
             combination.add_scaled(-1.0, &Combination::constant(bound));
             if let Err(residual) = system.add(combination) {
-                return Err(contradiction(frame, elements, row, bound + residual, bound));
+                let found = (row, bound + residual);
+                return Err(contradiction(frame, elements, found, bound, Why::Conditions));
             }
         }
     }
@@ -47,7 +59,7 @@ pub(crate) fn linear_system(
         let (lower, upper) = (elements.lower[row], elements.upper[row]);
         let Some(combination) = combination.as_ref().filter(|_| lower < upper) else { continue };
         if let Some(known) = system.known(combination) {
-            check(frame, elements, row, known.constant, known.tolerance())?;
+            check(frame, elements, (row, known.constant), known.tolerance(), Why::Conditions)?;
         }
     }
     known_rows(frame, elements, &system)?;
@@ -109,41 +121,42 @@ fn affine_row(block: &Block, values: &BlockValues, element: usize, row: usize) -
     sum
 }
 
-/// Checks rows at the ends of phases whose slots are all determined.
+/// Checks rows at the ends of phases whose own slots are all determined.
 fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Result<(), SetupError> {
     for (index, group) in elements.batches.iter().enumerate() {
         let block = &elements.blocks[index];
-        let ends: Vec<usize> = (0..block.elements).filter(|e| at_end(block.tau[*e])).collect();
-        if ends.is_empty() {
-            continue;
-        }
         let mut u = vec![f64::NAN; block.slots * block.elements];
-        let mut determined = vec![];
-        for element in ends {
-            let slots: Option<Vec<f64>> =
-                (0..block.slots).map(|s| system.value(&slot_map(block, element, s))).collect();
-            for (slot, value) in slots.iter().flatten().enumerate() {
-                u[slot * block.elements + element] = *value;
+        let mut ends = vec![];
+        for element in (0..block.elements).filter(|e| at_end(block.tau[*e])) {
+            for slot in 0..block.slots {
+                if let Some(value) = system.value(&slot_map(block, element, slot)) {
+                    u[slot * block.elements + element] = value;
+                }
             }
-            determined.extend(slots.map(|_| element));
+            let rows = 0..block.rows;
+            let known = |slot: usize| !u[slot * block.elements + element].is_nan();
+            ends.extend(rows.filter(|row| slots_of(block, *row).all(known)).map(|row| (element, row)));
         }
-        if determined.is_empty() {
+        if ends.is_empty() {
             continue;
         }
         let mut work = group.batch.node.work();
         group.batch.node.values(frame.problem, frame.tables, &u, &mut work);
-        for element in determined {
-            for row in 0..block.rows {
-                let at = row * block.elements + element;
-                let Target::Row(target) = block.target[at] else { continue };
-                let (target, value) = (target as usize, work.values[at]);
-                if elements.rows[target].maker == (index, element, row) && value.is_finite() {
-                    check(frame, elements, target, value, ROUNDING * value.abs())?;
-                }
+        for (element, row) in ends {
+            let at = row * block.elements + element;
+            let Target::Row(target) = block.target[at] else { continue };
+            let (target, value) = (target as usize, work.values[at]);
+            if elements.rows[target].maker == (index, element, row) && value.is_finite() {
+                check(frame, elements, (target, value), ROUNDING * value.abs(), Why::Conditions)?;
             }
         }
     }
     Ok(())
+}
+
+/// The slots on which a row depends.
+fn slots_of(block: &Block, row: usize) -> impl Iterator<Item = usize> {
+    block.jacobian.iter().filter(move |entry| entry.0 == row).map(|entry| entry.1)
 }
 
 fn at_end(tau: f64) -> bool {
@@ -157,21 +170,27 @@ fn slot_map(block: &Block, element: usize, slot: usize) -> AffineMap {
     AffineMap { terms, offset: block.offset[slot * block.elements + element] }
 }
 
-/// Compares a determined value with its row's bounds.
-fn check(frame: &Frame, elements: &Elements, row: usize, value: f64, rounding: f64) -> Result<(), SetupError> {
+/// Compares a row's value with its bounds.
+fn check(
+    frame: &Frame,
+    elements: &Elements,
+    (row, value): (usize, f64),
+    rounding: f64,
+    why: Why,
+) -> Result<(), SetupError> {
     let (lower, upper) = (elements.lower[row], elements.upper[row]);
     let RowKind::Constraint(constraint) = elements.rows[row].kind else { return Ok(()) };
     // Where the bound is 0 rounding has no size of its own; a smaller miss is left to the solver.
     let smallest = ROUNDING * frame.structure.constraints[constraint].unit.factor;
     for (bound, miss) in [(lower, lower - value), (upper, value - upper)] {
         if miss > rounding + ROUNDING * bound.abs() + smallest {
-            return Err(contradiction(frame, elements, row, value, bound));
+            return Err(contradiction(frame, elements, (row, value), bound, why));
         }
     }
     Ok(())
 }
 
-fn contradiction(frame: &Frame, elements: &Elements, row: usize, value: f64, bound: f64) -> SetupError {
+fn contradiction(frame: &Frame, elements: &Elements, (row, value): (usize, f64), bound: f64, why: Why) -> SetupError {
     let info = &elements.rows[row];
     let RowKind::Constraint(constraint) = info.kind else {
         return SetupError::malformed("the definition of an integral contradicts a boundary condition");
@@ -182,5 +201,6 @@ fn contradiction(frame: &Frame, elements: &Elements, row: usize, value: f64, bou
         point if point.is_empty() => words,
         point => format!("{words} at {point}"),
     };
-    SetupError::Contradiction { what, value, bound, unit: declared.unit.clone(), place: declared.place.clone() }
+    let (unit, place) = (declared.unit.clone(), declared.place.clone());
+    SetupError::Contradiction { what, value, bound, why, unit, place }
 }

@@ -33,7 +33,7 @@ pub enum SetupError {
         /// Where it stands.
         place: Place,
     },
-    /// Boundary conditions fix a value that a constraint forbids.
+    /// Boundary conditions or bounds leave a value that a constraint forbids.
     Contradiction {
         /// The constraint that cannot be met.
         what: String,
@@ -41,6 +41,8 @@ pub enum SetupError {
         value: f64,
         /// The bound that it misses, in SI units.
         bound: f64,
+        /// What leaves that value and no other.
+        why: Why,
         /// The unit in which both are shown.
         unit: Unit,
         /// Where the constraint stands.
@@ -96,6 +98,15 @@ pub enum SetupError {
     },
 }
 
+/// What leaves a constraint no value that it allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// Other conditions at the same point fix it.
+    Conditions,
+    /// Durations, starts and variables within their bounds reach no better one.
+    Bounds,
+}
+
 impl SetupError {
     /// The code under which the language's documentation explains the same mistake, if it does.
     pub fn code(&self) -> Option<&'static str> {
@@ -131,9 +142,14 @@ impl SetupError {
                 let (lower, upper) = (show(*lower, unit), show(*upper, unit));
                 format!("the bounds of {what} cross: no number lies between {lower} and {upper}")
             }
-            Self::Contradiction { what, value, bound, unit, .. } => {
+            Self::Contradiction { what, value, bound, why, unit, .. } => {
+                let side = if value > bound { "at least" } else { "at most" };
                 let (value, bound) = (show(*value, unit), show(*bound, unit));
-                format!("{what} cannot hold: the other conditions there make it {value}, and its bound is {bound}")
+                let why = match why {
+                    Why::Conditions => format!("the other conditions there make it {value}"),
+                    Why::Bounds => format!("durations and variables within their bounds make it {side} {value}"),
+                };
+                format!("{what} cannot hold: {why}, and its bound is {bound}")
             }
             Self::IndexOutOfRange { what, index, first, last, .. } if last < first => {
                 format!("{what} has no member {index}: it is empty")

@@ -52,6 +52,16 @@ impl Combination {
         self.size += times.abs() * other.size;
     }
 
+    /// The least and the greatest value for variables within their bounds.
+    pub(crate) fn range(&self, bounds: &[(f64, f64)]) -> (f64, f64) {
+        self.terms.iter().fold((self.constant, self.constant), |(least, most), (variable, c)| {
+            let (lower, upper) = bounds[*variable as usize];
+            let (a, b) = if *c < 0.0 { (upper, lower) } else { (lower, upper) };
+            // A variable that has cancelled out may be unbounded.
+            if *c == 0.0 { (least, most) } else { (least + c * a, most + c * b) }
+        })
+    }
+
     fn largest(&self) -> Option<(u32, f64)> {
         let larger = |best: Option<(u32, f64)>, (v, c): (&u32, &f64)| match best {
             Some((_, held)) if held.abs() >= c.abs() => best,

@@ -33,7 +33,7 @@ pub(crate) mod slots;
 mod tables;
 pub(crate) mod times;
 
-pub use error::SetupError;
+pub use error::{SetupError, Why};
 pub use evaluate::Workspace;
 pub use singular::Singular;
 pub(crate) use singular::singular;

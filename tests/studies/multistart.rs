@@ -1,12 +1,9 @@
 //! Many starts: the known minima are found whatever the seed, and the result depends on nothing else.
 
-#[allow(dead_code, reason = "each binary of tests uses a part of this module")]
-#[path = "known_answers/support.rs"]
-mod support;
-
 use ntg::prelude::*;
 use ntg::runtime::multistart::{Origin, multistart};
-use support::{Shipped, close};
+
+use crate::support::{Shipped, close};
 
 const B1: f64 = 128.252_905_291;
 const B2: f64 = 130.907_227_498;

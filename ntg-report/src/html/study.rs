@@ -1,0 +1,69 @@
+//! Why there is no solution, and how the mesh was refined.
+
+use maud::{Markup, html};
+
+use super::tables::{number, place_words, seconds, small, with_unit};
+use crate::run::Run;
+
+/// The constraints that cannot hold together; nothing where there is nothing to explain.
+pub(super) fn explanation(run: &Run) -> Markup {
+    let Some(found) = &run.explanation else { return html! {} };
+    html! {
+        section #infeasible {
+            h2 { "Why there is no solution" }
+            p.advice { (capitalised(&found.words)) }
+            @if !found.parts.is_empty() {
+                div.scroll { table {
+                    thead { tr { th { "constraint or bound" } th.n { "line" } th.n { "missed by" } th { "where" } } }
+                    tbody { @for part in &found.parts {
+                        tr {
+                            td.name {
+                                (part.name)
+                                @if !part.bound && !part.indices.is_empty() { (format!("{:?}", part.indices)) }
+                            }
+                            td.n { @if part.line > 0 { (part.line) } }
+                            td.n { @if part.amount != 0.0 { (with_unit(part.amount, &part.unit)) } @else { "–" } }
+                            td { @if part.amount != 0.0 { (place_words(part.t, &part.phase).trim_start()) } @else { "holds only because others do not" } }
+                        }
+                    } }
+                } }
+                p.quiet { "Amounts are those of the least sum of violations near the last point, each relative to the size of its bounds." }
+            }
+        }
+    }
+}
+
+/// The rounds of refinement; nothing without.
+pub(super) fn refinement(run: &Run) -> Markup {
+    let Some(found) = &run.refinement else { return html! {} };
+    html! {
+        section #refinement {
+            h2 { "Refinement of the mesh" }
+            p.advice[!found.met] { "To " (small(found.tolerance)) ": " (found.status) "." }
+            div.scroll { table {
+                thead { tr {
+                    th.n { "round" } th.n { "intervals" } th.n { "variables" } th.n { "objective" }
+                    th.n title="objective against its finer integral" { "quadrature" }
+                    th.n title="of the finer integral since the round before" { "change" }
+                    th.n title="largest, between points" { "violation" } th.n { "iterations" } th.n { "time" }
+                } }
+                tbody { @for (index, round) in found.rounds.iter().enumerate() {
+                    tr {
+                        td.n { (index + 1) } td.n { (round.intervals) } td.n { (round.variables) }
+                        td.n { (number(round.objective)) } td.n { (small(round.quadrature)) }
+                        td.n { @if round.change.is_finite() { (small(round.change)) } }
+                        td.n { (small(round.violation)) } td.n { (round.iterations) } td.n { (seconds(round.seconds)) }
+                    }
+                } }
+            } }
+            p.quiet { "Errors are relative: of the cost as discretised against a finer integral, of that integral from round to round, and the largest violation between points." }
+        }
+    }
+}
+
+/// The first letter in upper case, and a full stop for the colon of a list.
+fn capitalised(words: &str) -> String {
+    let mut letters = words.trim_end_matches(':').chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
+}

@@ -1,0 +1,64 @@
+//! A conflict as a person reads about it.
+
+use super::{Conflict, Explanation, Part};
+use crate::transcribe::names::brief;
+use std::fmt;
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Conflict(conflict) => conflict.fmt(f),
+            Self::Consistent => f.write_str(
+                "all constraints can hold together near the last point: it is not they that keep the solve from a \
+                 solution",
+            ),
+            Self::Unknown => {
+                f.write_str("whether all constraints can hold together near the last point was not found in time")
+            }
+        }
+    }
+}
+
+impl fmt::Display for Conflict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("near the last point these cannot hold together")?;
+        f.write_str(if self.minimal {
+            "; without any one of them the others could:"
+        } else {
+            "; perhaps some of them are not needed for that (time ran out):"
+        })?;
+        self.parts.iter().try_for_each(|part| write!(f, "\n  {part}"))
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words())?;
+        if self.place.line > 0 {
+            write!(f, " (line {}, column {})", self.place.line, self.place.column)?;
+        }
+        if self.amount == 0.0 {
+            return f.write_str(", which holds only because others do not");
+        }
+        write!(f, ", missed by {}", brief(self.amount))?;
+        if !self.unit.symbol.is_empty() {
+            write!(f, " {}", self.unit.symbol)?;
+        }
+        if let Some(time) = self.time {
+            write!(f, " at t = {} s", brief(time))?;
+        }
+        if self.phase.is_empty() { Ok(()) } else { write!(f, " in `{}`", self.phase) }
+    }
+}
+
+impl Part {
+    /// What it is: "`turn`[2]", "the upper bound of the duration of phase `covert`".
+    pub fn words(&self) -> String {
+        match (self.is_bound, &self.indices[..]) {
+            (true, _) => self.name.clone(),
+            (false, []) => format!("`{}`", self.name),
+            (false, [index]) => format!("`{}`[{index}]", self.name),
+            (false, several) => format!("`{}`{several:?}", self.name),
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! Which constraints cannot hold together, where, and by how much (docs/maths.md, section 13).
+//!
+//! Takes a transcription and the point at which a solve ended; minimises the sum of violations from
+//! there, and then leaves out constraints as long as the others remain contradictory. What is left
+//! is a conflict in which, around that point, every constraint is needed.
+//!
+//! The method finds local minima, so the conflict is one *near the point*: elsewhere the constraints
+//! may hold together.
+
+mod display;
+mod near;
+mod parts;
+
+use crate::error::Error;
+use crate::newton;
+use crate::nlp::{Nlp, kkt};
+use crate::outcome::Outcome;
+use crate::problem::Problem;
+use crate::report::Report;
+use crate::settings::Settings;
+use crate::status::Status;
+use crate::transcribe::Transcription;
+use crate::transcribe::rows::RowKind;
+use near::{Near, Row};
+use ntg_structure::{Block, Place, Unit};
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::{Duration, Instant};
+
+/// A sum of scaled violations below this is none.
+const NOTHING: f64 = 1e-6;
+/// A multiplier below this part of the largest does not count.
+const IDLE: f64 = 1e-3;
+/// The price of a violation, in units of half the squared distance from the point before.
+const PRICE: f64 = 1e2;
+/// The barrier parameter at which a violation is believed, and the one at which it is measured.
+const ROUGH: f64 = 1.0;
+const FINE: f64 = 1e-6;
+/// A sum of violations is least when another round lowers it by less than this part.
+const LEAST: f64 = 1e-2;
+/// A sum of violations below this part of that of the conflict is as good as none.
+const AS_GOOD_AS_NONE: f64 = 1e-2;
+/// Rounds in which the least violation is looked for, each near the point before; of these, how many
+/// may end without a minimum.
+const ROUNDS: usize = 12;
+const FRUITLESS: usize = 3;
+/// Iterations of a round.
+const ITERATIONS: usize = 100;
+/// The tolerance of the search: a minimum to that many digits says which constraints matter.
+const TOLERANCE: f64 = 1e-7;
+/// The search for a smaller conflict ends after that long.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Why a solve ended without a solution, as far as constraints are the reason.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Explanation {
+    /// These constraints cannot hold together near the last point.
+    Conflict(Conflict),
+    /// All constraints can hold together near the last point: the reason is another one.
+    Consistent,
+    /// Neither could be shown in the time that was given.
+    Unknown,
+}
+
+/// Constraints that cannot hold together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conflict {
+    /// The constraints and bounds, those that are violated first.
+    pub parts: Vec<Part>,
+    /// Whether every one of them is known to be needed.
+    pub minimal: bool,
+    /// The least sum of violations, each relative to its constraint's scale.
+    pub violation: f64,
+}
+
+/// A constraint or a bound that is part of a conflict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Its name, or its text in the spec; for bounds what is bounded.
+    pub name: String,
+    /// Whether it is a bound of a duration, a start or a variable, and no constraint.
+    pub is_bound: bool,
+    /// The indices of the member that is violated most; empty for what has no members.
+    pub indices: Vec<i64>,
+    /// Where it stands.
+    pub place: Place,
+    /// By how much it is violated at most where the sum of violations is least, in `unit`; 0 for
+    /// what holds there, but only because others do not.
+    pub amount: f64,
+    /// The unit of `amount`.
+    pub unit: Unit,
+    /// The mission time of that violation, or of the largest multiplier, in seconds; none for what
+    /// belongs to no point.
+    pub time: Option<f64>,
+    /// The phase's path; empty without one.
+    pub phase: String,
+}
+
+/// The least violation of some constraints.
+struct Relaxed {
+    outcome: Outcome,
+    /// The rows there.
+    rows: Vec<f64>,
+    /// The sum of their violations, each relative to its scale.
+    violation: f64,
+}
+
+/// Constraints, as indices into `Structure::constraints`.
+type Constraints = BTreeSet<usize>;
+
+impl Explanation {
+    /// The conflict, if there is one.
+    pub fn conflict(&self) -> Option<&Conflict> {
+        match self {
+            Self::Conflict(conflict) => Some(conflict),
+            Self::Consistent | Self::Unknown => None,
+        }
+    }
+}
+
+impl Report {
+    /// Why no solution was found: the constraints that cannot hold together near the last point.
+    /// None where there is nothing to explain: the problem was solved, or the solve was stopped (by
+    /// its caller or its time limit), or its last point is not finite. The problem must be the one that was solved, with the same
+    /// parameters.
+    ///
+    /// The search takes at most ten seconds, or `Settings::time_limit` where that is shorter, and
+    /// `Settings::on_iteration` may cancel it.
+    ///
+    /// # Errors
+    /// [`Error`] if the problem cannot be set up.
+    pub fn explain(&self, problem: &dyn Problem, settings: &Settings) -> Result<Option<Explanation>, Error> {
+        settings.validate()?;
+        let stopped = matches!(self.status, Status::Cancelled | Status::TimeLimit | Status::Contradiction { .. });
+        let x = self.solution.coefficients();
+        if self.is_solved() || stopped || x.iter().any(|v| !v.is_finite()) {
+            return Ok(None);
+        }
+        let mut nlp = Transcription::with(problem, self.solution.structure().clone())?;
+        if x.len() != nlp.variables() {
+            return Ok(None);
+        }
+        nlp.set_scales(x, settings)?;
+        Ok(Some(near(&nlp, x, settings)))
+    }
+}
+
+/// Why constraints cannot hold near a point.
+fn near(nlp: &Transcription, x: &[f64], settings: &Settings) -> Explanation {
+    let until = Instant::now() + settings.time_limit.map_or(PATIENCE, |limit| limit.min(PATIENCE));
+    let search = Search { nlp, settings: &settings.remembering(), until };
+    let all: Constraints = (0..nlp.rows()).filter_map(|row| search.constraint(row)).collect();
+    let Some(relaxed) = search.least(&all, x, NOTHING) else { return Explanation::Unknown };
+    if relaxed.violation <= NOTHING {
+        return Explanation::Consistent;
+    }
+    let (mut kept, mut relaxed) = match search.without_idle(&all, &relaxed) {
+        Some(fewer) => fewer,
+        None => (all, relaxed),
+    };
+    let mut open = search.order(&kept, &relaxed);
+    // What cannot be decided among many constraints is asked again among few.
+    for _ in 0..2 {
+        for constraint in std::mem::take(&mut open) {
+            let mut without = kept.clone();
+            without.remove(&constraint);
+            let none = AS_GOOD_AS_NONE * relaxed.violation;
+            match search.least(&without, &relaxed.outcome.x, none) {
+                Some(fewer) if fewer.violation > none => (kept, relaxed) = (without, fewer),
+                Some(_) => {}
+                None => open.push(constraint),
+            }
+        }
+    }
+    let measured = search.round(&kept, &relaxed.outcome.x, FINE).filter(Relaxed::is_infeasible);
+    Explanation::Conflict(search.conflict(&kept, &measured.unwrap_or(relaxed), open.is_empty()))
+}
+
+impl Relaxed {
+    fn is_infeasible(&self) -> bool {
+        matches!(self.outcome.status, Status::Infeasible { .. })
+    }
+}
+
+struct Search<'a> {
+    nlp: &'a Transcription<'a>,
+    settings: &'a Settings,
+    until: Instant,
+}
+
+impl Search<'_> {
+    /// The constraint that a row belongs to; none for definitions and joints, which always hold.
+    fn constraint(&self, row: usize) -> Option<usize> {
+        match self.nlp.elements.rows[row].kind {
+            RowKind::Constraint(constraint) => {
+                let block = self.nlp.model.structure.constraints[constraint].block;
+                (block != Block::Continuity).then_some(constraint)
+            }
+            RowKind::Integral(_) => None,
+        }
+    }
+
+    /// The least violation of some constraints, without the others; none where it was not found in
+    /// time. Below `enough` it is not looked for any further.
+    fn least(&self, kept: &Constraints, x: &[f64], enough: f64) -> Option<Relaxed> {
+        let mut relaxed = self.round(kept, x, ROUGH)?;
+        let mut fruitless = 0;
+        for _ in 1..ROUNDS {
+            if relaxed.violation <= enough {
+                return Some(relaxed);
+            }
+            fruitless += usize::from(!relaxed.is_infeasible());
+            if fruitless >= FRUITLESS {
+                return None;
+            }
+            let before = relaxed.violation;
+            relaxed = self.round(kept, &relaxed.outcome.x, ROUGH)?;
+            if relaxed.is_infeasible() && relaxed.violation >= (1.0 - LEAST) * before {
+                return Some(relaxed);
+            }
+        }
+        None
+    }
+
+    /// The least violation as far as it lies near a point; none where time is up.
+    fn round(&self, kept: &Constraints, x: &[f64], barrier: f64) -> Option<Relaxed> {
+        let remaining = self.until.saturating_duration_since(Instant::now());
+        if remaining.is_zero() {
+            return None;
+        }
+        let row = |row: usize| match self.constraint(row) {
+            None => Row::Firm,
+            Some(constraint) if kept.contains(&constraint) => Row::Elastic,
+            Some(_) => Row::Free,
+        };
+        let rows: Vec<Row> = (0..self.nlp.rows()).map(row).collect();
+        let near = Near::new(self.nlp, x, &rows);
+        let settings = Settings {
+            tolerance: TOLERANCE,
+            constraint_tolerance: TOLERANCE,
+            max_iterations: ITERATIONS,
+            time_limit: Some(remaining),
+            ..self.settings.clone()
+        };
+        let outcome = newton::solve_at_price(&near, x, (PRICE, barrier), &settings);
+        if matches!(outcome.status, Status::Cancelled | Status::TimeLimit | Status::NotFinite(_)) {
+            return None;
+        }
+        let (mut work, mut out) = near.workspace();
+        near.values(&outcome.x, &mut work, &mut out).ok()?;
+        let limits = near.limits();
+        let missed = |i: usize| kkt::violation(out.rows[i], limits.row_lower[i], limits.row_upper[i]);
+        let sum = (0..near.rows()).map(|i| missed(i) / self.nlp.limits.row_scale[i]).sum();
+        let violation = if outcome.status.is_solved() { 0.0 } else { sum };
+        Some(Relaxed { rows: out.rows, outcome, violation })
+    }
+
+    /// The sum of scaled multipliers of each constraint, and the largest single one.
+    fn weights(&self, relaxed: &Relaxed) -> (BTreeMap<usize, f64>, f64) {
+        let (mut sums, mut largest) = (BTreeMap::new(), 0.0_f64);
+        for (row, multiplier) in relaxed.outcome.row_multipliers.iter().enumerate() {
+            let size = multiplier.abs() * self.nlp.limits.row_scale[row];
+            largest = largest.max(size);
+            if let Some(constraint) = self.constraint(row) {
+                *sums.entry(constraint).or_insert(0.0) += size;
+            }
+        }
+        (sums, largest)
+    }
+
+    /// The constraints that the least violation pushes against, where they alone are a conflict.
+    fn without_idle(&self, all: &Constraints, relaxed: &Relaxed) -> Option<(Constraints, Relaxed)> {
+        let (sums, largest) = self.weights(relaxed);
+        let pushed = |c: &usize| sums.get(c).copied().unwrap_or(0.0) > IDLE * largest;
+        let kept: Constraints = all.iter().copied().filter(pushed).collect();
+        let none = AS_GOOD_AS_NONE * relaxed.violation;
+        let fewer = self.least(&kept, &relaxed.outcome.x, none)?;
+        (fewer.violation > none).then_some((kept, fewer))
+    }
+
+    /// The constraints in the order in which they are left out: those that matter least first.
+    fn order(&self, kept: &Constraints, relaxed: &Relaxed) -> Vec<usize> {
+        let (sums, _) = self.weights(relaxed);
+        let mut order: Vec<usize> = kept.iter().copied().collect();
+        order.sort_by(|a, b| sums.get(a).unwrap_or(&0.0).total_cmp(sums.get(b).unwrap_or(&0.0)));
+        order
+    }
+}

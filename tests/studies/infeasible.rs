@@ -1,0 +1,151 @@
+//! Infeasible problems say which constraints cannot hold together, and certain contradictions are
+//! found before any iteration.
+
+use ntg::prelude::*;
+use ntg::runtime::explain::{Conflict, Explanation};
+use ntg::runtime::transcribe::{SetupError, Why};
+
+use crate::support::Shipped;
+
+/// The conflict behind a problem without solution. The Newton method alone ends sooner, so that
+/// most tests ask for it.
+#[track_caller]
+fn conflict(problem: &Shipped, method: Method) -> Conflict {
+    let settings = Settings { method, ..Settings::default() };
+    let report = solve(problem.problem(), &settings).unwrap_or_else(|error| panic!("{error}"));
+    assert!(!report.is_solved(), "{report}");
+    let found = report.explain(problem.problem(), &settings).unwrap_or_else(|error| panic!("{error}"));
+    let Some(Explanation::Conflict(found)) = found else { panic!("no conflict: {report}\n{found:?}") };
+    assert!(found.minimal, "{found}");
+    assert!(found.parts[0].amount > 0.0 && found.violation > 0.0, "{found}");
+    assert!(found.parts.iter().all(|part| part.place.line > 0), "{found}");
+    found
+}
+
+fn names(found: &Conflict) -> Vec<&str> {
+    let mut names: Vec<&str> = found.parts.iter().map(|part| part.name.as_str()).collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn a_signature_that_the_target_does_not_allow() {
+    // At the target the radar stands 37 degrees below the horizon, where even nose-in shows 3.2.
+    let found = conflict(&Shipped::spec("low_observable").with("signature_max", &[2.0]), Method::Auto);
+    assert_eq!(names(&found), ["arrival", "low_observable"], "{found}");
+}
+
+#[test]
+fn the_least_violation_is_the_distance_that_is_missing() {
+    // A car that drives at most 2 m/s for 3 s comes 4 m short of 10 m, whatever else holds.
+    let short = Shipped::text(
+        "problem Short {
+            duration T = 3 [s];
+            param far = 10 [m];
+            output x [m]: spline(order = 4, intervals = 3);
+            collocation gauss(points = 4);
+            minimize integral(der(x, 2)^2);
+            initial { x == 0; }
+            trajectory { fast: der(x) <= 2 [m/s]; gentle: -50 [m/s^2] <= der(x, 2) <= 50 [m/s^2]; same: 2 * der(x) <= 90 [m/s]; }
+            final { goal: x == far; }
+        }",
+    );
+    let found = conflict(&short, Method::Auto);
+    assert_eq!(names(&found), ["fast", "goal", "x == 0"], "{found}");
+    let missed: f64 = found.parts.iter().map(|part| part.amount).fold(0.0, f64::max);
+    assert!((missed - 4.0).abs() < 1e-4, "{found}");
+}
+
+#[test]
+fn a_constraint_said_twice_is_named_once_and_others_not_at_all() {
+    let edits = [(
+        "        low_observable: signature <= signature_max;",
+        "        low_observable: signature <= signature_max;
+        again: signature <= signature_max;
+        weaker: signature <= signature_max + 3;
+        high: altitude + 0 * x >= 1 [km];
+        wide: -500 [km] <= x <= 500 [km];",
+    )];
+    let found = conflict(&Shipped::edited("low_observable", &edits).with("signature_max", &[2.0]), Method::Newton);
+    let names = names(&found);
+    assert!(names == ["again", "arrival"] || names == ["arrival", "low_observable"], "{found}");
+}
+
+#[test]
+fn a_speed_range_too_slow_for_the_time() {
+    // 135 km in 150 s at no more than 0.25 km/s.
+    let edits = [("duration T in 100 .. 3000 [s];", "duration T in 100 .. 150 [s];")];
+    let found = conflict(&Shipped::edited("low_observable", &edits).with("signature_max", &[7.0]), Method::Newton);
+    let names = names(&found);
+    for needed in ["speed_limits", "arrival", "the upper bound of the duration of the trajectory"] {
+        assert!(names.contains(&needed), "{needed}: {found}");
+    }
+    assert!(names.iter().any(|name| name.contains("_start")), "{found}");
+    assert!(!names.contains(&"turn") && !names.contains(&"low_observable"), "{found}");
+}
+
+#[test]
+fn durations_that_contradict_their_sum_are_found_before_any_iteration() {
+    let phases = "param longest = 150 [s];
+        phase covert { duration in 100 .. 1000 [s]; }
+        phase exposed after covert { duration in 60 .. 80 [s]; }
+        duration T in 100 [s] .. longest;";
+    let edits = [("duration T in 100 .. 3000 [s];", phases), ("        T = 900 [s];\n", "")];
+    let problem = Shipped::edited("low_observable", &edits);
+    let error = solve(problem.problem(), &Settings::default()).expect_err("the phases alone last 160 s");
+    let Error::Setup(error) = error else { panic!("{error}") };
+    let SetupError::Contradiction { value, bound, why, .. } = &error else { panic!("{error}") };
+    assert_eq!((*value, *bound, *why), (160.0, 150.0, Why::Bounds), "{error}");
+    assert!(error.to_string().contains("at least 160 s, and its bound is 150 s [E057] (line"), "{error}");
+}
+
+#[test]
+fn phases_that_contradict_each_other_are_named_with_their_phase() {
+    // At no more than 0.25 km/s nobody comes from 40 km away to within 1 km of the target in 60 s.
+    let phases = "phase away {
+            duration in 100 .. 1000 [s];
+            final { still_far: hypot(x - x_target, y - y_target) >= 40 [km]; }
+        }
+        phase dash after away { duration in 20 .. 60 [s]; }
+        duration T in 100 .. 1100 [s];";
+    let edits = [
+        ("duration T in 100 .. 3000 [s];", phases),
+        ("        T = 900 [s];\n", "        duration(away) = 600 [s]; duration(dash) = 50 [s];\n"),
+    ];
+    let found = conflict(&Shipped::edited("low_observable_cosine", &edits), Method::Newton);
+    let expected =
+        ["arrival", "away.still_far", "dash.speed_limits", "the upper bound of the duration of phase `dash`"];
+    assert_eq!(names(&found), expected, "{found}");
+    let speed = found.parts.iter().find(|part| part.name == "dash.speed_limits").expect("it is named");
+    assert_eq!(speed.phase, "dash", "{found}");
+}
+
+#[test]
+fn a_position_that_a_phase_forbids_is_found_before_any_iteration() {
+    let edits = [("        turn: -1", "        east_only: x >= -50 [km];\n        turn: -1")];
+    let problem = Shipped::edited("low_observable", &edits);
+    let error = solve(problem.problem(), &Settings::default()).expect_err("the flight begins at -100 km");
+    assert!(error.to_string().contains("east_only"), "{error}");
+}
+
+#[test]
+fn a_solved_problem_has_no_conflict_and_one_that_ended_early_none_either() {
+    let problem = Shipped::spec("van_der_pol");
+    let report = problem.solve();
+    assert_eq!(report.explain(problem.problem(), &Settings::default()), Ok(None));
+
+    let problem = Shipped::spec("low_observable").with("signature_max", &[7.0]);
+    let early = Settings { max_iterations: 1, ..Settings::default() };
+    let report = solve(problem.problem(), &early).unwrap_or_else(|error| panic!("{error}"));
+    let found = report.explain(problem.problem(), &Settings::default());
+    assert_eq!(found, Ok(Some(Explanation::Consistent)), "{report}");
+}
+
+#[test]
+fn the_search_for_reasons_can_be_cancelled() {
+    let problem = Shipped::spec("low_observable").with("signature_max", &[2.0]);
+    let report = solve(problem.problem(), &Settings::default()).unwrap_or_else(|error| panic!("{error}"));
+    let cancel: ntg::runtime::settings::OnIteration = std::sync::Arc::new(|_| Control::Cancel);
+    let settings = Settings { on_iteration: Some(cancel), ..Settings::default() };
+    assert_eq!(report.explain(problem.problem(), &settings), Ok(Some(Explanation::Unknown)));
+}

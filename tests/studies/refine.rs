@@ -1,0 +1,115 @@
+//! Refinement brings cost and constraints to the tolerance, or says why it does not.
+
+use ntg::prelude::*;
+use ntg::runtime::multistart::multistart;
+use ntg::runtime::refine::{RefineStatus, Refined, Refinement};
+
+use crate::support::{Shipped, close};
+
+fn wanted(refinement: Refinement) -> Settings {
+    Settings { refine: Some(refinement), ..Settings::default() }
+}
+
+#[track_caller]
+fn run(problem: &Shipped, settings: &Settings) -> (Report, Refined) {
+    let report = solve(problem.problem(), settings).unwrap_or_else(|error| panic!("{error}"));
+    let refined = report.refined.clone().unwrap_or_else(|| panic!("not refined: {report}"));
+    (report, refined)
+}
+
+/// Refines to a tolerance, which must be met, in steps that make the mesh finer.
+#[track_caller]
+fn to(problem: &Shipped, tolerance: f64) -> (Report, Refined) {
+    let (report, refined) = run(problem, &wanted(Refinement::to(tolerance)));
+    assert_eq!(refined.status, RefineStatus::Met, "{report}");
+    assert!(refined.rounds.windows(2).all(|pair| pair[0].variables < pair[1].variables), "{report}");
+    assert!(report.violation.between <= tolerance, "{report}");
+    (report, refined)
+}
+
+#[test]
+fn the_oscillator_reaches_its_limit() {
+    // From 1.69393 on two intervals, whatever rule integrates.
+    let (report, refined) = to(&Shipped::spec("van_der_pol_gauss"), 1e-9);
+    close(report.objective, 1.685_683_273_76, 1e-8);
+    assert_eq!(report.iterations, refined.rounds.iter().map(|round| round.iterations).sum::<usize>());
+}
+
+#[test]
+fn equally_spaced_points_are_doubled() {
+    let (report, _) = to(&Shipped::spec("van_der_pol"), 1e-5);
+    close(report.objective, 1.685_683_273_76, 2e-5);
+}
+
+#[test]
+fn the_flight_keeps_its_limits_between_the_points() {
+    let (report, refined) = to(&Shipped::spec("low_observable_gauss").with("signature_max", &[7.0]), 1e-6);
+    let last = &refined.rounds[refined.rounds.len() - 1];
+    assert!(last.change < 1e-5 && last.quadrature < 1e-5, "{report}");
+}
+
+#[test]
+fn phases_and_continuation_are_refined_together() {
+    let edits = [
+        ("continuation width = (20, 10, 5, 2, 1) [deg];", "continuation width = (20, 10) [deg];"),
+        ("collocation uniform(breakpoints = 5 * l + 1);", "collocation gauss(points = 5);"),
+    ];
+    let (report, refined) = to(&Shipped::edited("low_observable_phases", &edits), 1e-4);
+    assert_eq!(report.phases().len(), 2);
+    let splits = |round: usize| refined.rounds[round].intervals;
+    assert!(splits(refined.rounds.len() - 1) > splits(0), "{report}");
+}
+
+#[test]
+fn agents_are_refined_together() {
+    let (report, _) = to(&Shipped::spec("strike_and_look"), 1e-6);
+    close(report.objective, 40.500_166_977_2, 1e-8);
+}
+
+#[test]
+fn limits_end_it_and_it_says_so() {
+    let problem = Shipped::spec("van_der_pol_gauss");
+    let (report, refined) = run(&problem, &wanted(Refinement { rounds: 2, ..Refinement::to(1e-9) }));
+    assert_eq!((refined.status, refined.rounds.len()), (RefineStatus::Rounds, 2), "{report}");
+    let (report, refined) = run(&problem, &wanted(Refinement { variables: 10, ..Refinement::to(1e-9) }));
+    assert_eq!(refined.status, RefineStatus::Variables, "{report}");
+    assert!(report.is_solved() && report.to_string().contains("limit on variables"), "{report}");
+    for wrong in [Refinement::to(0.0), Refinement::to(f64::NAN), Refinement { rounds: 0, ..Refinement::to(1e-3) }] {
+        let error = solve(problem.problem(), &wanted(wrong)).expect_err("it is out of range");
+        assert!(error.to_string().contains("`refine`"), "{error}");
+    }
+}
+
+#[test]
+fn a_problem_that_is_not_solved_is_not_refined() {
+    let settings = Settings { max_iterations: 1, ..wanted(Refinement::to(1e-6)) };
+    let (report, refined) = run(&Shipped::spec("low_observable_gauss"), &settings);
+    assert!(!report.is_solved());
+    assert_eq!((refined.status, refined.rounds.len()), (RefineStatus::NotSolved, 1), "{report}");
+}
+
+#[test]
+fn cancelled_rounds_leave_the_solution_before() {
+    // Once the second solve begins, an iteration counts from 0 again.
+    let seen = std::sync::Mutex::new(0);
+    let cancel: ntg::runtime::settings::OnIteration = std::sync::Arc::new(move |progress| {
+        let mut begun = seen.lock().expect("no test panics while it holds this");
+        *begun += usize::from(progress.iteration == 0);
+        if *begun > 1 { Control::Cancel } else { Control::Continue }
+    });
+    let settings = Settings { on_iteration: Some(cancel), ..wanted(Refinement::to(1e-9)) };
+    let (report, refined) = run(&Shipped::spec("van_der_pol_gauss"), &settings);
+    assert!(report.is_solved());
+    assert_eq!((refined.status, refined.rounds.len()), (RefineStatus::Cancelled, 2), "{report}");
+    close(report.objective, refined.rounds[0].objective, 1e-14);
+}
+
+#[test]
+fn minima_of_many_starts_are_refined_one_by_one() {
+    let problem = Shipped::spec("van_der_pol_gauss");
+    let starts = Starts { count: 4, ..Starts::default() };
+    let found = multistart(problem.problem(), &starts, &wanted(Refinement::to(1e-9)));
+    let found = found.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((found.solved(), found.minima.len(), found.minima[0].count), (4, 1, 4), "{found}");
+    close(found.minima[0].report.objective, 1.685_683_273_76, 1e-8);
+}
