@@ -142,7 +142,12 @@ fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>)
         chart.draw_series(DashedLineSeries::new([(*x, ys.start), (*x, ys.end)], 10, 8, GREY.stroke_width(2)))?;
         // Neighbouring events stand at different heights.
         let height = 4 + 24 * i32::try_from(i % 4)?;
-        let label = Text::new(name.clone(), (6, height), font(22).color(&GREY));
+        // Behind its mark, or before it where the panel ends too soon.
+        let style = font(22).color(&GREY);
+        let (width, right) = (i32::try_from(style.font.box_size(name)?.0)?, chart.plotting_area().get_x_range().end);
+        let room = chart.backend_coord(&(right, ys.end)).0 - chart.backend_coord(&(*x, ys.end)).0;
+        let left = if width + 6 <= room { 6 } else { -6 - width };
+        let label = Text::new(name.clone(), (left, height), style);
         chart.draw_series([EmptyElement::at((*x, ys.end)) + label])?;
     }
     Ok(())
