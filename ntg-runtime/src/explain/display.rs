@@ -13,7 +13,7 @@ impl fmt::Display for Explanation {
                  solution",
             ),
             Self::Unknown => {
-                f.write_str("whether all constraints can hold together near the last point was not found in time")
+                f.write_str("whether all constraints can hold together near the last point could not be shown")
             }
         }
     }
@@ -25,7 +25,7 @@ impl fmt::Display for Conflict {
         f.write_str(if self.minimal {
             "; without any one of them the others could:"
         } else {
-            "; perhaps some of them are not needed for that (time ran out):"
+            "; perhaps not all of them are needed for that:"
         })?;
         self.parts.iter().try_for_each(|part| write!(f, "\n  {part}"))
     }

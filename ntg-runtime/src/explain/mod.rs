@@ -57,7 +57,7 @@ pub enum Explanation {
     Conflict(Conflict),
     /// All constraints can hold together near the last point: the reason is another one.
     Consistent,
-    /// Neither could be shown in the time that was given.
+    /// Neither could be shown, in the time that was given or at all.
     Unknown,
 }
 
