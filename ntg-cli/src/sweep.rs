@@ -3,7 +3,7 @@
 mod inputs;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -80,8 +80,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
 
     let fixed = inputs::fixed(&arguments.set);
     let interrupt = Interrupt::install();
-    let solver =
-        Solver { program: &compiled.program, study: &study, fixed, wanted, settings, interrupt: interrupt.clone() };
+    let solver = Solver {
+        program: &compiled.program,
+        study: &study,
+        fixed,
+        wanted,
+        settings,
+        interrupt: interrupt.clone(),
+        idle: Mutex::default(),
+    };
     let journal = journal::beside(&arguments.output);
     let progress = Progress::new(study.sets.len(), interrupt);
     let ended = ntg_sweep::run(&study, &journal, arguments.jobs, &progress, |row, set| solver.row(row, set));
@@ -133,6 +140,8 @@ struct Solver<'a> {
     wanted: Vec<Value>,
     settings: Settings,
     interrupt: Interrupt,
+    /// Solvers that no thread uses now. What they keep changes no answer, and spares most of a small solve.
+    idle: Mutex<Vec<ntg_runtime::Solver<Interpreted>>>,
 }
 
 impl Solver<'_> {
@@ -142,17 +151,29 @@ impl Solver<'_> {
         if let Err(message) = self.prepare(&mut problem, set) {
             return Some(Row::failed(row, one_line(&message)));
         }
-        let mut settings = self.settings.clone();
-        let interrupt = self.interrupt.clone();
-        settings.on_iteration = Some(Arc::new(move |_| match interrupt.is_pressed() {
-            true => Control::Cancel,
-            false => Control::Continue,
-        }));
-        match ntg_runtime::solve(&problem, &settings) {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut solver = match idle {
+            Some(mut solver) => {
+                solver.problem = problem;
+                solver
+            }
+            None => ntg_runtime::Solver::new(problem, &self.cancellable()),
+        };
+        let solved = solver.solve();
+        let row = match solved {
             Ok(report) if report.status == Status::Cancelled => None,
-            Ok(report) => Some(self.results(row, &problem, &report)),
+            Ok(report) => Some(self.results(row, &solver.problem, &report)),
             Err(error) => Some(Row::failed(row, one_line(&error.to_string()))),
-        }
+        };
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
+        row
+    }
+
+    /// The settings, with Ctrl-C.
+    fn cancellable(&self) -> Settings {
+        let interrupt = self.interrupt.clone();
+        let watch = move |_: &_| if interrupt.is_pressed() { Control::Cancel } else { Control::Continue };
+        Settings { on_iteration: Some(Arc::new(watch)), ..self.settings.clone() }
     }
 
     fn prepare(&self, problem: &mut Interpreted, set: &[f64]) -> Result<(), String> {
