@@ -52,7 +52,7 @@ impl fmt::Display for Part {
 }
 
 impl Part {
-    /// What it is: "`turn`[2]", "the upper bound of the duration of phase `covert`".
+    /// What it is: "`turn`\[2\]", "the upper bound of the duration of phase `covert`".
     pub fn words(&self) -> String {
         match (self.is_bound, &self.indices[..]) {
             (true, _) => self.name.clone(),
