@@ -8,14 +8,15 @@ ntg_file!("courier.ntg");
 const STEP: f64 = 10.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let settings = Settings::default();
-    let mut courier = Courier::default(); // Parameters are fields, in their declared units.
-    let mut flight = courier.solve(&settings)?;
+    // Keeps whatever stays the same from one plan to the next.
+    let mut planner = Courier::default().solver(&Settings::default());
+    let mut flight = planner.solve()?;
 
     for plan in 1..=5 {
         if !flight.is_solved() {
             return Err(flight.status().to_string().into());
         }
+        let courier = &mut planner.problem; // Parameters are fields, in their declared units.
         println!(
             "plan {plan}: from ({:.0}, {:.0}) m at {:.1} m/s, there in {:.1} s",
             courier.x_start,
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .output("x", move |tau| x.at(STEP + tau * rest))
             .output("y", move |tau| y.at(STEP + tau * rest))
             .duration("T", rest);
-        flight = courier.solve_from(&guess, &settings)?;
+        flight = planner.solve_from(&guess)?;
     }
     Ok(())
 }
