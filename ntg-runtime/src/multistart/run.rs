@@ -9,8 +9,8 @@ use crate::guess::{Guess, start};
 use crate::problem::Problem;
 use crate::refine::{Refinement, refine};
 use crate::report::Report;
+use crate::session::Session;
 use crate::settings::{Control, InvalidSetting, Settings};
-use crate::solve::solve_from;
 use crate::transcribe::Transcription;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -55,13 +55,13 @@ pub fn multistart_from(
     };
     let plan = Plan::new(&nlp, (guess, &base), (&vehicles, &open), starts)?;
     let watch = Watch { starts, began, state: Mutex::default(), cancelled: AtomicBool::new(false) };
-    let solved = (0..starts.count).into_par_iter().map(|number| {
+    let solved = (0..starts.count).into_par_iter().map_init(Session::default, |session, number| {
         let remaining = settings.time_limit.map(|limit| limit.saturating_sub(began.elapsed()));
         if watch.cancelled.load(Ordering::Relaxed) || remaining == Some(Duration::ZERO) {
             return None;
         }
         let settings = Settings { time_limit: remaining, refine: None, ..settings.clone() };
-        Some(watch.done(plan.solve(problem, number, &settings), nlp.model.structure.maximize))
+        Some(watch.done(plan.solve((problem, session), number, &settings), nlp.model.structure.maximize))
     });
     let solved: Vec<One> = solved.collect::<Vec<_>>().into_iter().flatten().collect();
     let mut report = gather(solved);
@@ -148,7 +148,7 @@ impl<'a> Plan<'a> {
         (0..number).filter(|earlier| self.origin(*earlier) == self.origin(number)).count()
     }
 
-    fn solve(&self, problem: &dyn Problem, number: usize, settings: &Settings) -> One {
+    fn solve(&self, (problem, session): (&dyn Problem, &mut Session), number: usize, settings: &Settings) -> One {
         let began = Instant::now();
         let origin = self.origin(number);
         let mut rng = random::generator(self.starts.seed, number);
@@ -162,7 +162,7 @@ impl<'a> Plan<'a> {
                 parameters::draw(self.nlp, self.guess, self.open, (self.starts.seed, self.visit(number)))
             }
         };
-        let result = x.map_err(Error::from).and_then(|x| solve_from(problem, &Guess::raw(x), settings));
+        let result = x.map_err(Error::from).and_then(|x| session.solve((problem, Some(&Guess::raw(x))), settings));
         One { origin, result: result.map_err(|error| error.to_string()), seconds: began.elapsed().as_secs_f64() }
     }
 }

@@ -11,6 +11,7 @@
 
 mod grid;
 mod path;
+mod poses;
 mod prices;
 mod rates;
 
@@ -19,6 +20,7 @@ use crate::guess::{Curve, Function, apply, finish, set};
 use crate::transcribe::{SetupError, Transcription};
 use grid::Grid;
 use path::Path;
+use poses::Poses;
 use prices::Prices;
 use std::rc::Rc;
 
@@ -71,12 +73,13 @@ pub(super) fn routes(
 /// or where straight moves cannot nearly meet the constraints.
 fn first<'a>(nlp: &Transcription, vehicle: &'a Vehicle, x: &mut [f64]) -> Result<Option<Task<'a>>, SetupError> {
     let Some(grid) = Grid::new(nlp, vehicle, x) else { return Ok(None) };
+    let poses = Poses::moves(&grid);
     let mut task = None;
     for _ in 0..ROUNDS {
         if !prices::settle(nlp, vehicle, &grid, x)? {
             return Ok(None);
         }
-        let prices = Prices::new(nlp, vehicle, &grid, x)?;
+        let prices = Prices::new(nlp, vehicle, (&grid, &poses), x)?;
         let Some(path) = path::cheapest(&grid, &prices, &[]) else { break };
         follow(nlp, vehicle, &path, x)?;
         task = Some(Task { vehicle, grid: grid.clone(), prices, known: vec![path] });

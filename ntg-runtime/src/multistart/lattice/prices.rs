@@ -1,7 +1,8 @@
 //! What every move on the lattice costs (docs/maths.md, equations 12.3 to 12.5).
 
 use super::grid::{Grid, HEADINGS, TURNS};
-use super::rates::{Pose, Rate, Rates, Where};
+use super::poses::Poses;
+use super::rates::{Rate, Rates, Where};
 use crate::multistart::vehicles::Vehicle;
 use crate::nlp::{Nlp, Target};
 use crate::transcribe::layout::Time;
@@ -51,7 +52,7 @@ pub(super) fn settle(nlp: &Transcription, vehicle: &Vehicle, grid: &Grid, x: &mu
                 let time = slope(nlp, x, variable);
                 let second = typical(&rates, &sample, usual, time)?;
                 let speed = best_speed(&rates, &sample, usual, (time, second))?;
-                let found = rates.at(Where::Along(0.5), &straight(&sample, speed))?;
+                let found = rates.at(Where::Along(0.5), &sample.at_speed(speed))?;
                 if median(found.iter().map(|rate| rate.violation).collect()) > WIDE {
                     return Ok(false);
                 }
@@ -68,7 +69,12 @@ pub(super) fn settle(nlp: &Transcription, vehicle: &Vehicle, grid: &Grid, x: &mu
 }
 
 impl Prices {
-    pub(super) fn new(nlp: &Transcription, vehicle: &Vehicle, grid: &Grid, x: &[f64]) -> Result<Self, SetupError> {
+    pub(super) fn new(
+        nlp: &Transcription,
+        vehicle: &Vehicle,
+        (grid, poses): (&Grid, &Poses),
+        x: &[f64],
+    ) -> Result<Self, SetupError> {
         let layout = &nlp.model.layout;
         let phases = layout.agents[vehicle.agent].phases.clone();
         let integrals = integral_slopes(nlp, x);
@@ -97,7 +103,7 @@ impl Prices {
             all.push((rates, time));
         }
         for ((rates, time), speed) in all.iter().zip(this.speeds.clone()) {
-            let moves = moves(rates, grid, speed, (*time, this.second))?;
+            let moves = moves(rates, (grid, poses), speed, (*time, this.second))?;
             this.moves.push(moves);
         }
         this.gates = gates(&all, grid, &this)?;
@@ -187,23 +193,11 @@ fn usual_speed(nlp: &Transcription, vehicle: &Vehicle, x: &[f64]) -> f64 {
     if length > 0.0 { length / time } else { 1.0 / time }
 }
 
-/// Cells all over the lattice, with every heading.
-fn sample(grid: &Grid) -> Vec<([f64; 2], [f64; 2])> {
+/// Cells all over the lattice, with every heading, at speed 1.
+fn sample(grid: &Grid) -> Poses {
     /// Cells that are looked at.
     const SAMPLE: usize = 48;
-    let every = (grid.cells() / SAMPLE).max(1);
-    let cells = (0..grid.cells()).step_by(every);
-    let unit = |heading: usize| grid.vector(heading).map(|v| v / grid.length(heading));
-    cells.flat_map(|cell| (0..HEADINGS).map(move |h| (grid.position(cell), unit(h)))).collect()
-}
-
-fn straight(sample: &[([f64; 2], [f64; 2])], speed: f64) -> Vec<Pose> {
-    let pose = |(position, along): &([f64; 2], [f64; 2])| Pose {
-        position: *position,
-        velocity: along.map(|a| a * speed),
-        acceleration: [0.0; 2],
-    };
-    sample.iter().map(pose).collect()
+    Poses::straight(grid, grid.cells() / SAMPLE)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -213,19 +207,14 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// What a second costs where no constraint is violated: the median over the sample, by size.
-fn typical(rates: &Rates, sample: &[([f64; 2], [f64; 2])], speed: f64, time: f64) -> Result<f64, SetupError> {
-    let found = rates.at(Where::Along(0.5), &straight(sample, speed))?;
+fn typical(rates: &Rates, sample: &Poses, speed: f64, time: f64) -> Result<f64, SetupError> {
+    let found = rates.at(Where::Along(0.5), &sample.at_speed(speed))?;
     let second = median(found.iter().map(|rate| (rate.cost + time).abs()).collect());
     Ok(if second > 0.0 { second } else { 1.0 })
 }
 
 /// The speed at which a metre is cheapest: equation 12.3.
-fn best_speed(
-    rates: &Rates,
-    sample: &[([f64; 2], [f64; 2])],
-    usual: f64,
-    (time, second): (f64, f64),
-) -> Result<f64, SetupError> {
+fn best_speed(rates: &Rates, sample: &Poses, usual: f64, (time, second): (f64, f64)) -> Result<f64, SetupError> {
     /// The first range is a factor of 8 to either side.
     const RANGE: f64 = 2.079_441_541_679_835_7;
     /// Speeds to either side of the middle in each round.
@@ -238,7 +227,7 @@ fn best_speed(
     /// The step, as a logarithm, in which that speed is looked for, and the number of steps.
     const FASTER: (f64, i32) = (0.02, 10);
     let metre = |speed: f64| -> Result<f64, SetupError> {
-        let found = rates.at(Where::Along(0.5), &straight(sample, speed))?;
+        let found = rates.at(Where::Along(0.5), &sample.at_speed(speed))?;
         Ok(median(found.iter().map(|rate| price(rate, time, second) / speed).collect()))
     };
     let (mut best, mut range, mut cheapest) = (usual, RANGE, f64::INFINITY);
@@ -266,23 +255,13 @@ fn best_speed(
 }
 
 /// Prices of all moves of a phase: `(cell * HEADINGS + heading) * TURNS + turn`.
-fn moves(rates: &Rates, grid: &Grid, speed: f64, (time, second): (f64, f64)) -> Result<Vec<Vec<f32>>, SetupError> {
-    let mut poses = Vec::with_capacity(grid.cells() * HEADINGS * TURNS);
-    for cell in 0..grid.cells() {
-        let from = grid.position(cell);
-        for heading in 0..HEADINGS {
-            let vector = grid.vector(heading);
-            let along = vector.map(|v| v / grid.length(heading));
-            for turn in 0..TURNS {
-                let lateral = speed * speed * grid.curvature(heading, turn);
-                poses.push(Pose {
-                    position: [from[0] + 0.5 * vector[0], from[1] + 0.5 * vector[1]],
-                    velocity: along.map(|a| a * speed),
-                    acceleration: [-along[1] * lateral, along[0] * lateral],
-                });
-            }
-        }
-    }
+fn moves(
+    rates: &Rates,
+    (grid, poses): (&Grid, &Poses),
+    speed: f64,
+    (time, second): (f64, f64),
+) -> Result<Vec<Vec<f32>>, SetupError> {
+    let poses = poses.at_speed(speed);
     let slices = if rates.depend_on_time()? { SLICES } else { 1 };
     let slice = |slice: usize| {
         let tau = if slices > 1 { slice as f64 / (slices - 1) as f64 } else { 0.5 };
@@ -303,11 +282,9 @@ fn gates(all: &[(Rates, f64)], grid: &Grid, prices: &Prices) -> Result<Vec<Vec<f
     let states = grid.cells() * HEADINGS;
     let mut gates = vec![vec![0.0; states]; all.len() + 1];
     let mut violations = vec![vec![0.0; states]; all.len() + 1];
+    let straight = Poses::straight(grid, 1);
     for (number, ((rates, _), speed)) in all.iter().zip(&prices.speeds).enumerate() {
-        let places = (0..grid.cells()).flat_map(|cell| {
-            (0..HEADINGS).map(move |h| (grid.position(cell), grid.vector(h).map(|v| v / grid.length(h))))
-        });
-        let poses = straight(&places.collect::<Vec<_>>(), *speed);
+        let poses = straight.at_speed(*speed);
         for (gate, place) in [(number, Where::Start), (number + 1, Where::End)] {
             let found = rates.at(place, &poses)?;
             for (state, rate) in found.iter().enumerate() {

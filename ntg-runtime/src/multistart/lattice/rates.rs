@@ -4,6 +4,7 @@
 //! trajectory constraint of that phase with the vehicle in these poses and everything else as it
 //! is guessed. Constraints count by their violations (docs/maths.md, equation 12.4).
 
+use super::poses::{Pose, Poses, Uses};
 use crate::multistart::vehicles::Vehicle;
 use crate::transcribe::instances::members;
 use crate::transcribe::node::{Node, Site};
@@ -14,14 +15,7 @@ use crate::transcribe::slots::Source;
 use crate::transcribe::{SetupError, Transcription};
 use ntg_splines::Side;
 use ntg_structure::{At, Block, Call, Data, Domain, Group, Row};
-
-/// Where a vehicle is and how it moves, in real time, SI.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pose {
-    pub(super) position: [f64; 2],
-    pub(super) velocity: [f64; 2],
-    pub(super) acceleration: [f64; 2],
-}
+use rayon::prelude::*;
 
 /// Which functions are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +37,15 @@ pub(super) struct Rate {
     pub(super) violation: f64,
 }
 
+/// How a row counts.
+#[derive(Clone, Copy, Debug)]
+enum Price {
+    /// As a cost, by this factor.
+    Cost(f64),
+    /// As a violation of bounds; with the unit's factor.
+    Bounds((f64, f64), f64),
+}
+
 /// One violation counts at most this much.
 const MOST: f64 = 10.0;
 /// Poses that are evaluated at once.
@@ -60,34 +63,58 @@ pub(super) struct Rates<'a> {
 }
 
 impl Rates<'_> {
-    /// The costs of poses.
-    pub(super) fn at(&self, place: Where, poses: &[Pose]) -> Result<Vec<Rate>, SetupError> {
-        use rayon::prelude::*;
-        let parts: Result<Vec<Vec<Rate>>, SetupError> =
-            poses.par_chunks(CHUNK).map(|chunk| self.chunk(place, chunk)).collect();
-        Ok(parts?.into_iter().flatten().collect())
-    }
-
-    fn chunk(&self, place: Where, poses: &[Pose]) -> Result<Vec<Rate>, SetupError> {
-        let frame = self.nlp.frame();
+    /// The costs of poses. Every function is evaluated once for all poses that it cannot tell apart.
+    pub(super) fn at(&self, place: Where, poses: &Poses) -> Result<Vec<Rate>, SetupError> {
         let mut rates = vec![Rate::default(); poses.len()];
         // A constraint stands in several groups, one for each kind of point; once is enough.
         let mut seen: Vec<(usize, Vec<i64>)> = vec![];
         for group in &self.nlp.model.structure.groups {
             for indices in members(&group.loops) {
-                if self.concerns(group, place, &indices)? {
-                    let bounds = group_bounds(&frame, group, &indices)?;
-                    let values = self.values(group, place, &indices, poses)?;
-                    self.add(group, (&indices, &bounds), &values, &mut seen, &mut rates)?;
+                if !self.concerns(group, place, &indices)? {
+                    continue;
+                }
+                let prices = self.prices(group, &indices, &mut seen)?;
+                if prices.is_empty() {
+                    continue;
+                }
+                let site = Site { indices, point: self.point(place) };
+                let sources = trace(&self.nlp.frame(), &group.call, &site)?.sources;
+                let classes = poses.classes(self.uses(&sources, place));
+                let found: Result<Vec<Vec<Rate>>, SetupError> = classes
+                    .first
+                    .par_chunks(CHUNK)
+                    .map(|chunk| self.chunk((group, &prices), (&site, &sources, place), &poses.of(chunk)))
+                    .collect();
+                let found: Vec<Rate> = found?.into_iter().flatten().collect();
+                for (rate, class) in rates.iter_mut().zip(&classes.of) {
+                    let part = found[*class as usize];
+                    (rate.cost, rate.violation) = (rate.cost + part.cost, rate.violation + part.violation);
                 }
             }
         }
         Ok(rates)
     }
 
+    fn point(&self, place: Where) -> Point {
+        match place {
+            Where::Along(tau) => Point { phase: Some(self.phase), tau, side: Side::Right, weight: f64::NAN },
+            Where::Start => Point::start(self.phase),
+            Where::End => Point::end(self.phase),
+        }
+    }
+
+    /// Which parts of a pose slots stand for.
+    fn uses(&self, sources: &[Source], place: Where) -> Uses {
+        let mut uses = Uses::default();
+        for (_, derivative) in sources.iter().filter_map(|source| self.own(*source, place)) {
+            uses.add(derivative);
+        }
+        uses
+    }
+
     /// Whether anything along the phase depends on time, or on outputs that move with it.
     pub(super) fn depend_on_time(&self) -> Result<bool, SetupError> {
-        let point = Point { phase: Some(self.phase), tau: 0.5, side: Side::Right, weight: f64::NAN };
+        let point = self.point(Where::Along(0.5));
         for group in &self.nlp.model.structure.groups {
             for indices in members(&group.loops) {
                 if !self.concerns(group, Where::Along(0.5), &indices)? {
@@ -121,36 +148,39 @@ impl Rates<'_> {
         Ok(!group.rows.iter().any(joins) && self.nlp.model.layout.phase(structure, reference, indices)? == self.phase)
     }
 
-    /// Every row of a group for every pose: `[row * poses + pose]`.
-    fn values(&self, group: &Group, place: Where, indices: &[i64], poses: &[Pose]) -> Result<Vec<f64>, SetupError> {
+    /// What one member of a group costs in some poses.
+    fn chunk(
+        &self,
+        (group, prices): (&Group, &[(usize, Price)]),
+        (site, sources, place): (&Site, &[Source], Where),
+        poses: &[Pose],
+    ) -> Result<Vec<Rate>, SetupError> {
         let (frame, layout) = (self.nlp.frame(), &self.nlp.model.layout);
-        let point = match place {
-            Where::Along(tau) => Point { phase: Some(self.phase), tau, side: Side::Right, weight: f64::NAN },
-            Where::Start => Point::start(self.phase),
-            Where::End => Point::end(self.phase),
-        };
-        let site = Site { indices: indices.to_vec(), point };
-        let sources = trace(&frame, &group.call, &site)?.sources;
-        let node = Node::build(&frame, &group.call, &vec![site; poses.len()], &sources)?;
+        let node = Node::build(&frame, &group.call, &vec![site.clone(); poses.len()], sources)?;
         let duration = layout.duration(self.phase, self.x);
         let mut u = Vec::with_capacity(sources.len() * poses.len());
-        for source in &sources {
+        for source in sources {
             match self.own(*source, place) {
                 Some((axis, derivative)) => {
                     let factor = duration.powi(i32::try_from(derivative).unwrap_or(i32::MAX));
-                    u.extend(poses.iter().map(|pose| match derivative {
-                        0 => pose.position[axis],
-                        1 => pose.velocity[axis] * factor,
-                        2 => pose.acceleration[axis] * factor,
-                        _ => 0.0,
-                    }));
+                    u.extend(poses.iter().map(|pose| pose.at(axis, derivative) * factor));
                 }
-                None => u.resize(u.len() + poses.len(), layout.affine(*source, &point).value(self.x)),
+                None => u.resize(u.len() + poses.len(), layout.affine(*source, &site.point).value(self.x)),
             }
         }
         let mut work = node.work();
         node.values(self.nlp.problem, &self.nlp.model.tables, &u, &mut work);
-        Ok(work.values)
+        let mut rates = vec![Rate::default(); poses.len()];
+        for (row, price) in prices {
+            let values = &work.values[row * poses.len()..(row + 1) * poses.len()];
+            for (rate, value) in rates.iter_mut().zip(values) {
+                match price {
+                    Price::Cost(factor) => rate.cost += factor * value,
+                    Price::Bounds(bounds, unit) => rate.violation += violation(*value, *bounds, *unit),
+                }
+            }
+        }
+        Ok(rates)
     }
 
     /// The axis and derivative of the vehicle that a slot stands for, if it does.
@@ -166,40 +196,40 @@ impl Rates<'_> {
         (here && phase == self.phase && axis < 2).then_some((axis, derivative))
     }
 
-    fn add(
+    /// The rows of one member of a group that count, each with how. Constraints count once.
+    fn prices(
         &self,
         group: &Group,
-        (indices, bounds): (&Vec<i64>, &[(f64, f64)]),
-        values: &[f64],
+        indices: &[i64],
         seen: &mut Vec<(usize, Vec<i64>)>,
-        rates: &mut [Rate],
-    ) -> Result<(), SetupError> {
+    ) -> Result<Vec<(usize, Price)>, SetupError> {
         let (structure, layout) = (&self.nlp.model.structure, &self.nlp.model.layout);
         // Integrands hold the factor T.
         let path = matches!(group.domain, Domain::Path { .. });
         let duration = if path { layout.duration(self.phase, self.x) } else { 1.0 };
-        for ((row, values), bounds) in group.rows.iter().zip(values.chunks_exact(rates.len())).zip(bounds) {
-            let price = match row {
-                Row::Cost { .. } => 1.0 / duration,
+        let bounds = group_bounds(&self.nlp.frame(), group, indices)?;
+        let mut prices = vec![];
+        for ((number, row), bounds) in group.rows.iter().enumerate().zip(bounds) {
+            prices.push(match row {
+                Row::Cost { .. } => (number, Price::Cost(1.0 / duration)),
                 Row::Integral { integral, index } => {
                     let index: Vec<i64> = index.iter().map(|affine| affine.at(indices)).collect();
                     let variable = layout.integral(structure, *integral, &index)?;
-                    self.integrals.get(variable as usize).copied().unwrap_or(0.0) / duration
+                    let slope = self.integrals.get(variable as usize).copied().unwrap_or(0.0);
+                    (number, Price::Cost(slope / duration))
                 }
                 Row::Part { .. } => continue,
                 Row::Constraint { constraint, .. } => {
-                    let member = (*constraint, indices.clone());
-                    if !seen.contains(&member) {
-                        seen.push(member);
-                        let unit = structure.constraints[*constraint].unit.factor;
-                        rates.iter_mut().zip(values).for_each(|(r, v)| r.violation += violation(*v, *bounds, unit));
+                    let member = (*constraint, indices.to_vec());
+                    if seen.contains(&member) {
+                        continue;
                     }
-                    continue;
+                    seen.push(member);
+                    (number, Price::Bounds(bounds, structure.constraints[*constraint].unit.factor))
                 }
-            };
-            rates.iter_mut().zip(values).for_each(|(rate, value)| rate.cost += price * value);
+            });
         }
-        Ok(())
+        Ok(prices)
     }
 }
 
