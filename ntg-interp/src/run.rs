@@ -16,6 +16,9 @@ const CHUNK: usize = 64;
 /// The most arguments a table can have here without allocation.
 const MOST_ARGUMENTS: usize = 8;
 
+/// How many derivatives of a table are taken at once.
+const MOST_RESULTS: usize = 16;
+
 /// Input columns: those of `first`, then those of `second`, each with one number a lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Columns<'a> {
@@ -102,7 +105,7 @@ impl<S: Simd> Work for Execution<'_, S> {
             Operation::Binary(op, a, b) => self.binary(*op, *a, *b),
             Operation::Powi(a, n) => self.map([*a], |[x]| math::powi(x, *n)),
             Operation::Select(c, a, b) => self.map([*c, *a, *b], |[c, a, b]| math::select(c, a, b)),
-            Operation::Table { table, args, results } => self.table(*table, args, results),
+            Operation::Table { table, args, orders, results } => self.table(*table, args, orders, results),
         }
     }
 }
@@ -171,15 +174,19 @@ impl<S: Simd> Execution<'_, S> {
     }
 
     #[inline(always)]
-    fn table(&mut self, table: usize, args: &[usize], results: &[(Vec<u8>, usize)]) {
-        for lane in 0..self.count {
-            let mut point = [0.0; MOST_ARGUMENTS];
+    fn table(&mut self, table: usize, args: &[usize], orders: &[u8], results: &[usize]) {
+        let mut point = [Pack::splat(self.simd, 0.0); MOST_ARGUMENTS];
+        for lane in (0..self.count).step_by(S::LANES) {
             for (x, register) in point.iter_mut().zip(args) {
-                *x = self.registers[register * CHUNK + lane];
+                *x = Pack::load(self.simd, &self.registers[register * CHUNK + lane..]);
             }
-            let at = self.tables[table].at(&point[..args.len()]);
-            for (derivative, to) in results {
-                self.registers[to * CHUNK + lane] = at.derivative(derivative);
+            let groups = results.chunks(MOST_RESULTS).zip(orders.chunks(MOST_RESULTS * args.len()));
+            for (results, orders) in groups {
+                let mut out = [Pack::splat(self.simd, 0.0); MOST_RESULTS];
+                self.tables[table].look_up(self.simd, &point[..args.len()], orders, &mut out[..results.len()]);
+                for (register, derivative) in results.iter().zip(out) {
+                    derivative.store(&mut self.registers[register * CHUNK + lane..]);
+                }
             }
         }
     }

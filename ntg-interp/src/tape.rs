@@ -22,11 +22,13 @@ pub(crate) enum Operation {
     Binary(Binary, usize, usize),
     Powi(usize, i32),
     Select(usize, usize, usize),
-    /// Each derivative goes to a register of its own.
+    /// Each derivative goes to a register of its own; of each one `orders` has as many numbers as there are
+    /// arguments.
     Table {
         table: usize,
         args: Vec<usize>,
-        results: Vec<(Vec<u8>, usize)>,
+        orders: Vec<u8>,
+        results: Vec<usize>,
     },
 }
 
@@ -75,17 +77,16 @@ impl Tape {
             if let Node::Table { table, args, .. } = dag.node(*id) {
                 // One look-up gives all derivatives at the same place, when the first is needed.
                 if !register.contains_key(id) {
-                    let results: Vec<(Vec<u8>, usize)> =
-                        (together(dag, &schedule, (*table, args)).map(|(other, derivative)| {
-                            let to = fresh();
-                            register.insert(other, to);
-                            (derivative, to)
-                        }))
-                        .collect();
+                    let (mut orders, mut results) = (vec![], vec![]);
+                    for (other, derivative) in together(dag, &schedule, (*table, args)) {
+                        orders.extend_from_slice(derivative);
+                        results.push(fresh());
+                        register.insert(other, results[results.len() - 1]);
+                    }
                     let args = args.iter().map(|arg| register[arg]).collect();
                     tape.steps.push(Step {
                         to: register[id],
-                        operation: Operation::Table { table: *table as usize, args, results },
+                        operation: Operation::Table { table: *table as usize, args, orders, results },
                     });
                 }
             } else if let Some(operation) = operation(dag.node(*id), |operand| register[&operand]) {
@@ -125,11 +126,9 @@ fn together<'a>(
     dag: &'a Dag,
     schedule: &'a [NodeId],
     (table, args): (u32, &'a [NodeId]),
-) -> impl Iterator<Item = (NodeId, Vec<u8>)> {
+) -> impl Iterator<Item = (NodeId, &'a [u8])> {
     schedule.iter().filter_map(move |id| match dag.node(*id) {
-        Node::Table { table: t, derivative, args: a } if (*t, &a[..]) == (table, args) => {
-            Some((*id, derivative.clone()))
-        }
+        Node::Table { table: t, derivative, args: a } if (*t, &a[..]) == (table, args) => Some((*id, &derivative[..])),
         _ => None,
     })
 }

@@ -16,6 +16,10 @@ const LESS: i32 = 0x11; // _CMP_LT_OQ
 const LESS_EQ: i32 = 0x12; // _CMP_LE_OQ
 const EQUAL: i32 = 0x00; // _CMP_EQ_OQ
 
+// Which halves of two operands a permutation joins.
+const LOW_HALVES: i32 = 0x20;
+const HIGH_HALVES: i32 = 0x31;
+
 /// The instructions, if this processor has them.
 #[inline]
 pub(crate) fn available() -> Option<V3> {
@@ -68,6 +72,20 @@ impl Simd for V3 {
         }
     }
     #[inline(always)]
+    fn columns(self, mut rows: impl FnMut(usize) -> [f64; 4]) -> [__m256d; 4] {
+        // Transposed in two steps: pairs of lanes within the halves, then the halves.
+        let (a, b): (__m256d, __m256d) = (bytemuck::cast(rows(0)), bytemuck::cast(rows(1)));
+        let (c, d): (__m256d, __m256d) = (bytemuck::cast(rows(2)), bytemuck::cast(rows(3)));
+        let (even_ab, odd_ab) = (self.avx._mm256_unpacklo_pd(a, b), self.avx._mm256_unpackhi_pd(a, b));
+        let (even_cd, odd_cd) = (self.avx._mm256_unpacklo_pd(c, d), self.avx._mm256_unpackhi_pd(c, d));
+        [
+            self.avx._mm256_permute2f128_pd::<LOW_HALVES>(even_ab, even_cd),
+            self.avx._mm256_permute2f128_pd::<LOW_HALVES>(odd_ab, odd_cd),
+            self.avx._mm256_permute2f128_pd::<HIGH_HALVES>(even_ab, even_cd),
+            self.avx._mm256_permute2f128_pd::<HIGH_HALVES>(odd_ab, odd_cd),
+        ]
+    }
+    #[inline(always)]
     fn add(self, a: __m256d, b: __m256d) -> __m256d {
         self.avx._mm256_add_pd(a, b)
     }
@@ -102,6 +120,10 @@ impl Simd for V3 {
     #[inline(always)]
     fn both(self, a: __m256d, b: __m256d) -> __m256d {
         self.avx._mm256_and_pd(a, b)
+    }
+    #[inline(always)]
+    fn either(self, a: __m256d, b: __m256d) -> __m256d {
+        self.avx._mm256_or_pd(a, b)
     }
     #[inline(always)]
     fn any(self, mask: __m256d) -> bool {

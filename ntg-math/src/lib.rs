@@ -34,6 +34,7 @@ mod avx2;
 mod exponential;
 mod inverse;
 mod logarithm;
+mod mask;
 mod pack;
 mod plain;
 mod polynomial;
@@ -42,6 +43,7 @@ pub mod trigonometric;
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
+pub use mask::Mask;
 pub use pack::{MOST_LANES, Number, Pack};
 pub use simd::{Scalar, Simd, Task, Work, dispatch};
 

@@ -2,20 +2,14 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::exponential::ROUND;
 use crate::simd::{Scalar, Simd};
 
 /// One number for each lane of `S`.
 #[derive(Clone, Copy, Debug)]
 pub struct Pack<S: Simd> {
-    simd: S,
-    lanes: S::Floats,
-}
-
-/// A truth value for each lane.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Mask<S: Simd> {
-    simd: S,
-    lanes: S::Mask,
+    pub(crate) simd: S,
+    pub(crate) lanes: S::Floats,
 }
 
 /// The bits of a number for each lane.
@@ -49,6 +43,26 @@ impl<S: Simd> Pack<S> {
         self.simd.store(self.lanes, to);
     }
 
+    /// Four numbers of every lane, `rows(lane)`: the first of all lanes, the second of all lanes, and so on.
+    #[inline(always)]
+    pub fn columns(simd: S, rows: impl FnMut(usize) -> [f64; 4]) -> [Self; 4] {
+        let [a, b, c, d] = simd.columns(rows);
+        [a, b, c, d].map(|lanes| Self { simd, lanes })
+    }
+
+    /// The whole numbers nearest to the lanes, which lie between 0 and 2^32; any numbers where they do not.
+    #[inline(always)]
+    pub fn indices(self) -> [usize; MOST_LANES] {
+        // The sum has no bits below 1, so the number stands in its last bits.
+        (self + ROUND).to_array().map(|x| x.to_bits() as u32 as usize)
+    }
+
+    /// The next smaller number, for numbers above 0.
+    #[inline(always)]
+    pub fn next_down(self) -> Self {
+        self.bits().plus(u64::MAX).number()
+    }
+
     /// What the lanes were made with.
     #[inline(always)]
     pub fn simd(self) -> S {
@@ -62,7 +76,7 @@ impl<S: Simd> Pack<S> {
     }
 
     #[inline(always)]
-    fn with(self, lanes: S::Floats) -> Self {
+    pub(crate) fn with(self, lanes: S::Floats) -> Self {
         Self { simd: self.simd, lanes }
     }
 
@@ -95,8 +109,9 @@ impl<S: Simd> Pack<S> {
         y.map(|y| Self::load(simd, &y))
     }
 
+    /// The lanes, and zeros after them.
     #[inline(always)]
-    fn to_array(self) -> [f64; MOST_LANES] {
+    pub fn to_array(self) -> [f64; MOST_LANES] {
         let mut lanes = [0.0; MOST_LANES];
         self.store(&mut lanes);
         lanes
@@ -125,51 +140,6 @@ impl<S: Simd> Pack<S> {
     #[inline(always)]
     pub(crate) fn bits(self) -> Bits<S> {
         Bits { simd: self.simd, lanes: self.simd.bits(self.lanes) }
-    }
-
-    #[inline(always)]
-    pub(crate) fn less(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, lanes: self.simd.less(self.lanes, other.lanes) }
-    }
-
-    #[inline(always)]
-    pub(crate) fn less_eq(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, lanes: self.simd.less_eq(self.lanes, other.lanes) }
-    }
-
-    #[inline(always)]
-    pub(crate) fn equal(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, lanes: self.simd.equal(self.lanes, other.lanes) }
-    }
-
-    /// Whether a number is not one.
-    #[inline(always)]
-    pub(crate) fn is_number(self) -> Mask<S> {
-        self.equal(self)
-    }
-}
-
-impl<S: Simd> Mask<S> {
-    /// `a` where it holds, else `b`.
-    #[inline(always)]
-    pub(crate) fn select(self, a: Pack<S>, b: Pack<S>) -> Pack<S> {
-        a.with(self.simd.select(self.lanes, a.lanes, b.lanes))
-    }
-
-    /// `a` where it holds, else `b`.
-    #[inline(always)]
-    pub(crate) fn choose(self, a: f64, b: f64) -> Pack<S> {
-        self.select(Pack::splat(self.simd, a), Pack::splat(self.simd, b))
-    }
-
-    #[inline(always)]
-    pub(crate) fn both(self, other: Self) -> Self {
-        Self { simd: self.simd, lanes: self.simd.both(self.lanes, other.lanes) }
-    }
-
-    #[inline(always)]
-    pub(crate) fn any(self) -> bool {
-        self.simd.any(self.lanes)
     }
 }
 

@@ -32,6 +32,8 @@ pub trait Simd: Copy + Debug + Send + Sync + sealed::Sealed {
     fn load(self, from: &[f64]) -> Self::Floats;
     /// Writes to the first `LANES` numbers of a slice; nothing if it has fewer.
     fn store(self, x: Self::Floats, to: &mut [f64]);
+    /// Four numbers of every lane, `rows(lane)`: the first of all lanes, the second of all lanes, and so on.
+    fn columns(self, rows: impl FnMut(usize) -> [f64; 4]) -> [Self::Floats; 4];
 
     /// `a + b`.
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
@@ -52,6 +54,8 @@ pub trait Simd: Copy + Debug + Send + Sync + sealed::Sealed {
     fn equal(self, a: Self::Floats, b: Self::Floats) -> Self::Mask;
     /// Both.
     fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// At least one.
+    fn either(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Whether it holds in any lane.
     fn any(self, mask: Self::Mask) -> bool;
     /// `a` where the mask holds, else `b`.
@@ -114,6 +118,10 @@ impl Simd for Scalar {
         }
     }
     #[inline(always)]
+    fn columns(self, mut rows: impl FnMut(usize) -> [f64; 4]) -> [f64; 4] {
+        rows(0)
+    }
+    #[inline(always)]
     fn add(self, a: f64, b: f64) -> f64 {
         a + b
     }
@@ -148,6 +156,10 @@ impl Simd for Scalar {
     #[inline(always)]
     fn both(self, a: bool, b: bool) -> bool {
         a & b
+    }
+    #[inline(always)]
+    fn either(self, a: bool, b: bool) -> bool {
+        a | b
     }
     #[inline(always)]
     fn any(self, mask: bool) -> bool {

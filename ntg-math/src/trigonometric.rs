@@ -78,7 +78,7 @@ impl<S: Simd> Reduced<S> {
 
     /// Whether the number of quarter turns is odd.
     #[inline(always)]
-    fn odd(&self) -> crate::pack::Mask<S> {
+    fn odd(&self) -> crate::Mask<S> {
         // The last bit, moved to where it is the number 2^-1022.
         let bit = self.turns.bits().and(1).up::<52>();
         self.rest.like(0.0).less(bit.number())

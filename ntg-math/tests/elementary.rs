@@ -158,3 +158,28 @@ fn the_last_place_is_right_to_two_units_of_the_standard_library() {
         assert!(units(math::hypot(a, b), a.hypot(b)) <= 2.0, "hypot({a:e}, {b:e})");
     }
 }
+
+#[test]
+fn columns_are_rows_turned_and_indices_the_nearest_whole_numbers() {
+    struct Turned<'a>(&'a mut [[f64; 4]]);
+    impl Task for Turned<'_> {
+        fn run<S: Simd>(self, simd: S) {
+            let rows = |lane: usize| std::array::from_fn(|i| (10 * lane + i) as f64);
+            for (column, out) in Pack::columns(simd, rows).iter().zip(self.0) {
+                *out = column.to_array();
+                for (lane, x) in out.iter().enumerate().take(S::LANES) {
+                    assert_eq!((*column + 0.4).indices()[lane], *x as usize);
+                    assert_eq!((*column - 0.4).indices()[lane], *x as usize);
+                    assert_eq!((*column + 1.0).next_down().to_array()[lane], (*x + 1.0).next_down());
+                }
+            }
+        }
+    }
+    let mut columns = [[0.0; 4]; 4];
+    dispatch(Turned(&mut columns));
+    for (i, column) in columns.iter().enumerate() {
+        for (lane, x) in column.iter().enumerate() {
+            assert!(*x == (10 * lane + i) as f64 || (lane > 0 && *x == 0.0), "{columns:?}");
+        }
+    }
+}

@@ -15,5 +15,7 @@ pub fn table<S: Simd, const N: usize, const K: usize>(
     args: [Pack<S>; N],
     orders: [[u8; N]; K],
 ) -> [Pack<S>; K] {
-    Pack::each(simd, args, |args| table.jet(&args, &orders))
+    let mut out = [Pack::splat(simd, 0.0); K];
+    table.look_up(simd, &args, orders.as_flattened(), &mut out);
+    out
 }

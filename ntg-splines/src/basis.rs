@@ -62,6 +62,18 @@ pub fn derivative(knots: &[f64], order: usize, span: usize, x: f64, derivative: 
     }
 }
 
+/// Writes the blossoms of the `order` B-splines that do not vanish in an interval: the values at its end for
+/// `ends` of their `order - 1` arguments, at its beginning for the others. They are the Bernstein
+/// coefficients of the B-splines there (docs/maths.md, equation 7.19), sums and products of what is not negative.
+pub(crate) fn blossom(knots: &[f64], order: usize, span: usize, ends: usize, out: &mut [f64]) {
+    out.fill(0.0);
+    out[0] = 1.0;
+    for reached in 1..order {
+        let x = if reached <= ends { knots[span + 1] } else { knots[span] };
+        raise(knots, span, x, reached, out);
+    }
+}
+
 /// Raises the B-splines in `values[..reached]` from order `reached` to the next (equation 1.3).
 fn raise(knots: &[f64], span: usize, x: f64, reached: usize, values: &mut [f64]) {
     let mut carry = 0.0;

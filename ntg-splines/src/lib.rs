@@ -37,6 +37,4 @@ pub use basis::Spline;
 pub use fit::{Ends, Sample, fit};
 pub use knots::{KnotError, Knots, MAX_INTERVALS, MAX_ORDER, Side};
 pub use quadrature::{Rule, gauss, trapezoid};
-pub use table::{
-    At, Axis, Extrapolation, FitReport, MAX_ARGUMENTS, MAX_TABLE_ORDER, Method, Symmetry, Table, TableError,
-};
+pub use table::{Axis, Extrapolation, FitReport, MAX_ARGUMENTS, MAX_TABLE_ORDER, Method, Symmetry, Table, TableError};

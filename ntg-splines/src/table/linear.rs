@@ -14,9 +14,8 @@ pub(super) fn linear(axes: &[Axis], values: &Grid) -> (Vec<Piece>, Grid) {
     for (number, axis) in axes.iter().enumerate() {
         let (nodes, rows) = from_zero(axis);
         grid = grid.gather(number, &rows);
-        let hats = [0.5, -0.5, 0.5, 0.5];
-        let polynomials = hats.repeat(nodes.len() - 1);
-        pieces.push(Piece::new(axis, nodes, Form { order: 2, smoothness: 0, step: 1 }, &polynomials));
+        let polynomials = [1.0, 0.0, 0.0, 1.0].repeat(nodes.len() - 1);
+        pieces.push(Piece::new(axis, &nodes, Form { order: 2, smoothness: 0, step: 1 }, polynomials));
     }
     (pieces, grid)
 }
@@ -26,13 +25,13 @@ pub(super) fn hermite(axis: &Axis) -> Piece {
     let (nodes, _) = from_zero(axis);
     let mut polynomials = vec![];
     for pair in nodes.windows(2) {
-        let half = 0.5 * (pair[1] - pair[0]);
-        polynomials.extend([0.5, -0.75, 0.0, 0.25]);
-        polynomials.extend([0.25, -0.25, -0.25, 0.25].map(|c| half * c));
-        polynomials.extend([0.5, 0.75, 0.0, -0.25]);
-        polynomials.extend([-0.25, -0.25, 0.25, 0.25].map(|c| half * c));
+        let third = (pair[1] - pair[0]) / 3.0;
+        polynomials.extend([1.0, 0.0, 0.0, 0.0]);
+        polynomials.extend([1.0, third, 0.0, 0.0]);
+        polynomials.extend([0.0, 0.0, 1.0, -third]);
+        polynomials.extend([0.0, 0.0, 1.0, 0.0]);
     }
-    Piece::new(axis, nodes, Form { order: 4, smoothness: 1, step: 2 }, &polynomials)
+    Piece::new(axis, &nodes, Form { order: 4, smoothness: 1, step: 2 }, polynomials)
 }
 
 /// The nodes of an argument, from the cell of 0 on if it is even, and which given ones they copy.

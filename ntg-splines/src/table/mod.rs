@@ -13,10 +13,14 @@ mod axis;
 mod bicubic;
 mod error;
 mod grid;
+mod joined;
 mod linear;
+mod look_up;
 mod monotone;
 mod piece;
+mod place;
 mod report;
+mod search;
 mod spline;
 
 pub use axis::{Axis, Symmetry};
@@ -24,7 +28,8 @@ pub use error::TableError;
 pub use report::FitReport;
 
 use grid::Grid;
-use piece::{Piece, Place, Weights};
+use joined::Joined;
+use piece::Piece;
 
 /// Largest number of arguments of a table.
 pub const MAX_ARGUMENTS: usize = 8;
@@ -78,7 +83,8 @@ pub struct Table {
     extrapolation: Extrapolation,
     pieces: Vec<Piece>,
     strides: Vec<usize>,
-    coefficients: Vec<f64>,
+    coefficients: Grid,
+    joined: Option<Joined>,
 }
 
 impl Table {
@@ -97,17 +103,21 @@ impl Table {
         check_method(&axes, &method)?;
         let values = Grid { shape: axes.iter().map(|axis| axis.nodes.len()).collect(), values };
         check_values(&axes, &values)?;
-        let (pieces, grid) = match &method {
+        let (pieces, coefficients) = match &method {
             Method::Monotone => monotone::monotone(&axes, &values),
             Method::Bspline { order } => spline::interpolate(&axes, &values, *order)?,
             Method::Fit { order, intervals } => spline::fit(&axes, &values, *order, intervals)?,
             Method::Linear => linear::linear(&axes, &values),
         };
-        if !grid.values.iter().all(|c| c.is_finite()) || !pieces.iter().all(Piece::is_finite) {
+        if !coefficients.values.iter().all(|c| c.is_finite()) || !pieces.iter().all(Piece::is_finite) {
             return Err(TableError::NotRepresentable);
         }
-        let strides = (0..axes.len()).map(|axis| grid.shape[axis + 1..].iter().product()).collect();
-        Ok(Self { axes, values, method, extrapolation, pieces, strides, coefficients: grid.values })
+        let joined = Joined::new(&pieces, &coefficients);
+        if !joined.as_ref().is_none_or(Joined::is_finite) {
+            return Err(TableError::NotRepresentable);
+        }
+        let strides = (0..axes.len()).map(|axis| coefficients.shape[axis + 1..].iter().product()).collect();
+        Ok(Self { axes, values, method, extrapolation, pieces, strides, coefficients, joined })
     }
 
     /// The number of arguments.
@@ -156,75 +166,6 @@ impl Table {
         Ok(())
     }
 
-    /// A partial derivative of the interpolant: `derivative[i]` is the order in argument `i`.
-    ///
-    /// Derivatives beyond the interpolant's smoothness are those of its pieces, from the right
-    /// at a node (at the last one from the left). Not a number if an argument is, or if `args`
-    /// or `derivative` has not one entry for each argument.
-    pub fn eval(&self, args: &[f64], derivative: &[u8]) -> f64 {
-        self.at(args).derivative(derivative)
-    }
-
-    /// A place in the table, where derivatives are taken without searching again. Where an argument
-    /// is not a number, or their number is wrong, no derivative is one.
-    #[inline]
-    pub fn at(&self, args: &[f64]) -> At<'_> {
-        let count = self.pieces.len();
-        let valid = args.len() == count && !args.iter().any(|x| x.is_nan());
-        let mut places = [Place::default(); MAX_ARGUMENTS];
-        if valid {
-            for ((place, piece), x) in places.iter_mut().zip(&self.pieces).zip(args) {
-                *place = piece.place(*x);
-            }
-        }
-        At { table: self, places, valid }
-    }
-
-    /// Several partial derivatives at the same place: `orders[k][i]` times with respect to argument
-    /// `i`. The bits are those of [`Table::eval`].
-    #[inline]
-    pub fn jet<const N: usize, const K: usize>(&self, args: &[f64; N], orders: &[[u8; N]; K]) -> [f64; K] {
-        if N != self.pieces.len() || args.iter().any(|x| x.is_nan()) {
-            return [f64::NAN; K];
-        }
-        let places = std::array::from_fn::<_, N, _>(|axis| self.pieces[axis].place(args[axis]));
-        orders.map(|derivative| self.derivative(&places, &derivative))
-    }
-
-    /// A partial derivative at a place in `N` arguments.
-    #[inline]
-    fn derivative<const N: usize>(&self, places: &[Place; N], derivative: &[u8]) -> f64 {
-        let mut weights = [[0.0; MAX_TABLE_ORDER]; N];
-        let mut first = 0;
-        for (axis, piece) in self.pieces.iter().enumerate() {
-            let order = usize::from(derivative[axis]);
-            if !piece.weights(&places[axis], order, self.extrapolation, &mut weights[axis]) {
-                return 0.0;
-            }
-            first += places[axis].start * self.strides[axis];
-        }
-        self.contract(0, first, &weights)
-    }
-
-    /// The sum over the coefficients that act in arguments `axis ..`, the first of them at `first`.
-    fn contract(&self, axis: usize, first: usize, weights: &[Weights]) -> f64 {
-        let order = self.pieces[axis].order();
-        let stride = self.strides[axis];
-        if let ([four], 4) | ([_, four], 4) = (weights, order)
-            && axis + 1 == self.pieces.len()
-        {
-            // The common order as a number, so that its loop is unrolled.
-            return dot::<4>(four, &self.coefficients[first..]);
-        }
-        let weights_here = &weights[axis][..order];
-        if axis + 1 == self.pieces.len() {
-            let active = &self.coefficients[first..first + weights_here.len()];
-            return weights_here.iter().zip(active).map(|(w, c)| w * c).sum();
-        }
-        let inner = weights_here.iter().enumerate();
-        inner.map(|(j, w)| w * self.contract(axis + 1, first + j * stride, weights)).sum()
-    }
-
     /// How well the interpolant meets its values and keeps to their range.
     ///
     /// With one or two arguments each cell is sampled at 20 steps in each; with more the steps
@@ -232,36 +173,6 @@ impl Table {
     pub fn fit_report(&self) -> FitReport {
         report::fit_report(self)
     }
-}
-
-/// A place in a table.
-#[derive(Clone, Debug)]
-pub struct At<'a> {
-    table: &'a Table,
-    places: [Place; MAX_ARGUMENTS],
-    valid: bool,
-}
-
-impl At<'_> {
-    /// A partial derivative there, as [`Table::eval`] has it.
-    #[inline]
-    pub fn derivative(&self, derivative: &[u8]) -> f64 {
-        if !self.valid || derivative.len() != self.table.pieces.len() {
-            return f64::NAN;
-        }
-        // Room for eight arguments would cost as much as a table of one.
-        match self.places {
-            [a, ..] if derivative.len() == 1 => self.table.derivative(&[a], derivative),
-            [a, b, ..] if derivative.len() == 2 => self.table.derivative(&[a, b], derivative),
-            _ => self.table.derivative(&self.places, derivative),
-        }
-    }
-}
-
-/// The sum of the first `N` products.
-#[inline]
-fn dot<const N: usize>(weights: &Weights, coefficients: &[f64]) -> f64 {
-    weights[..N].iter().zip(&coefficients[..N]).map(|(w, c)| w * c).sum()
 }
 
 fn check_nodes(axes: &[Axis]) -> Result<(), TableError> {

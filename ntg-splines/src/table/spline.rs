@@ -9,7 +9,7 @@ use super::grid::Grid;
 use super::piece::{Form, Piece};
 use super::{MAX_COEFFICIENTS, TableError};
 use crate::banded::Banded;
-use crate::basis::{derivative, derivatives};
+use crate::basis::{blossom, derivative};
 use crate::fit::{Row, level_rows, straight};
 use crate::knots::{Side, greville};
 
@@ -141,25 +141,20 @@ impl Basis {
         (first + 1 - self.order, last + 1 - first)
     }
 
-    /// The polynomials of the kept intervals, by their Taylor series at the middle.
+    /// The polynomials of the kept intervals: the B-splines' blossoms at the ends (equation 7.19).
     fn piece(&self, axis: &Axis, first: usize, cells: usize) -> Piece {
         let order = self.order;
         let spans = first + order - 1..first + order - 1 + cells;
         let mut polynomials = Vec::with_capacity(cells * order * order);
-        let mut table = vec![0.0; order * order];
+        let mut row = vec![0.0; order];
         for span in spans.clone() {
-            let (a, b) = (self.knots[span], self.knots[span + 1]);
-            derivatives(&self.knots, order, span, 0.5 * (a + b), order - 1, &mut table);
-            for j in 0..order {
-                let mut scale = 1.0; // (half the interval)^p / p!
-                for p in 0..order {
-                    polynomials.push(scale * table[p * order + j]);
-                    scale *= 0.5 * (b - a) / (p + 1) as f64;
-                }
+            for ends in 0..order {
+                blossom(&self.knots, order, span, ends, &mut row);
+                polynomials.extend_from_slice(&row);
             }
         }
-        let breaks = self.knots[spans.start..=spans.end].to_vec();
-        Piece::new(axis, breaks, Form { order, smoothness: order - 2, step: 1 }, &polynomials)
+        let breaks = &self.knots[spans.start..=spans.end];
+        Piece::new(axis, breaks, Form { order, smoothness: order - 2, step: 1 }, polynomials)
     }
 }
 
