@@ -185,16 +185,14 @@ impl<'a> Elaborator<'a> {
 
     /// `lower <= body <= upper`; two constraints where a bound changes along the way.
     fn within(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> Vec<Body> {
+        if self.misfit(lower, body, upper) {
+            return vec![];
+        }
         let fixed = [lower, upper].into_iter().flatten().all(|end| self.kinds(end.node).is_fixed());
         if !fixed || self.kinds(body.node).is_fixed() {
             let above = lower.and_then(|lower| self.compare(Comparison::AtMost, lower, body));
             let below = upper.and_then(|upper| self.compare(Comparison::AtMost, body, upper));
             return above.into_iter().chain(below).collect();
-        }
-        let below = lower.is_some_and(|lower| self.clash("compare", lower, body));
-        let above = upper.is_some_and(|upper| self.clash("compare", body, upper));
-        if below || above {
-            return vec![];
         }
         let bounds = Bounds { lower: lower.map(|v| v.node), upper: upper.map(|v| v.node) };
         if let (Some(lower), Some(upper)) = (lower, upper) {
@@ -203,6 +201,22 @@ impl<'a> Elaborator<'a> {
         let sides: Vec<&Value> = [Some(body), lower, upper].into_iter().flatten().collect();
         let unit = self.shown(&sides);
         vec![Body { value: body.clone(), bounds, unit }]
+    }
+
+    /// Tells when bounds have another dimension than what they bound: once for a range `lo .. hi`, whose unit is
+    /// that of both ends.
+    fn misfit(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> bool {
+        if let (Some(lower), Some(upper)) = (lower, upper)
+            && lower.dimension == upper.dimension
+            && lower.span.start >= body.span.end
+        {
+            let bare = upper.dimension == Some(Dimension::NONE);
+            let span = if bare { upper.span } else { lower.span.to(upper.span) };
+            return self.clash("compare", body, &Value { span, ..upper.clone() });
+        }
+        let below = lower.is_some_and(|lower| self.clash("compare", lower, body));
+        let above = upper.is_some_and(|upper| self.clash("compare", body, upper));
+        below || above
     }
 
     /// The unit in which violations are shown: that of the first value that has one.
