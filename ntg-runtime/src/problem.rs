@@ -48,3 +48,72 @@ pub struct Derivatives<'a> {
     /// One entry of the kernel's Hessian pattern for every lane.
     pub hessian: &'a mut [f64],
 }
+
+/// A problem with another [`Structure`] than its own: other breakpoints, other values of parameters and tables, no
+/// continuation. Kernels depend on none of these, so one compiled problem serves every mesh and every parameter.
+///
+/// ```
+/// use ntg::prelude::*;
+/// use ntg::runtime::problem::WithStructure;
+///
+/// ntg! {
+///     /// From rest to rest with the least effort.
+///     problem Move {
+///         duration T = 2 [s];
+///         output x [m]: spline(order = 6, intervals = 2);
+///         minimize integral(der(x, 2)^2);
+///         initial { x == 0;  der(x) == 0; }
+///         final   { x == 3 [m];  der(x) == 0; }
+///     }
+/// }
+///
+/// # fn main() -> Result<(), ntg::Error> {
+/// let problem = Move::default();
+/// let finer = WithStructure::new(&problem).edited(|structure| {
+///     structure.phases[0].outputs[0].spline.breakpoints = vec![0.0, 0.1, 0.5, 0.9, 1.0];
+/// });
+/// let report = solve(&finer, &Settings::default())?;
+/// assert_eq!(report.solution.structure().phases[0].outputs[0].spline.breakpoints.len(), 5);
+/// assert!((report.objective - 12.0 * 9.0 / 8.0).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone)]
+pub struct WithStructure<'p> {
+    problem: &'p dyn Problem,
+    /// What the problem is taken to be.
+    pub structure: Structure,
+}
+
+impl<'p> WithStructure<'p> {
+    /// The problem as it is.
+    pub fn new(problem: &'p dyn Problem) -> Self {
+        Self { problem, structure: problem.structure() }
+    }
+
+    /// The same kernels with this structure changed.
+    #[must_use]
+    pub fn edited(&self, edit: impl FnOnce(&mut Structure)) -> Self {
+        let mut edited = self.clone();
+        edit(&mut edited.structure);
+        edited
+    }
+}
+
+impl Problem for WithStructure<'_> {
+    fn structure(&self) -> Structure {
+        self.structure.clone()
+    }
+
+    fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
+        self.problem.values(kernel, lanes, inputs, tables, values);
+    }
+
+    fn derivatives(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
+        self.problem.derivatives(kernel, point, tables, out);
+    }
+
+    fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]) {
+        self.problem.probes(kernel, lanes, inputs, tables, probes);
+    }
+}

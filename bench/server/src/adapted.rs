@@ -1,28 +1,12 @@
-//! Generated code with another structure: other knots, other parameters, no continuation.
-//!
-//! Kernels do not depend on any of these, so one compiled problem serves every number of intervals
-//! and every step of a continuation.
+//! Generated code on other knots, and a continuation as one problem for each of its steps.
 
-use ntg::prelude::Problem;
-use ntg::runtime::problem::{Derivatives, Lanes};
-use ntg::runtime::splines::Table;
-use ntg::runtime::structure::{Points, Structure};
+use ntg::runtime::problem::WithStructure;
+use ntg::runtime::structure::Points;
 
-/// A problem whose structure is not the one that its code says.
-pub struct Adapted<'p> {
-    problem: &'p dyn Problem,
-    structure: Structure,
-}
-
-impl<'p> Adapted<'p> {
-    /// The problem as it is.
-    pub fn new(problem: &'p dyn Problem) -> Self {
-        Self { problem, structure: problem.structure() }
-    }
-
-    /// The same with this many equal intervals a spline, and as many points an interval as before.
-    pub fn with_intervals(mut self, intervals: usize) -> Self {
-        for phase in &mut self.structure.phases {
+/// The same with this many equal intervals a spline, and as many points an interval as before.
+pub fn with_intervals<'p>(problem: &WithStructure<'p>, intervals: usize) -> WithStructure<'p> {
+    problem.edited(|structure| {
+        for phase in &mut structure.phases {
             let before = phase.outputs.first().map_or(1, |output| output.spline.breakpoints.len() - 1);
             for points in &mut phase.points {
                 if let Points::Uniform { points } = points {
@@ -33,47 +17,28 @@ impl<'p> Adapted<'p> {
                 output.spline.breakpoints = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
             }
         }
-        self
-    }
+    })
+}
 
-    /// A minimised objective in SI units as the user sees it.
-    pub fn in_its_unit(&self, minimised: f64) -> f64 {
-        let value = minimised / self.structure.objective_unit.factor;
-        if self.structure.maximize { -value } else { value }
-    }
+/// A minimised objective in SI units as the user sees it.
+pub fn in_its_unit(problem: &WithStructure<'_>, minimised: f64) -> f64 {
+    let value = minimised / problem.structure.objective_unit.factor;
+    if problem.structure.maximize { -value } else { value }
+}
 
-    /// One problem for each step of the continuation, in order; the last one has the parameters of
-    /// the program.
-    pub fn steps(&self) -> Vec<Self> {
-        let count = self.structure.continuations.iter().map(|c| c.steps.len()).max().unwrap_or(1);
-        let step = |i: usize| {
-            let mut structure = self.structure.clone();
+/// One problem for each step of the continuation, in order; the last one has the parameters of
+/// the program.
+pub fn steps<'p>(problem: &WithStructure<'p>) -> Vec<WithStructure<'p>> {
+    let count = problem.structure.continuations.iter().map(|c| c.steps.len()).max().unwrap_or(1);
+    let step = |i: usize| {
+        problem.edited(|structure| {
             for continuation in std::mem::take(&mut structure.continuations) {
                 if i + 1 < count {
                     let value = continuation.steps[i.min(continuation.steps.len() - 1)];
                     structure.parameters[continuation.parameter].value.fill(value);
                 }
             }
-            Self { problem: self.problem, structure }
-        };
-        (0..count).map(step).collect()
-    }
-}
-
-impl Problem for Adapted<'_> {
-    fn structure(&self) -> Structure {
-        self.structure.clone()
-    }
-
-    fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
-        self.problem.values(kernel, lanes, inputs, tables, values);
-    }
-
-    fn derivatives(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
-        self.problem.derivatives(kernel, point, tables, out);
-    }
-
-    fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]) {
-        self.problem.probes(kernel, lanes, inputs, tables, probes);
-    }
+        })
+    };
+    (0..count).map(step).collect()
 }

@@ -1,12 +1,12 @@
 //! Solves the way a user does who solves more than once, and says where the time goes.
 
-use crate::adapted::Adapted;
 use crate::answer::{Answer, Clocks, Parts, Run};
 use ntg::prelude::{Guess, Report, Settings, Solver, solve, solve_from};
+use ntg::runtime::problem::WithStructure;
 
 /// Solves until `run` has enough, from the spec's own guess or from another one, each time from nothing but
 /// that guess. What a solver keeps between solves is what the peers build before theirs.
-pub fn answer(problem: Adapted<'_>, guess: Option<&Guess>, run: Run) -> Result<Answer, String> {
+pub fn answer(problem: WithStructure<'_>, guess: Option<&Guess>, run: Run) -> Result<Answer, String> {
     let settings = Settings::default();
     let clocks = Clocks::start();
     let first = match guess {

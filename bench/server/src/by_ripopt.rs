@@ -1,10 +1,11 @@
 //! Solves ntg's own transcription by ripopt: the same variables, rows, scales and start.
 
-use crate::adapted::Adapted;
+use crate::adapted;
 use crate::answer::{Answer, Clocks, Run, Seconds};
 use ntg::prelude::{Guess, Settings};
 use ntg::runtime::guess::start;
 use ntg::runtime::nlp::{Assembly, Evaluation, Nlp, Scales};
+use ntg::runtime::problem::WithStructure;
 use ntg::runtime::settings::Scaling;
 use ntg::runtime::transcribe::{Transcription, Workspace};
 use ripopt::{NlpProblem, SolveStatus, SolverOptions};
@@ -12,7 +13,7 @@ use std::cell::RefCell;
 use std::time::Instant;
 
 /// Solves until `run` has enough. Only ripopt's own call is timed, and the evaluations in it by themselves.
-pub fn answer(problem: &Adapted<'_>, guess: Option<&Guess>, run: Run) -> Result<Answer, String> {
+pub fn answer(problem: &WithStructure<'_>, guess: Option<&Guess>, run: Run) -> Result<Answer, String> {
     let mut taken = vec![];
     loop {
         let mut answer = once(problem, guess)?;
@@ -24,13 +25,13 @@ pub fn answer(problem: &Adapted<'_>, guess: Option<&Guess>, run: Run) -> Result<
 }
 
 /// All steps of the continuation, each solution the guess of the next.
-fn once(problem: &Adapted<'_>, guess: Option<&Guess>) -> Result<Answer, String> {
+fn once(problem: &WithStructure<'_>, guess: Option<&Guess>) -> Result<Answer, String> {
     let mut last: Option<Vec<f64>> = None;
     let mut taken = Seconds::default();
     let mut evaluation = 0.0;
     let mut iterations = 0;
     let mut end = None;
-    for step in &problem.steps() {
+    for step in &adapted::steps(problem) {
         let mut nlp = Transcription::new(step).map_err(|error| error.to_string())?;
         let raw = last.map(Guess::raw);
         let first = start(&nlp, raw.as_ref().or(guess)).map_err(|error| error.to_string())?;
@@ -50,7 +51,7 @@ fn once(problem: &Adapted<'_>, guess: Option<&Guess>) -> Result<Answer, String> 
     Ok(Answer {
         taken: vec![taken],
         once: None,
-        objective: problem.in_its_unit(objective),
+        objective: adapted::in_its_unit(problem, objective),
         solved: status == SolveStatus::Optimal,
         status: format!("{status:?}"),
         iterations,

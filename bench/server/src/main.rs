@@ -14,9 +14,9 @@ mod by_ripopt;
 mod cases;
 mod start;
 
-use adapted::Adapted;
 use answer::Run;
 use ntg::prelude::Guess;
+use ntg::runtime::problem::WithStructure;
 use serde_json::{Value, json};
 use std::io::{BufRead, Write};
 
@@ -34,9 +34,9 @@ fn answer(line: &str) -> Result<Value, String> {
     let asked: Value = serde_json::from_str(line).map_err(|error| error.to_string())?;
     let name = asked["case"].as_str().ok_or("no case")?;
     let problem = cases::problem(name).ok_or_else(|| format!("there is no case `{name}`"))?;
-    let mut problem = Adapted::new(problem.as_ref());
+    let mut problem = WithStructure::new(problem.as_ref());
     if let Some(intervals) = asked["intervals"].as_u64() {
-        problem = problem.with_intervals(intervals as usize);
+        problem = adapted::with_intervals(&problem, intervals as usize);
     }
     let guess = route(&asked["route"])?.map(|route| Guess::new().route(&["x", "y"], &route));
     let run = Run {

@@ -1,7 +1,7 @@
 //! Which intervals are too coarse (docs/maths.md, section 14).
 
 use super::Round;
-use super::finer::Marks;
+use super::marks::Marks;
 use crate::report::{Report, violations};
 use crate::transcribe::layout::PhaseMember;
 use crate::transcribe::{SetupError, Transcription};

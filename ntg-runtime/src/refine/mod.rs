@@ -10,19 +10,19 @@
 
 mod display;
 mod estimate;
-mod finer;
+mod marks;
 
 use crate::error::Error;
 use crate::guess::Guess;
 use crate::nlp::Nlp;
-use crate::problem::Problem;
+use crate::problem::{Problem, WithStructure};
 use crate::report::Report;
 use crate::session::Session;
 use crate::settings::{InvalidSetting, Settings};
 use crate::solution::Solution;
 use crate::status::Status;
 use crate::transcribe::Transcription;
-use finer::{Finer, Marks};
+use marks::{Marks, split};
 use std::time::{Duration, Instant};
 
 /// How far to go.
@@ -136,7 +136,11 @@ pub fn refine(
     let settings = Settings { refine: None, ..settings.remembering() };
     let began = Instant::now();
     let before = Duration::try_from_secs_f64(report.seconds).unwrap_or_default();
-    let mesh = Finer::new(problem, report.solution.structure().clone());
+    let mesh = WithStructure::new(problem).edited(|structure| {
+        structure.clone_from(report.solution.structure());
+        // A solution starts every further round; there is nothing to continue from.
+        structure.continuations.clear();
+    });
     let mut run = Run { mesh, report, rounds: vec![], wanted, settings: &settings };
     let status = loop {
         if let Some(status) = run.round(before + began.elapsed())? {
@@ -152,7 +156,7 @@ pub fn refine(
 
 /// A refinement on its way: the last solve that counts, and its mesh.
 struct Run<'a> {
-    mesh: Finer<'a>,
+    mesh: WithStructure<'a>,
     report: Report,
     rounds: Vec<Round>,
     wanted: &'a Refinement,
@@ -185,7 +189,7 @@ impl Run<'_> {
         if marks.iter().all(Marks::is_empty) {
             return Ok(Some(RefineStatus::Shortest));
         }
-        let finer = self.mesh.split(&marks);
+        let finer = self.mesh.edited(|structure| split(structure, &marks));
         if Transcription::new(&finer)?.variables() > self.wanted.variables {
             return Ok(Some(RefineStatus::Variables));
         }
@@ -201,7 +205,7 @@ impl Run<'_> {
 }
 
 /// Solves on a finer mesh, from the solution on the one before.
-fn from(mesh: &Finer, before: &Solution, settings: &Settings) -> Result<Report, Error> {
+fn from(mesh: &WithStructure, before: &Solution, settings: &Settings) -> Result<Report, Error> {
     let mut session = Session::default();
     match session.solve_again(mesh, before, settings)? {
         Some(report) => Ok(report),

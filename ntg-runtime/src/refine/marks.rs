@@ -1,0 +1,37 @@
+//! What is made finer in each phase, and the structure that comes of it.
+
+use ntg_structure::{Points, Structure};
+
+/// New breakpoints and finer rules of one phase.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Marks {
+    /// Where intervals are split, in scaled time.
+    pub(super) at: Vec<f64>,
+    /// How many times equally spaced points are doubled.
+    pub(super) doublings: u32,
+}
+
+impl Marks {
+    /// Whether nothing is to be made finer.
+    pub(super) fn is_empty(&self) -> bool {
+        self.at.is_empty() && self.doublings == 0
+    }
+}
+
+/// More breakpoints; `marks` holds one entry a declared phase.
+pub(super) fn split(structure: &mut Structure, marks: &[Marks]) {
+    for (phase, marks) in structure.phases.iter_mut().zip(marks) {
+        for output in &mut phase.outputs {
+            let breakpoints = &mut output.spline.breakpoints;
+            breakpoints.extend(&marks.at);
+            breakpoints.sort_by(f64::total_cmp);
+            breakpoints.dedup();
+        }
+        for points in &mut phase.points {
+            if let Points::Uniform { points } = points {
+                // The old points remain: midpoints are added.
+                *points = ((*points - 1) << marks.doublings) + 1;
+            }
+        }
+    }
+}
