@@ -2,7 +2,7 @@
 //! found before any iteration.
 
 use ntg::prelude::*;
-use ntg::runtime::explain::{Conflict, Explanation};
+use ntg::runtime::explain::{Conflict, Explanation, Near};
 use ntg::runtime::transcribe::{SetupError, Why};
 
 use crate::support::Shipped;
@@ -33,6 +33,7 @@ fn a_signature_that_the_target_does_not_allow() {
     // At the target the radar stands 37 degrees below the horizon, where even nose-in shows 3.2.
     let found = conflict(&Shipped::spec("low_observable").with("signature_max", &[2.0]), Method::Auto);
     assert_eq!(names(&found), ["arrival", "low_observable"], "{found}");
+    assert!(found.settled && found.to_string().starts_with("near the last point"), "{found}");
 }
 
 #[test]
@@ -138,7 +139,30 @@ fn a_solved_problem_has_no_conflict_and_one_that_ended_early_none_either() {
     let early = Settings { max_iterations: 1, ..Settings::default() };
     let report = solve(problem.problem(), &early).unwrap_or_else(|error| panic!("{error}"));
     let found = report.explain(problem.problem(), &Settings::default());
-    assert_eq!(found, Ok(Some(Explanation::Consistent)), "{report}");
+    assert_eq!(found, Ok(Some(Explanation::Consistent(Near::End))), "{report}");
+}
+
+#[test]
+fn the_cosine_of_a_limit_that_the_target_does_not_allow() {
+    // Auto ends far away from every flight, from where the search comes to nothing; the guess tells.
+    let found = conflict(&Shipped::spec("low_observable_cosine").with("signature_max", &[2.0]), Method::Auto);
+    assert_eq!((names(&found), found.near), (vec!["arrival", "not_too_near"], Near::Guess), "{found}");
+    assert!(found.settled, "{found}");
+    assert!(found.to_string().starts_with("near the guess these cannot hold together"), "{found}");
+}
+
+#[test]
+fn a_conflict_where_a_solve_was_stopped_is_told_as_such() {
+    // The flight has a solution, but one iteration leads to a point around which the limit on the signature, flat
+    // there, cannot be met.
+    let problem = Shipped::spec("low_observable");
+    let early = Settings { max_iterations: 1, method: Method::Sqp, ..Settings::default() };
+    let report = solve(problem.problem(), &early).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(report.status, Status::IterationLimit);
+    let found = report.explain(problem.problem(), &early).unwrap_or_else(|error| panic!("{error}"));
+    let Some(Explanation::Conflict(found)) = found else { panic!("nothing to be careful about: {found:?}") };
+    assert!(!found.settled, "{found}");
+    assert!(found.to_string().starts_with("the solve was stopped before its end"), "{found}");
 }
 
 #[test]

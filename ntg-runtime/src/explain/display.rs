@@ -1,6 +1,6 @@
 //! A conflict as a person reads about it.
 
-use super::{Conflict, Explanation, Part};
+use super::{Conflict, Explanation, Near, Part};
 use crate::transcribe::names::brief;
 use std::fmt;
 
@@ -8,20 +8,32 @@ impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Conflict(conflict) => conflict.fmt(f),
-            Self::Consistent => f.write_str(
-                "all constraints can hold together near the last point: it is not they that keep the solve from a \
-                 solution",
+            Self::Consistent(near) => write!(
+                f,
+                "all constraints can hold together near {near}: it is not they that keep the solve from a solution"
             ),
-            Self::Unknown => {
-                f.write_str("whether all constraints can hold together near the last point could not be shown")
-            }
+            Self::Unknown => f.write_str(
+                "whether all constraints can hold together near the last point or the guess could not be shown",
+            ),
         }
+    }
+}
+
+impl fmt::Display for Near {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::End => "the last point",
+            Self::Guess => "the guess",
+        })
     }
 }
 
 impl fmt::Display for Conflict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("near the last point these cannot hold together")?;
+        if !self.settled {
+            f.write_str("the solve was stopped before its end, at a point that is no solution; ")?;
+        }
+        write!(f, "near {} these cannot hold together", self.near)?;
         f.write_str(if self.minimal {
             "; without any one of them the others could:"
         } else {

@@ -12,6 +12,7 @@ mod near;
 mod parts;
 
 use crate::error::Error;
+use crate::guess::start;
 use crate::newton;
 use crate::nlp::{Nlp, kkt};
 use crate::outcome::Outcome;
@@ -21,7 +22,7 @@ use crate::settings::Settings;
 use crate::status::Status;
 use crate::transcribe::Transcription;
 use crate::transcribe::rows::RowKind;
-use near::{Near, Row};
+use near::{Nearest, Row};
 use ntg_structure::{Block, Place, Unit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
@@ -53,17 +54,31 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Why a solve ended without a solution, as far as constraints are the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Explanation {
-    /// These constraints cannot hold together near the last point.
+    /// These constraints cannot hold together near a point.
     Conflict(Conflict),
-    /// All constraints can hold together near the last point: the reason is another one.
-    Consistent,
+    /// All constraints can hold together near a point: the reason is another one.
+    Consistent(Near),
     /// Neither could be shown, in the time that was given or at all.
     Unknown,
+}
+
+/// Near which point constraints were looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Near {
+    /// The point at which the solve ended.
+    End,
+    /// The spec's own guess.
+    Guess,
 }
 
 /// Constraints that cannot hold together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
+    /// Near which point.
+    pub near: Near,
+    /// Whether the solve itself came to an end. Where it was stopped by its limit of iterations, the constraints may
+    /// hold together at a point that it would have come to.
+    pub settled: bool,
     /// The constraints and bounds, those that are violated first.
     pub parts: Vec<Part>,
     /// Whether every one of them is known to be needed.
@@ -112,16 +127,20 @@ impl Explanation {
     pub fn conflict(&self) -> Option<&Conflict> {
         match self {
             Self::Conflict(conflict) => Some(conflict),
-            Self::Consistent | Self::Unknown => None,
+            Self::Consistent(_) | Self::Unknown => None,
         }
     }
 }
 
 impl Report {
-    /// Why no solution was found: the constraints that cannot hold together near the last point.
+    /// Why no solution was found: the constraints that cannot hold together near the last point, or near the spec's
+    /// own guess where the last point does not tell.
     /// None where there is nothing to explain: the problem was solved, or the solve was stopped (by
     /// its caller or its time limit), or its last point is not finite. The problem must be the one that was solved, with the same
     /// parameters.
+    ///
+    /// A solve that has ended for another reason than its constraints is no witness against them: where they can hold
+    /// together near the guess there is no conflict then, whatever is found near the last point.
     ///
     /// The search takes at most ten seconds, or `Settings::time_limit` where that is shorter, and
     /// `Settings::on_iteration` may cancel it.
@@ -135,44 +154,48 @@ impl Report {
         if self.is_solved() || stopped || x.iter().any(|v| !v.is_finite()) {
             return Ok(None);
         }
+        let until = Instant::now() + settings.time_limit.map_or(PATIENCE, |limit| limit.min(PATIENCE));
+        let settled = self.status != Status::IterationLimit;
+        let witness = matches!(self.status, Status::Infeasible { .. });
         let mut nlp = Transcription::with(problem, self.solution.structure().clone())?;
         if x.len() != nlp.variables() {
             return Ok(None);
         }
         nlp.set_scales(x, settings)?;
-        Ok(Some(near(&nlp, x, settings)))
+        let at_end = near(&nlp, (x, Near::End, settled), settings, until);
+        match &at_end {
+            Explanation::Consistent(_) => return Ok(Some(at_end)),
+            Explanation::Conflict(_) if witness => return Ok(Some(at_end)),
+            Explanation::Conflict(_) | Explanation::Unknown => {}
+        }
+        let guess = start(&nlp, None)?;
+        nlp.set_scales(&guess, settings)?;
+        let at_guess = near(&nlp, (&guess, Near::Guess, settled), settings, until);
+        Ok(Some(match (&at_end, &at_guess) {
+            (Explanation::Unknown, _) | (_, Explanation::Consistent(_)) => at_guess,
+            _ => at_end,
+        }))
     }
 }
 
 /// Why constraints cannot hold near a point.
-fn near(nlp: &Transcription, x: &[f64], settings: &Settings) -> Explanation {
-    let until = Instant::now() + settings.time_limit.map_or(PATIENCE, |limit| limit.min(PATIENCE));
+fn near(
+    nlp: &Transcription,
+    (x, near, settled): (&[f64], Near, bool),
+    settings: &Settings,
+    until: Instant,
+) -> Explanation {
     let search = Search { nlp, settings: &settings.remembering(), until };
     let all: Constraints = (0..nlp.rows()).filter_map(|row| search.constraint(row)).collect();
     let Some(relaxed) = search.least(&all, x, NOTHING) else { return Explanation::Unknown };
     if relaxed.violation <= NOTHING {
-        return Explanation::Consistent;
+        return Explanation::Consistent(near);
     }
-    let (mut kept, mut relaxed) = match search.without_idle(&all, &relaxed) {
-        Some(fewer) => fewer,
-        None => (all, relaxed),
-    };
-    let mut open = search.order(&kept, &relaxed);
-    // What cannot be decided among many constraints is asked again among few.
-    for _ in 0..2 {
-        for constraint in std::mem::take(&mut open) {
-            let mut without = kept.clone();
-            without.remove(&constraint);
-            let none = AS_GOOD_AS_NONE * relaxed.violation;
-            match search.least(&without, &relaxed.outcome.x, none) {
-                Some(fewer) if fewer.violation > none => (kept, relaxed) = (without, fewer),
-                Some(_) => {}
-                None => open.push(constraint),
-            }
-        }
-    }
+    let (kept, relaxed, minimal) = search.smaller(all, relaxed);
     let measured = search.round(&kept, &relaxed.outcome.x, FINE).filter(Relaxed::is_infeasible);
-    Explanation::Conflict(search.conflict(&kept, &measured.unwrap_or(relaxed), open.is_empty()))
+    let relaxed = measured.unwrap_or(relaxed);
+    let parts = search.parts(&kept, &relaxed);
+    Explanation::Conflict(Conflict { near, settled, parts, minimal, violation: relaxed.violation })
 }
 
 impl Relaxed {
@@ -197,6 +220,30 @@ impl Search<'_> {
             }
             RowKind::Integral(_) => None,
         }
+    }
+
+    /// A conflict without the constraints that it does not need, and whether each of the others is known to be needed.
+    fn smaller(&self, all: Constraints, relaxed: Relaxed) -> (Constraints, Relaxed, bool) {
+        let (mut kept, mut relaxed) = match self.without_idle(&all, &relaxed) {
+            Some(fewer) => fewer,
+            None => (all, relaxed),
+        };
+        let mut open = self.order(&kept, &relaxed);
+        // What cannot be decided among many constraints is asked again among few.
+        for _ in 0..2 {
+            for constraint in std::mem::take(&mut open) {
+                let mut without = kept.clone();
+                without.remove(&constraint);
+                let none = AS_GOOD_AS_NONE * relaxed.violation;
+                match self.least(&without, &relaxed.outcome.x, none) {
+                    Some(fewer) if fewer.violation > none => (kept, relaxed) = (without, fewer),
+                    Some(_) => {}
+                    None => open.push(constraint),
+                }
+            }
+        }
+        let minimal = open.is_empty();
+        (kept, relaxed, minimal)
     }
 
     /// The least violation of some constraints, without the others; none where it was not found in
@@ -233,7 +280,7 @@ impl Search<'_> {
             Some(_) => Row::Free,
         };
         let rows: Vec<Row> = (0..self.nlp.rows()).map(row).collect();
-        let near = Near::new(self.nlp, x, &rows);
+        let near = Nearest::new(self.nlp, x, &rows);
         let settings = Settings {
             tolerance: TOLERANCE,
             constraint_tolerance: TOLERANCE,

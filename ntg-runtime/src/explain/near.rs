@@ -28,7 +28,7 @@ pub(super) enum Row {
 }
 
 /// The program near a point.
-pub(super) struct Near<'a, N: Nlp> {
+pub(super) struct Nearest<'a, N: Nlp> {
     nlp: &'a N,
     limits: Limits,
     blocks: Vec<Block>,
@@ -37,7 +37,7 @@ pub(super) struct Near<'a, N: Nlp> {
     sizes: Vec<f64>,
 }
 
-impl<'a, N: Nlp> Near<'a, N> {
+impl<'a, N: Nlp> Nearest<'a, N> {
     pub(super) fn new(nlp: &'a N, x0: &[f64], rows: &[Row]) -> Self {
         let mut limits = nlp.limits().clone();
         for (i, row) in rows.iter().enumerate() {
@@ -98,7 +98,7 @@ fn distances(x0: &[f64], sizes: &[f64]) -> Block {
     }
 }
 
-impl<N: Nlp> Nlp for Near<'_, N> {
+impl<N: Nlp> Nlp for Nearest<'_, N> {
     type Workspace = (N::Workspace, Evaluation);
 
     fn limits(&self) -> &Limits {

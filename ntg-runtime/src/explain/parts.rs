@@ -1,6 +1,6 @@
 //! The parts of a conflict in the user's words: name, place, time, amount.
 
-use super::{AS_GOOD_AS_NONE, Conflict, Constraints, IDLE, NOTHING, Part, Relaxed, Search};
+use super::{AS_GOOD_AS_NONE, Constraints, IDLE, NOTHING, Part, Relaxed, Search};
 use crate::nlp::{Nlp, kkt};
 use crate::transcribe::layout::Time;
 use crate::transcribe::names;
@@ -8,8 +8,8 @@ use crate::transcribe::rows::constraint_name;
 use ntg_structure::{Place, Unit};
 
 impl Search<'_> {
-    /// What the least violation of a minimal set says.
-    pub(super) fn conflict(&self, kept: &Constraints, relaxed: &Relaxed, minimal: bool) -> Conflict {
+    /// The parts of a conflict: what its least violation misses, the worst first, and what holds only because of that.
+    pub(super) fn parts(&self, kept: &Constraints, relaxed: &Relaxed) -> Vec<Part> {
         let mut parts: Vec<(f64, Part)> = kept.iter().filter_map(|c| self.part(*c, relaxed)).collect();
         let largest = parts.iter().map(|(relative, _)| *relative).fold(0.0, f64::max);
         for (relative, part) in parts.iter_mut().filter(|(relative, _)| *relative < AS_GOOD_AS_NONE * largest) {
@@ -17,8 +17,7 @@ impl Search<'_> {
         }
         parts.extend(self.bounds(relaxed).into_iter().map(|part| (0.0, part)));
         parts.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let parts = parts.into_iter().map(|(_, part)| part).collect();
-        Conflict { parts, minimal, violation: relaxed.violation }
+        parts.into_iter().map(|(_, part)| part).collect()
     }
 
     /// One constraint with its relative violation: at its worst row, or at the row with the largest
