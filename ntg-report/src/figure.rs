@@ -78,6 +78,14 @@ pub fn lets(runs: &Runs<'_>) -> Vec<Panel> {
     quantities(runs, |run| run.lets.iter().collect())
 }
 
+/// An output or a named expression of one agent and member, by its path (`uav[2].x`); nothing where there is none.
+pub fn quantity(runs: &Runs<'_>, path: &str) -> Vec<Panel> {
+    let mut panels =
+        quantities(runs, |run| run.outputs.iter().chain(&run.lets).filter(|(own, _)| *own == path).collect());
+    panels.iter_mut().for_each(|panel| path.clone_into(&mut panel.title));
+    panels
+}
+
 fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a Series)>) -> Vec<Panel> {
     let mut panels: Vec<Panel> = vec![];
     for (index, (_, run)) in runs.iter().enumerate() {

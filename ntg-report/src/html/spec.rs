@@ -3,7 +3,7 @@
 
 use maud::{Markup, html};
 
-use super::tables::{multiplier_words, number, place_words, with_unit};
+use super::tables::{multiplier_words, number, place_words, prose, with_unit};
 use crate::run::{Constraint, Run, Spec};
 
 /// Relative violations at points above this are violations.
@@ -88,8 +88,8 @@ fn findings(spec: &Spec) -> Markup {
                 @for found in &spec.findings {
                     li {
                         span class={ "severity " (found.severity) } { (found.severity) " " (found.code) }
-                        " line " (found.line) ": " (found.message)
-                        @if !found.help.is_empty() { br; span.quiet { (found.help) } }
+                        " line " (found.line) ": " (prose(&found.message))
+                        @if !found.help.is_empty() { br; span.quiet { (prose(&found.help)) } }
                     }
                 }
             }

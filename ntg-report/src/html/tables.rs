@@ -48,6 +48,20 @@ pub(super) fn multiplier_words(multiplier: &Multiplier) -> String {
     format!("{}{}", number(multiplier.value), if multiplier.density { " per second" } else { "" })
 }
 
+/// Prose in which code stands between backticks, as in documentation and messages.
+pub(super) fn prose(text: &str) -> Markup {
+    let parts: Vec<&str> = text.split('`').collect();
+    // A backtick without its partner is a character like any other.
+    let closed = parts.len() - 1 + parts.len() % 2;
+    html! {
+        @for (number, part) in parts.iter().enumerate() {
+            @if number % 2 == 1 && number < closed { code { (part) } }
+            @else if number == closed { "`" (part) }
+            @else { (part) }
+        }
+    }
+}
+
 /// The objective's terms.
 pub(super) fn terms(run: &Run) -> Markup {
     html! {
@@ -212,6 +226,24 @@ pub(super) fn comparison(runs: &Runs<'_>) -> Markup {
                     }
                 } }
             } }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn code_stands_between_backticks_and_a_lone_one_stays() {
+        for (text, page) in [
+            ("plain & simple", "plain &amp; simple"),
+            ("`x` is a position", "<code>x</code> is a position"),
+            ("raise `a` or `b<c>`", "raise <code>a</code> or <code>b&lt;c&gt;</code>"),
+            ("the ` of `x`", "the <code> of </code>x`"),
+            ("a lone ` stays", "a lone ` stays"),
+        ] {
+            assert_eq!(prose(text).into_string(), page);
         }
     }
 }
