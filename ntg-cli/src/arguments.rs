@@ -156,26 +156,33 @@ pub(crate) struct Solve {
     /// Give up after that many iterations.
     #[arg(long, value_name = "N")]
     pub(crate) max_iterations: Option<usize>,
-    /// Solve from many starts (the guess, a coarse search over the plane, random routes, perturbed
-    /// guesses), list the local minima, and go on with the best.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) starts: Option<u32>,
+    #[command(flatten)]
+    pub(crate) starts: Starts,
     /// Solve again on finer and finer meshes, until cost and constraints are exact to that relative
     /// error; with `--starts`, every minimum.
     #[arg(long, value_name = "ERROR")]
     pub(crate) refine: Option<f64>,
-    /// The seed of the random starts: the same seed gives the same starts.
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "starts")]
-    pub(crate) seed: u64,
-    /// Where starts come from.
-    #[arg(long, value_enum, default_value_t = Kind::Mixed, requires = "starts")]
-    pub(crate) start_kind: Kind,
     /// Largest scaled residual of the optimality conditions.
     #[arg(long, value_name = "RESIDUAL", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// Which method solves the problem.
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub(crate) method: Method,
+}
+
+/// Which starts are wanted.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct Starts {
+    /// Solve from many starts (the guess, a coarse search over the plane, random routes, perturbed
+    /// guesses) and find the local minima, the best first.
+    #[arg(long = "starts", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) count: Option<u32>,
+    /// The seed of the random starts: the same seed gives the same starts.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "count")]
+    pub(crate) seed: u64,
+    /// Where starts come from.
+    #[arg(long = "start-kind", value_enum, default_value_t = Kind::Mixed, requires = "count")]
+    pub(crate) kind: Kind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -19,6 +19,7 @@ mod route;
 mod runs;
 mod setup;
 mod solve;
+mod starts;
 mod sweep;
 mod values;
 mod watch;

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use ntg_report::figure::{self, Panel};
 use ntg_report::{Run, draw, png};
 
-use crate::{Exit, runs, write};
+use crate::runs::{self, Inputs};
+use crate::{Exit, write};
 
 /// Draw outputs, named expressions, constraints with their bounds, and tracks.
 ///
@@ -13,25 +14,22 @@ use crate::{Exit, runs, write};
 ///   ntg plot specs/van_der_pol.ntg -o oscillator.svg
 ///   ntg plot mission.ntg --xy x,y --show speed -o track.png
 ///   ntg plot slow.json fast.json --show speed -o comparison.svg
+///   ntg plot mission.ntg --starts 50 --xy x,y -o minima.svg     # every local minimum
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Arguments {
-    /// Specs, which are solved, or saved results (`ntg solve --save`); several are drawn together.
-    #[arg(required = true, value_name = "SPEC|RESULT")]
-    inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    inputs: Inputs,
     /// Where to write; `.svg` or `.png`.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Draw a track of two quantities, with equal axes where they have the same unit.
     #[arg(long, value_name = "X,Y", value_parser = runs::pair)]
     xy: Vec<(String, String)>,
-    /// Draw this quantity or constraint (by name) over time; without `--show` and `--xy`
-    /// everything is drawn.
+    /// Draw this quantity or constraint (by name) over time: of all agents and members, or of one
+    /// (`striker.x`, `x[2]`); without `--show` and `--xy` everything is drawn.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     show: Vec<String>,
-    /// Set a parameter of the spec, as for `ntg solve`.
-    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
-    set: Vec<String>,
     /// Replace an existing file.
     #[arg(long)]
     force: bool,
@@ -53,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         _ => return Err(format!("`{}`: plots are .svg or .png files", arguments.output.display())),
     };
     write::may_write(&arguments.output, arguments.force)?;
-    let loaded = runs::load(&arguments.inputs, &arguments.set)?;
+    let loaded = arguments.inputs.load()?;
     let runs: Vec<(String, &Run)> = loaded.iter().map(|(name, run)| (name.clone(), run)).collect();
     let panels = panels(arguments, &runs)?;
     let names: Vec<&str> = runs.iter().map(|(_, run)| run.problem.as_str()).collect();
@@ -78,9 +76,11 @@ fn panels(arguments: &Arguments, runs: &figure::Runs<'_>) -> Result<Vec<Panel>, 
         return Ok(over_time);
     }
     for name in &arguments.show {
-        let before = panels.len();
-        panels.extend(over_time.iter().filter(|panel| panel.title == *name).cloned());
-        if panels.len() == before {
+        let mut named: Vec<Panel> = over_time.iter().filter(|panel| panel.title == *name).cloned().collect();
+        if named.is_empty() {
+            named = figure::quantity(runs, name);
+        }
+        if named.is_empty() {
             let mut known: Vec<&str> = vec![];
             for panel in &over_time {
                 if !known.contains(&panel.title.as_str()) {
@@ -89,6 +89,7 @@ fn panels(arguments: &Arguments, runs: &figure::Runs<'_>) -> Result<Vec<Panel>, 
             }
             return Err(format!("there is no `{name}` over time; there are: `{}`", known.join("`, `")));
         }
+        panels.extend(named);
     }
     Ok(panels)
 }
@@ -99,6 +100,14 @@ fn sentence(runs: &figure::Runs<'_>) -> String {
         let unit = if run.objective_unit.is_empty() { String::new() } else { format!(" {}", run.objective_unit) };
         format!("{}, objective {:.6}{unit}", run.status, run.objective)
     };
+    if let [(_, best), others @ ..] = runs
+        && let Some(found) = best.starts.as_ref().filter(|_| others.iter().all(|(_, run)| run.spec.is_none()))
+    {
+        // The names of minima, which the legend has, say their objectives.
+        let minima = if found.minima.len() == 1 { "minimum" } else { "minima" };
+        let (solved, tried, count) = (found.solved, found.tried, found.minima.len());
+        return format!("{solved} of {tried} starts solved, {count} local {minima}; the best: {}", one(best));
+    }
     match runs {
         [(_, run)] => one(run),
         several => several.iter().map(|(name, run)| format!("{name}: {}", one(run))).collect::<Vec<_>>().join("; "),

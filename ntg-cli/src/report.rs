@@ -4,29 +4,28 @@ use std::path::PathBuf;
 
 use ntg_report::{Run, html};
 
-use crate::{Exit, runs, write};
+use crate::runs::{self, Inputs};
+use crate::{Exit, write};
 
 /// Write one HTML file that needs no network: spec, constraints, charts, multipliers, checks.
+///
+/// The first run is reported in full, the others are compared with it.
 ///
 /// Examples:
 ///   ntg report specs/low_observable.ntg -o report.html
 ///   ntg report first.json second.json -o comparison.html
+///   ntg report mission.ntg --starts 50 -o minima.html     # every local minimum
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Arguments {
-    /// Specs, which are solved, or saved results (`ntg solve --save`). The first is reported in
-    /// full, the others are compared with it.
-    #[arg(required = true, value_name = "SPEC|RESULT")]
-    inputs: Vec<PathBuf>,
+    #[command(flatten)]
+    inputs: Inputs,
     /// Where to write.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Draw a track of two quantities; without it, of `x` and `y` where there are such outputs.
     #[arg(long, value_name = "X,Y", value_parser = runs::pair)]
     xy: Vec<(String, String)>,
-    /// Set a parameter of the spec, as for `ntg solve`.
-    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
-    set: Vec<String>,
     /// Replace an existing file.
     #[arg(long)]
     force: bool,
@@ -34,7 +33,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     write::may_write(&arguments.output, arguments.force)?;
-    let loaded = runs::load(&arguments.inputs, &arguments.set)?;
+    let loaded = arguments.inputs.load()?;
     let runs: Vec<(String, &Run)> = loaded.iter().map(|(name, run)| (name.clone(), run)).collect();
     let page = html::page(&runs, &html::Page { tracks: arguments.xy.clone() })?;
     write::whole(&arguments.output, arguments.force, page.as_bytes())?;

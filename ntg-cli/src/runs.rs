@@ -2,22 +2,83 @@
 
 use std::path::{Path, PathBuf};
 
+use ntg_compiler::diagnostic::Diagnostic;
+use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_report::Run;
 use ntg_report::run::Recording;
-use ntg_runtime::settings::Settings;
+use ntg_runtime::guess::Guess;
+use ntg_runtime::multistart::MultiReport;
+use ntg_runtime::report::Report;
+use ntg_runtime::settings::{Progress, Settings};
 
 use crate::solve::explained;
 use crate::watch::{Interrupt, Watch};
-use crate::{files, setup, values};
+use crate::{arguments, files, setup, starts, values};
 
 /// What can be read as a run.
 pub(crate) const SAVED: &str = "give a file that `ntg solve --save` has written";
 
-/// One run for each file, named by its file where there are several.
-pub(crate) fn load(paths: &[PathBuf], set: &[String]) -> Result<Vec<(String, Run)>, String> {
-    let interrupt = Interrupt::install();
-    paths.iter().map(|path| Ok((name(path), run(path, set, &interrupt)?))).collect()
+/// Files, and what is wanted of those that are specs.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Inputs {
+    /// Specs, which are solved, or saved results (`ntg solve --save`); several are shown together.
+    #[arg(required = true, value_name = "SPEC|RESULT")]
+    files: Vec<PathBuf>,
+    /// Set a parameter of the spec, as for `ntg solve`.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+    #[command(flatten)]
+    starts: arguments::Starts,
+}
+
+/// Minima of one spec that are shown: as many as there are colours.
+const SHOWN: usize = 8;
+
+impl Inputs {
+    /// The runs, each with its name: one for each file, or for each local minimum where there are many starts.
+    pub(crate) fn load(&self) -> Result<Vec<(String, Run)>, String> {
+        let interrupt = Interrupt::install();
+        let mut found = vec![];
+        for path in &self.files {
+            let runs = match path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+                true => vec![(name(path), self.saved(path)?)],
+                false => self.solved(path, &interrupt)?,
+            };
+            found.extend(runs);
+        }
+        Ok(found)
+    }
+
+    fn saved(&self, path: &Path) -> Result<Run, String> {
+        for (given, option) in [(!self.set.is_empty(), "--set"), (self.starts.count.is_some(), "--starts")] {
+            if given {
+                return Err(format!("`{}` is solved already; {option} goes with a spec", path.display()));
+            }
+        }
+        let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
+        Run::read(&text).map_err(|message| format!("`{}` {message}; {SAVED}", path.display()))
+    }
+
+    fn solved(&self, path: &Path, interrupt: &Interrupt) -> Result<Vec<(String, Run)>, String> {
+        // Findings have been said.
+        let (source, compiled) = files::compile(path).ok_or_else(String::new)?;
+        let mut problem = Interpreted::new(&compiled.program);
+        for assignment in &self.set {
+            values::set(&mut problem, assignment)?;
+        }
+        let spec = Spec { path, problem, source, notes: compiled.notes };
+        match starts::solve(&spec.problem, &Guess::new(), (&self.starts, interrupt), &Settings::default()) {
+            None => Ok(vec![(name(path), spec.one(interrupt)?)]),
+            Some(found) => {
+                let found = found.map_err(|error| setup::words(&error, &spec.source))?;
+                let runs = spec.minima(&found, interrupt)?;
+                let several = self.files.len() > 1;
+                let named = |label: String| if several { format!("{}: {label}", name(path)) } else { label };
+                Ok(runs.into_iter().map(|(label, run)| (named(label), run)).collect())
+            }
+        }
+    }
 }
 
 /// The file's name without folder and extension.
@@ -25,33 +86,62 @@ fn name(path: &Path) -> String {
     path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-fn run(path: &Path, set: &[String], interrupt: &Interrupt) -> Result<Run, String> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
-        if !set.is_empty() {
-            return Err(format!("`{}` is solved already; --set goes with a spec", path.display()));
+/// A spec that is ready to be solved.
+struct Spec<'a> {
+    path: &'a Path,
+    problem: Interpreted,
+    source: Source,
+    notes: Vec<Diagnostic>,
+}
+
+impl Spec<'_> {
+    /// The run from the spec's own guess.
+    fn one(&self, interrupt: &Interrupt) -> Result<Run, String> {
+        let mut settings = Settings::default();
+        let watch = Watch::new(interrupt);
+        watch.over(&mut settings);
+        let report = ntg_runtime::solve(&self.problem, &settings);
+        let iterations = watch.end(crate::solve::is_cancelled(&report));
+        let report = report.map_err(|error| setup::words(&error, &self.source))?;
+        Ok(self.record(&report, (None, interrupt), &iterations))
+    }
+
+    /// A run for each minimum, named by its objective and by how many starts led to it; or the nearest
+    /// point where there is none. The first one says what all starts found.
+    fn minima(&self, found: &MultiReport, interrupt: &Interrupt) -> Result<Vec<(String, Run)>, String> {
+        let best = found.best().ok_or_else(|| found.to_string())?;
+        let first = self.record(best, (Some(found), interrupt), &[]);
+        let others = found.minima.iter().skip(1).take(SHOWN - 1);
+        let others = others.map(|minimum| {
+            // The spec stands in the first run.
+            Run { spec: None, ..self.record(&minimum.report, (None, interrupt), &[]) }
+        });
+        let name = |index: usize, run: &Run| match found.minima.get(index) {
+            Some(minimum) => format!("{:.6}, {} of {} starts", run.objective, minimum.count, found.tried()),
+            None => "the nearest point".to_owned(),
+        };
+        if found.minima.len() > SHOWN {
+            let path = self.path.display();
+            eprintln!("note: {path}: {} local minima; the best {SHOWN} are shown", found.minima.len());
         }
-        let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
-        return Run::read(&text).map_err(|message| format!("`{}` {message}; {SAVED}", path.display()));
+        let runs = std::iter::once(first).chain(others).enumerate();
+        Ok(runs.map(|(index, run)| (name(index, &run), run)).collect())
     }
-    // Findings have been said.
-    let (source, compiled) = files::compile(path).ok_or_else(String::new)?;
-    let mut problem = Interpreted::new(&compiled.program);
-    for assignment in set {
-        values::set(&mut problem, assignment)?;
+
+    fn record(
+        &self,
+        report: &Report,
+        (starts, interrupt): (Option<&MultiReport>, &Interrupt),
+        iterations: &[Progress],
+    ) -> Run {
+        if !report.is_solved() {
+            eprintln!("warning: {}: {}; what follows is the last point", self.path.display(), report.status);
+        }
+        let explanation = explained(report, &self.problem, &Settings::default(), interrupt);
+        let (problem, explanation, source, notes) =
+            (&self.problem, explanation.as_ref(), &self.source, &self.notes[..]);
+        Recording { problem, report, explanation, starts, source, notes, iterations }.run()
     }
-    let mut settings = Settings::default();
-    let watch = Watch::new(interrupt);
-    watch.over(&mut settings);
-    let report = ntg_runtime::solve(&problem, &settings);
-    let iterations = watch.end(crate::solve::is_cancelled(&report));
-    let report = report.map_err(|error| setup::words(&error, &source))?;
-    if !report.is_solved() {
-        eprintln!("warning: {}: {}; what follows is the last point", path.display(), report.status);
-    }
-    let explanation = explained(&report, &problem, &settings, interrupt);
-    let (explanation, notes, iterations) = (explanation.as_ref(), &compiled.notes, &iterations);
-    let recording = Recording { problem: &problem, report: &report, explanation, source: &source, notes, iterations };
-    Ok(recording.run())
 }
 
 /// `x,y` as two names.

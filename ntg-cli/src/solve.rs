@@ -10,7 +10,7 @@ use ntg_interp::Interpreted;
 use ntg_report::run::Recording;
 use ntg_runtime::explain::Explanation;
 use ntg_runtime::guess::Guess;
-use ntg_runtime::multistart::{MultiReport, multistart_from};
+use ntg_runtime::multistart::MultiReport;
 use ntg_runtime::refine::{Refined, Refinement};
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::{Method, Settings};
@@ -58,11 +58,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let interrupt = Interrupt::install();
     let guess = guess.unwrap_or_default();
     let mut iterations = vec![];
-    let found = match starts::wanted(arguments, &interrupt) {
-        Some(starts) => {
-            interrupt.over(&mut settings);
-            multistart_from(&problem, &guess, &starts, &settings).map(Found::Many)
-        }
+    let found = match crate::starts::solve(&problem, &guess, (&arguments.starts, &interrupt), &settings) {
+        Some(found) => found.map(Found::Many),
         None => {
             let watch = Watch::new(&interrupt);
             watch.over(&mut settings);
@@ -86,9 +83,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
-        let notes = &compiled.notes;
-        let iterations = &iterations;
-        let run = Recording { problem: &problem, report, explanation, source: &source, notes, iterations }.run();
+        let (source, notes, iterations) = (&source, &compiled.notes, &iterations[..]);
+        let run = Recording { problem: &problem, report, explanation, starts, source, notes, iterations }.run();
         write::whole(path, arguments.force, run.text().as_bytes())?;
     }
     Ok(match report.is_solved() && report.refined.as_ref().is_none_or(Refined::is_met) {

@@ -8,8 +8,8 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use ntg_runtime::settings::{Control, Progress, Settings};
 
-/// How often the line is drawn again.
-const REDRAW: Duration = Duration::from_millis(100);
+/// How often a line of progress is drawn again.
+pub(crate) const REDRAW: Duration = Duration::from_millis(100);
 
 /// Whether someone has pressed Ctrl-C. The first press stops solves at their next iteration, so
 /// that everything ends in order; the second ends the process.

@@ -106,6 +106,46 @@ fn saved_results_are_compared_and_drawn_together() {
 }
 
 #[test]
+fn every_local_minimum_is_drawn_listed_and_saved() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let spec = specs().join("missile_intercept.ntg");
+    let spec = spec.to_str().expect("UTF-8");
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("a file");
+    done(folder.path(), &["plot", spec, "--starts", "16", "--xy", "x,y", "-o", "minima.svg"]);
+    let picture = read("minima.svg");
+    // Both turns, the better one first; its dashed sibling is known on paper to cost 105.65148.
+    assert!(
+        picture.contains("16 of 16 starts solved, 2 local minima; the best: solved, objective 95.97491"),
+        "{picture}"
+    );
+    let (right, left) = (picture.find("95.974911, 15 of 16 starts"), picture.find("105.651512, 1 of 16 starts"));
+    assert!(right.is_some() && right < left, "{picture}");
+
+    done(folder.path(), &["solve", spec, "--starts", "16", "--save", "best.json"]);
+    done(folder.path(), &["report", "best.json", "-o", "best.html"]);
+    done(folder.path(), &["report", spec, "--starts", "16", "-o", "minima.html"]);
+    for page in [read("best.html"), read("minima.html")] {
+        assert!(page.contains("<h2>Local minima</h2>") && page.contains("16 of 16 starts were solved"));
+        assert!(page.contains("95.97491 s") && page.contains("105.6515 s"));
+    }
+    assert!(read("minima.html").contains("id=\"comparison\"") && !read("best.html").contains("id=\"comparison\""));
+    refused(folder.path(), &["plot", "best.json", "--starts", "4", "-o", "p.svg"], "--starts goes with a spec");
+}
+
+#[test]
+fn one_agents_quantity_is_drawn_by_its_path() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let spec = specs().join("strike_and_look.ntg");
+    let spec = spec.to_str().expect("UTF-8");
+    done(folder.path(), &["solve", spec, "--save", "both.json"]);
+    done(folder.path(), &["plot", "both.json", "--show", "x", "-o", "all.svg"]);
+    done(folder.path(), &["plot", "both.json", "--show", "striker.x", "-o", "one.svg"]);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("a picture");
+    assert!(read("all.svg").contains("looker.x") && read("all.svg").contains("striker.x"));
+    assert!(read("one.svg").contains("striker.x") && !read("one.svg").contains("looker.x"));
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused_with_what_can() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let spec = specs().join("van_der_pol.ntg");

@@ -49,6 +49,7 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                 main {
                     (summary(first))
                     (study::explanation(first))
+                    (study::minima(first))
                     @if runs.len() > 1 { (tables::comparison(runs)) }
                     (charts("tracks", "Tracks", &data.tracks))
                     (charts("outputs", "Outputs", &data.outputs))
@@ -82,9 +83,9 @@ fn head(run: &Run) -> Markup {
                 button #theme type="button" title="light or dark" { "◐" }
             }
             @let doc = run.doc.split("\n\n").next().unwrap_or("");
-            @if !doc.is_empty() { p.doc { (doc) } }
+            @if !doc.is_empty() { p.doc { (tables::prose(doc)) } }
             nav {
-                @for (anchor, name) in [("tracks", "Tracks"), ("outputs", "Outputs"), ("constraints", "Constraints"), ("spec", "Spec"), ("table", "Table"), ("convergence", "Convergence"), ("discretisation", "Discretisation")] {
+                @for (anchor, name) in [("minima", "Local minima"), ("tracks", "Tracks"), ("outputs", "Outputs"), ("constraints", "Constraints"), ("spec", "Spec"), ("table", "Table"), ("convergence", "Convergence"), ("discretisation", "Discretisation")] {
                     a href={ "#" (anchor) } { (name) }
                 }
             }
@@ -97,7 +98,7 @@ fn summary(run: &Run) -> Markup {
     let unit = &run.objective_unit;
     html! {
         section #summary {
-            @if !run.advice.is_empty() { p.advice { "Try: " (run.advice) } }
+            @if !run.advice.is_empty() { p.advice { "Try: " (tables::prose(&run.advice)) } }
             dl.cards {
                 (card("objective", &tables::with_unit(run.objective, unit), "as discretised"))
                 (card("finely integrated", &tables::with_unit(run.objective_fine, unit), "closer to what following it would cost"))

@@ -1,8 +1,8 @@
-//! Why there is no solution, and how the mesh was refined.
+//! Why there is no solution, which local minima there are, and how the mesh was refined.
 
 use maud::{Markup, html};
 
-use super::tables::{number, place_words, seconds, small, with_unit};
+use super::tables::{number, place_words, prose, seconds, small, with_unit};
 use crate::run::Run;
 
 /// The constraints that cannot hold together; nothing where there is nothing to explain.
@@ -11,7 +11,7 @@ pub(super) fn explanation(run: &Run) -> Markup {
     html! {
         section #infeasible {
             h2 { "Why there is no solution" }
-            p.advice { (capitalised(&found.words)) }
+            p.advice { (prose(&capitalised(&found.words))) }
             @if !found.parts.is_empty() {
                 div.scroll { table {
                     thead { tr { th { "constraint or bound" } th.n { "line" } th.n { "missed by" } th { "where" } } }
@@ -28,6 +28,33 @@ pub(super) fn explanation(run: &Run) -> Markup {
                     } }
                 } }
                 p.quiet { "Amounts are those of the least sum of violations near the last point, each relative to the size of its bounds." }
+            }
+        }
+    }
+}
+
+/// The local minima that many starts found; nothing without.
+pub(super) fn minima(run: &Run) -> Markup {
+    let Some(found) = &run.starts else { return html! {} };
+    html! {
+        section #minima {
+            h2 { "Local minima" }
+            p { (found.solved) " of " (found.tried) " starts were solved, in " (seconds(found.seconds)) "." }
+            @for note in &found.notes { p.advice { (prose(&capitalised(note))) } }
+            @if !found.minima.is_empty() {
+                div.scroll { table {
+                    thead { tr {
+                        th.n { "objective" } th.n { "starts" }
+                        th.n title="largest violation, relative to the bounds" { "missed between points" } th { "first found from" }
+                    } }
+                    tbody { @for minimum in &found.minima {
+                        tr {
+                            td.n { (with_unit(minimum.objective, &run.objective_unit)) } td.n { (minimum.count) }
+                            td.n { (small(minimum.violation_between)) } td { (minimum.from) }
+                        }
+                    } }
+                } }
+                p.quiet { "The best stands first; one that misses its constraints widely between the points is a minimum of this mesh alone." }
             }
         }
     }

@@ -10,7 +10,7 @@ mod study;
 
 pub use layout::layout;
 pub use record::Recording;
-pub use study::{Explanation, Part, Refinement, Round};
+pub use study::{Explanation, Minimum, Part, Refinement, Round, Starts};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -57,6 +57,9 @@ pub struct Run {
     /// Why there is no solution; none where there is one, or nobody asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explanation: Option<Explanation>,
+    /// What the starts found of which this is the best; none where there was one start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub starts: Option<Starts>,
     /// How the mesh was refined; none where it was not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refinement: Option<Refinement>,

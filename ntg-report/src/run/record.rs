@@ -28,6 +28,8 @@ pub struct Recording<'a> {
     pub report: &'a Report,
     /// Why there is no solution, where someone asked.
     pub explanation: Option<&'a ntg_runtime::explain::Explanation>,
+    /// What the starts found of which this is the best, where there were several.
+    pub starts: Option<&'a ntg_runtime::multistart::MultiReport>,
     /// The spec.
     pub source: &'a Source,
     /// What the compiler had to say about it.
@@ -56,6 +58,7 @@ impl Recording<'_> {
             seconds: report.seconds,
             violation: Violation { points: report.violation.points, between: report.violation.between },
             explanation: self.explanation.map(Into::into),
+            starts: self.starts.map(Into::into),
             refinement: report.refined.as_ref().map(Into::into),
             layout: layout(structure),
             unknowns: solution.coefficients().to_vec(),

@@ -1,4 +1,4 @@
-//! What a solve says beside its solution: why there is none, and how its mesh was refined.
+//! What a solve says beside its solution: why there is none, what other starts found, and how its mesh was refined.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use super::numbers;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Explanation {
-    /// `conflict`, `consistent` (all constraints can hold together near the last point) or `unknown`.
+    /// `conflict`, `consistent` (all constraints can hold together near the last point or the guess) or `unknown`.
     pub verdict: String,
     /// The same for a person.
     pub words: String,
@@ -46,6 +46,39 @@ pub struct Part {
     pub phase: String,
     /// All of this for a person.
     pub words: String,
+}
+
+/// What many starts found.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Starts {
+    /// How many were tried.
+    pub tried: usize,
+    /// How many of them were solved.
+    pub solved: usize,
+    /// The local minima, the best first.
+    pub minima: Vec<Minimum>,
+    /// What a person should know about the choice of starts.
+    pub notes: Vec<String>,
+    /// Seconds of everything.
+    #[serde(with = "numbers::one")]
+    pub seconds: f64,
+}
+
+/// A local minimum.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Minimum {
+    /// In the user's sense and unit.
+    #[serde(with = "numbers::one")]
+    pub objective: f64,
+    /// How many starts led to it.
+    pub count: usize,
+    /// Where the first of them came from.
+    pub from: String,
+    /// The largest relative violation between the points.
+    #[serde(with = "numbers::one")]
+    pub violation_between: f64,
 }
 
 /// How a mesh was refined.
@@ -98,7 +131,7 @@ impl From<&ntg_runtime::explain::Explanation> for Explanation {
         use ntg_runtime::explain::Explanation as Found;
         let verdict = match found {
             Found::Conflict(_) => "conflict",
-            Found::Consistent => "consistent",
+            Found::Consistent(_) => "consistent",
             Found::Unknown => "unknown",
         };
         let conflict = found.conflict();
@@ -125,6 +158,24 @@ impl From<&ntg_runtime::explain::Part> for Part {
             t: part.time,
             phase: part.phase.clone(),
             words: part.to_string(),
+        }
+    }
+}
+
+impl From<&ntg_runtime::multistart::MultiReport> for Starts {
+    fn from(found: &ntg_runtime::multistart::MultiReport) -> Self {
+        let minima = found.minima.iter().map(|minimum| Minimum {
+            objective: minimum.report.objective,
+            count: minimum.count,
+            from: found.starts[minimum.first].origin.to_string(),
+            violation_between: minimum.report.violation.between,
+        });
+        Self {
+            tried: found.tried(),
+            solved: found.solved(),
+            minima: minima.collect(),
+            notes: found.notes.clone(),
+            seconds: found.seconds,
         }
     }
 }
