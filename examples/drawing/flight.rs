@@ -43,6 +43,11 @@ impl Flight {
     }
 }
 
+/// The scale of a map of the probability of detection.
+pub(crate) fn detection() -> Scale {
+    Scale { name: "detection", edges: vec![0.0, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99, 1.0], palette: warm }
+}
+
 /// The ground tracks with their coarse routes, the first flight undermost.
 pub(crate) fn ground_track(path: &Path, flights: &[Flight]) -> Drawn {
     let area = picture(
@@ -51,8 +56,7 @@ pub(crate) fn ground_track(path: &Path, flights: &[Flight]) -> Drawn {
         "A low-observable flight past a radar",
         "To show little it keeps the radar within 30 degrees of its nose. Both coarse routes lead to the same flight.",
     )?;
-    let edges = vec![0.0, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99, 1.0];
-    let scale = Scale { name: "detection", edges, palette: warm };
+    let scale = detection();
     let tracks: Vec<Line> = flights.iter().map(|flight| flight.line(&flight.track)).collect();
     let routes: Vec<Line> = flights
         .iter()
@@ -93,17 +97,18 @@ fn time_ticks(chart: &mut Chart<'_, RangedCoordf64>, flight: &Flight) -> Drawn {
 /// (`f_in` of docs/maths.md, equation 10.2, at an elevation of 59.9 degrees and 12 km up).
 const TOO_NEAR: f64 = 7.0;
 
-/// Start, target circle of 1 km, the radar, and where it must not be approached.
+/// The places of the flight, and where the radar must not be approached.
 fn landmarks(chart: &mut Chart<'_, RangedCoordf64>) -> Drawn {
-    let circle = |centre: (f64, f64), radius: f64| {
-        let angles = (0..=72).map(|i| f64::from(i).to_radians() * 5.0);
-        angles.map(|angle| (centre.0 + radius * angle.cos(), centre.1 + radius * angle.sin())).collect::<Vec<_>>()
-    };
-    chart.draw_series(LineSeries::new(circle((5.0, -15.0), 1.0), INK.stroke_width(3)))?;
     chart.draw_series(DashedLineSeries::new(circle((0.0, 0.0), TOO_NEAR), 5, 7, INK.stroke_width(3)))?;
     let note = format!("radar; within {TOO_NEAR} km no heading is low enough");
     let style = text(26).color(&INK).pos(Pos::new(HPos::Right, VPos::Bottom));
     chart.draw_series([EmptyElement::at((34.0, 9.0)) + Text::new(note, (0, 0), style)])?;
+    places(chart)
+}
+
+/// Start, target circle of 1 km, the radar, and what the colours are.
+pub(crate) fn places(chart: &mut Chart<'_, RangedCoordf64>) -> Drawn {
+    chart.draw_series(LineSeries::new(circle((5.0, -15.0), 1.0), INK.stroke_width(3)))?;
     let marks = [((-100.0, -100.0), "start", (-40, 22)), ((5.0, -15.0), "target, within 1 km", (24, 0))];
     for (place, name, shift) in marks {
         let label = Text::new(name, shift, text(28).color(&INK));
@@ -117,6 +122,11 @@ fn landmarks(chart: &mut Chart<'_, RangedCoordf64>) -> Drawn {
         chart.draw_series([EmptyElement::at((-25.0, -104.5)) + words])?;
     }
     Ok(())
+}
+
+fn circle(centre: (f64, f64), radius: f64) -> Vec<(f64, f64)> {
+    let angles = (0..=72).map(|i| f64::from(i).to_radians() * 5.0);
+    angles.map(|angle| (centre.0 + radius * angle.cos(), centre.1 + radius * angle.sin())).collect()
 }
 
 /// One panel of a history: what it is called, which named expression of the spec it shows, over

@@ -11,6 +11,7 @@ pub(crate) mod flight;
 pub(crate) mod growth;
 pub(crate) mod heat;
 pub(crate) mod history;
+pub(crate) mod minima;
 pub(crate) mod missile;
 pub(crate) mod paper;
 pub(crate) mod phases;

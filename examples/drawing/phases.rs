@@ -9,7 +9,8 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::chart::{Axes, Chart, Line, Stroke, axes, draw, legend};
-use super::heat::{Scale, bar, fill, warm};
+use super::flight::detection;
+use super::heat::{bar, fill};
 use super::history::{Panel, panels};
 use super::radar::detection_over_ground;
 use super::track::words;
@@ -79,8 +80,7 @@ pub(crate) fn past_the_radar(
     solution: &Solution,
 ) -> Drawn {
     let area = picture(path, 1300, title[0], title[1])?;
-    let edges = vec![0.0, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.99, 1.0];
-    let scale = Scale { name: "detection", edges, palette: warm };
+    let scale = detection();
     let area = bar(&legend(&area, &key(lines))?, &scale)?;
     let [x, y] = window;
     let mut chart = axes(&area, Axes::new(("east [km]", x), ("north [km]", y)))?;
