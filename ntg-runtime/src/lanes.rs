@@ -205,10 +205,12 @@ impl<S: Simd, F: Fill<I, R>, const I: usize, const R: usize> Work for EveryPack<
     fn run(self) {
         let Self { simd, point, tables, out, .. } = self;
         let lanes = point.lanes;
-        let inputs: [&[f64]; I] = rows(point.inputs, lanes);
+        // Made once: every pack writes all of them again.
+        let zero = Pack::splat(simd, 0.0);
+        let (mut u, mut results) = ([zero; I], [zero; R]);
         for from in packs::<S>(lanes) {
-            let mut results = [Pack::splat(simd, 0.0); R];
-            F::fill(simd, tables, &gather(simd, &inputs, from), &mut results);
+            gather(point.inputs, lanes, from, &mut u);
+            F::fill(simd, tables, &u, &mut results);
             scatter(&results, lanes, from, out);
         }
     }
@@ -231,13 +233,14 @@ where
     fn run(self) {
         let Self { simd, point, tables, out, .. } = self;
         let lanes = point.lanes;
-        let inputs: [&[f64]; I] = rows(point.inputs, lanes);
-        let weights: [&[f64]; R] = rows(point.weights, lanes);
+        // Made once: every pack writes all of them again.
+        let zero = Pack::splat(simd, 0.0);
+        let (mut u, mut w) = ([zero; I], [zero; R]);
+        let (mut values, mut jacobian, mut hessian) = ([zero; R], [zero; J], [zero; H]);
         for from in packs::<S>(lanes) {
-            let zero = Pack::splat(simd, 0.0);
-            let (mut values, mut jacobian, mut hessian) = ([zero; R], [zero; J], [zero; H]);
-            let (inputs, weights) = (gather(simd, &inputs, from), gather(simd, &weights, from));
-            K::at(simd, tables, &inputs, &weights, &mut values, &mut jacobian, &mut hessian);
+            gather(point.inputs, lanes, from, &mut u);
+            gather(point.weights, lanes, from, &mut w);
+            K::at(simd, tables, &u, &w, &mut values, &mut jacobian, &mut hessian);
             scatter(&values, lanes, from, out.values);
             scatter(&jacobian, lanes, from, out.jacobian);
             scatter(&hessian, lanes, from, out.hessian);
@@ -253,18 +256,15 @@ fn packs<S: Simd>(lanes: usize) -> impl Iterator<Item = usize> {
     (0..lanes).step_by(S::LANES).map(move |from| from.min(last))
 }
 
+/// One pack of each row of an array; where there are fewer lanes than a pack has, the last one fills it.
+///
+/// A loop, since a closure of the standard library's `from_fn` is not certain to be compiled into it.
 #[inline(always)]
-fn rows<const N: usize>(array: &[f64], lanes: usize) -> [&[f64]; N] {
-    std::array::from_fn(|i| &array[i * lanes..][..lanes])
-}
-
-/// One pack of each row; where there are fewer lanes than a pack has, the last one fills it.
-#[inline(always)]
-fn gather<S: Simd, const N: usize>(simd: S, rows: &[&[f64]; N], from: usize) -> [Pack<S>; N] {
-    std::array::from_fn(|i| {
-        let row = &rows[i][from..];
-        if row.len() >= S::LANES { Pack::load(simd, row) } else { Pack::load(simd, &padded(row)) }
-    })
+fn gather<S: Simd, const N: usize>(array: &[f64], lanes: usize, from: usize, packs: &mut [Pack<S>; N]) {
+    for (pack, row) in packs.iter_mut().zip(array.chunks_exact(lanes)) {
+        let (simd, row) = (pack.simd(), &row[from..]);
+        *pack = if row.len() >= S::LANES { Pack::load(simd, row) } else { Pack::load(simd, &padded(row)) };
+    }
 }
 
 #[cold]
@@ -272,6 +272,7 @@ fn padded(row: &[f64]) -> [f64; MOST_LANES] {
     std::array::from_fn(|lane| row[lane.min(row.len() - 1)])
 }
 
+/// Stores one pack of each row.
 #[inline(always)]
 fn scatter<S: Simd, const N: usize>(entries: &[Pack<S>; N], lanes: usize, from: usize, out: &mut [f64]) {
     for (row, entry) in out.chunks_exact_mut(lanes).zip(entries) {
@@ -279,9 +280,7 @@ fn scatter<S: Simd, const N: usize>(entries: &[Pack<S>; N], lanes: usize, from: 
         if row.len() >= S::LANES {
             entry.store(row);
         } else {
-            let mut pack = [0.0; MOST_LANES];
-            entry.store(&mut pack);
-            row.copy_from_slice(&pack[..row.len()]);
+            row.copy_from_slice(&entry.to_array()[..row.len()]);
         }
     }
 }
