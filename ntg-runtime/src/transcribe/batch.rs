@@ -45,7 +45,7 @@ pub(crate) fn batches(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Ve
             traced[*of].sources.iter().map(|source| frame.layout.affine(*source, &site.point)).collect()
         };
         let maps: Vec<Vec<AffineMap>> = sites.iter().zip(&of).map(map).collect();
-        let slots = SlotMaps::new(traced[0].sources.len(), &maps);
+        let slots = SlotMaps::new(&traced[0].sources, &maps);
         Ok((Batch::new(frame, call, sites, slots, &traced[0])?, maps))
     });
     mapped.collect()

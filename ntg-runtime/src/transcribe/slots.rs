@@ -4,7 +4,7 @@
 //! coefficients, and the part that depends on none. Derivatives of outputs are with respect to
 //! scaled time.
 
-use super::layout::{Layout, Time, narrow};
+use super::layout::{Layout, Time};
 use super::node::Site;
 use super::points::Point;
 use ntg_splines::basis::derivative;
@@ -95,57 +95,222 @@ impl Layout {
 pub(crate) struct SlotMaps {
     elements: usize,
     slots: usize,
-    /// Where the terms of slot `s` of element `e` begin: entry `s * elements + e`.
-    start: Vec<u32>,
-    variables: Vec<u32>,
-    coefficients: Vec<f64>,
+    /// Slots with common variables.
+    bundles: Vec<Bundle>,
+    /// The constant part of slot `s` of element `e`: entry `s * elements + e`.
     offset: Vec<f64>,
 }
 
+/// Slots that depend on the same variables, an output and its derivatives as a rule: each variable is fetched once
+/// for all of them, and for all elements in a row that depend on the same (the points of one interval).
+#[derive(Clone, Debug, Default)]
+struct Bundle {
+    slots: Vec<usize>,
+    /// Variables of each element; where an element has fewer, the last stand for nothing.
+    width: usize,
+    /// One past the last element of each run.
+    ends: Vec<usize>,
+    /// `width` for each run.
+    variables: Vec<u32>,
+    /// `width` for each element, slot by slot.
+    coefficients: Vec<Vec<f64>>,
+}
+
 impl SlotMaps {
-    /// Maps of `slots` slots for every element; `maps[e][s]`.
-    pub(crate) fn new(slots: usize, maps: &[Vec<AffineMap>]) -> Self {
-        let mut all = Self { elements: maps.len(), slots, start: vec![0], ..Self::default() };
-        for slot in 0..slots {
-            for element in maps {
-                let map = &element[slot];
-                all.offset.push(map.offset);
-                all.variables.extend(map.terms.iter().map(|t| t.0));
-                all.coefficients.extend(map.terms.iter().map(|t| t.1));
-                all.start.push(narrow(all.variables.len()));
-            }
-        }
-        all
+    /// Maps of the slots with these sources (those of the first element) for every element; `maps[e][s]`.
+    pub(crate) fn new(sources: &[Source], maps: &[Vec<AffineMap>]) -> Self {
+        Self::build(sources, maps.len(), |element, slot| maps[element][slot].clone())
     }
 
     /// The maps of the sources of every site, which all have equally many.
     pub(crate) fn of_sources<'a>(layout: &Layout, sites: &[Site], sources: impl Fn(usize) -> &'a [Source]) -> Self {
-        let slots = if sites.is_empty() { 0 } else { sources(0).len() };
-        let mut all = Self { elements: sites.len(), slots, start: vec![0], ..Self::default() };
-        for slot in 0..slots {
-            for (element, site) in sites.iter().enumerate() {
-                let map = layout.affine(sources(element)[slot], &site.point);
-                all.offset.push(map.offset);
-                all.variables.extend(map.terms.iter().map(|t| t.0));
-                all.coefficients.extend(map.terms.iter().map(|t| t.1));
-                all.start.push(narrow(all.variables.len()));
+        let first = if sites.is_empty() { &[] } else { sources(0) };
+        Self::build(first, sites.len(), |element, slot| layout.affine(sources(element)[slot], &sites[element].point))
+    }
+
+    fn build(sources: &[Source], elements: usize, map: impl Fn(usize, usize) -> AffineMap) -> Self {
+        let offset = vec![0.0; sources.len() * elements];
+        let mut all = Self { elements, slots: sources.len(), bundles: vec![], offset };
+        let mut bundles: Vec<(Source, Vec<usize>)> = vec![];
+        for (slot, source) in sources.iter().enumerate() {
+            let of = source.without_derivative();
+            match bundles.iter_mut().find(|(other, _)| *other == of) {
+                Some((_, slots)) => slots.push(slot),
+                None => bundles.push((of, vec![slot])),
             }
+        }
+        let mut maps = vec![];
+        for (_, slots) in bundles {
+            let mut bundle = Bundle { coefficients: vec![vec![]; slots.len()], slots, ..Bundle::default() };
+            for element in 0..elements {
+                maps.clear();
+                maps.extend(bundle.slots.iter().map(|&slot| map(element, slot)));
+                for (&slot, map) in bundle.slots.iter().zip(&maps) {
+                    all.offset[slot * elements + element] = map.offset;
+                }
+                bundle.push(&maps);
+            }
+            all.bundles.push(bundle);
         }
         all
     }
 
     /// Writes slot `s` of element `e` to `u[s * elements + e]`.
     pub(crate) fn refresh(&self, x: &[f64], u: &mut [f64]) {
-        let ends = self.start.windows(2);
-        for ((value, offset), range) in u.iter_mut().zip(&self.offset).zip(ends) {
-            let (first, last) = (range[0] as usize, range[1] as usize);
-            let terms = self.variables[first..last].iter().zip(&self.coefficients[first..last]);
-            *value = terms.fold(*offset, |sum, (variable, c)| sum + c * x[*variable as usize]);
+        u.copy_from_slice(&self.offset);
+        for bundle in &self.bundles {
+            match bundle.width {
+                0 => {}
+                1 => bundle.refresh::<1>(x, self.elements, u),
+                2 => bundle.refresh::<2>(x, self.elements, u),
+                3 => bundle.refresh::<3>(x, self.elements, u),
+                4 => bundle.refresh::<4>(x, self.elements, u),
+                5 => bundle.refresh::<5>(x, self.elements, u),
+                6 => bundle.refresh::<6>(x, self.elements, u),
+                _ => bundle.refresh_any(x, self.elements, u),
+            }
         }
     }
 
     /// How many numbers `refresh` writes.
     pub(crate) fn len(&self) -> usize {
         self.slots * self.elements
+    }
+}
+
+impl Source {
+    /// The output whose derivative this is.
+    fn without_derivative(self) -> Self {
+        match self {
+            Self::Flat { phase, at, output, .. } => Self::Flat { phase, at, output, derivative: 0 },
+            other => other,
+        }
+    }
+}
+
+impl Bundle {
+    /// Adds an element with these maps of its slots.
+    fn push(&mut self, maps: &[AffineMap]) {
+        let known = self.variables.len() - self.width.min(self.variables.len());
+        let fits = |map: &AffineMap| map.terms.iter().all(|(variable, _)| self.variables[known..].contains(variable));
+        let element = self.ends.last().copied().unwrap_or(0);
+        if element > 0 && maps.iter().all(fits) {
+            self.ends.last_mut().into_iter().for_each(|end| *end += 1);
+        } else {
+            let own = union(maps);
+            self.widen(own.len());
+            let last = own.last().copied().unwrap_or(0);
+            self.variables.extend((0..self.width).map(|i| own.get(i).copied().unwrap_or(last)));
+            self.ends.push(element + 1);
+        }
+        let variables = &self.variables[self.variables.len() - self.width..];
+        for (coefficients, map) in self.coefficients.iter_mut().zip(maps) {
+            let first = coefficients.len();
+            coefficients.resize(first + self.width, 0.0);
+            for (variable, c) in &map.terms {
+                if let Some(at) = variables.iter().position(|v| v == variable) {
+                    coefficients[first + at] = *c;
+                }
+            }
+        }
+    }
+
+    /// Makes room for elements with more variables.
+    fn widen(&mut self, width: usize) {
+        if width <= self.width {
+            return;
+        }
+        let before = std::mem::replace(&mut self.width, width);
+        if before == 0 {
+            let elements = self.ends.last().copied().unwrap_or(0);
+            self.variables = vec![0; width * self.ends.len()];
+            self.coefficients.iter_mut().for_each(|of| *of = vec![0.0; width * elements]);
+            return;
+        }
+        let wider = |row: &[u32]| (0..width).map(|i| row[i.min(before - 1)]).collect::<Vec<_>>();
+        self.variables = self.variables.chunks_exact(before).flat_map(wider).collect();
+        for of in &mut self.coefficients {
+            let zeros = std::iter::repeat_n(0.0, width - before);
+            *of = of.chunks_exact(before).flat_map(|row| row.iter().copied().chain(zeros.clone())).collect();
+        }
+    }
+
+    fn refresh<const W: usize>(&self, x: &[f64], elements: usize, u: &mut [f64]) {
+        let mut first = 0;
+        for (variables, &end) in self.variables.as_chunks::<W>().0.iter().zip(&self.ends) {
+            let x = variables.map(|variable| x[variable as usize]);
+            for (&slot, coefficients) in self.slots.iter().zip(&self.coefficients) {
+                let values = &mut u[slot * elements..][first..end];
+                for (value, c) in values.iter_mut().zip(&coefficients.as_chunks::<W>().0[first..end]) {
+                    let mut sum = *value;
+                    for i in 0..W {
+                        sum += c[i] * x[i];
+                    }
+                    *value = sum;
+                }
+            }
+            first = end;
+        }
+    }
+
+    fn refresh_any(&self, x: &[f64], elements: usize, u: &mut [f64]) {
+        let width = self.width;
+        let mut first = 0;
+        for (variables, &end) in self.variables.chunks_exact(width).zip(&self.ends) {
+            for (&slot, coefficients) in self.slots.iter().zip(&self.coefficients) {
+                let values = u[slot * elements..][first..end].iter_mut();
+                for (value, c) in values.zip(coefficients[first * width..].chunks_exact(width)) {
+                    let terms = variables.iter().zip(c);
+                    *value = terms.fold(*value, |sum, (variable, c)| sum + c * x[*variable as usize]);
+                }
+            }
+            first = end;
+        }
+    }
+}
+
+/// The variables of all of these maps, in the order in which they appear.
+fn union(maps: &[AffineMap]) -> Vec<u32> {
+    let longest = maps.iter().max_by_key(|map| map.terms.len());
+    let mut all: Vec<u32> = longest.iter().flat_map(|map| map.terms.iter().map(|t| t.0)).collect();
+    for (variable, _) in maps.iter().flat_map(|map| &map.terms) {
+        if !all.contains(variable) {
+            all.push(*variable);
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Elements of two slots whose maps have these terms and offsets.
+    fn maps(of: &[[(&[(u32, f64)], f64); 2]]) -> Vec<Vec<AffineMap>> {
+        let map = |(terms, offset): &(&[(u32, f64)], f64)| AffineMap { terms: terms.to_vec(), offset: *offset };
+        of.iter().map(|slots| slots.iter().map(map).collect()).collect()
+    }
+
+    #[test]
+    fn slots_are_what_their_maps_say_whatever_they_share() {
+        let flat = |derivative| Source::Flat { phase: 0, at: At::Here, output: 0, derivative };
+        let elements = maps(&[
+            [(&[], 4.0), (&[], 1.0)],
+            [(&[(0, 2.0)], 0.0), (&[(0, 1.0), (1, -3.0)], 1.0)],
+            [(&[(1, 2.0)], 0.0), (&[(0, 5.0)], 1.0)],
+            [(&[(2, 2.0), (3, 0.5), (4, 1.0)], -1.0), (&[(3, 1.0), (5, -3.0)], 1.0)],
+            [(&[(5, 1.0)], 0.0), (&[], 3.0)],
+        ]);
+        let x = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5];
+        for sources in [[flat(0), flat(2)], [flat(0), Source::Duration(0)]] {
+            let slots = SlotMaps::new(&sources, &elements);
+            let mut u = vec![f64::NAN; slots.len()];
+            slots.refresh(&x, &mut u);
+            for (e, maps) in elements.iter().enumerate() {
+                for (s, map) in maps.iter().enumerate() {
+                    assert_eq!(u[s * elements.len() + e], map.value(&x), "slot {s} of element {e}");
+                }
+            }
+        }
     }
 }
