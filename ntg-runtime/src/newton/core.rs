@@ -69,11 +69,15 @@ pub(super) struct Core<'a, N: Nlp> {
 
 /// What one solve leaves to the next: the plans of the last program and its workspace. They are made anew
 /// where the next program differs in more than its numbers.
-pub struct Memory<W>(pub(super) Option<System<W>>);
+pub struct Memory<W> {
+    pub(super) system: Option<System<W>>,
+    /// Whether the next program has the very numbers of the last one, but for the sizes of its variables.
+    pub(crate) is_same_program: bool,
+}
 
 impl<W> Default for Memory<W> {
     fn default() -> Self {
-        Self(None)
+        Self { system: None, is_same_program: false }
     }
 }
 
@@ -83,8 +87,22 @@ pub(super) struct Trial {
     pub(super) x: Vec<f64>,
     pub(super) quantities: Vec<f64>,
     pub(super) w: Vec<f64>,
+    /// The multipliers with which derivatives were computed there.
+    pub(super) multipliers: Vec<f64>,
+    /// Whether the last trial has derivatives.
+    pub(super) is_ahead: bool,
+    /// Whether the first trial of the last search was accepted: then derivatives are computed at once.
+    pub(super) was_good: bool,
     /// Why the last trial had no value.
     pub(super) failure: Option<NotFinite>,
+}
+
+impl Trial {
+    fn new(x: &[f64], quantities: usize, w: Vec<f64>) -> Self {
+        let quantities = vec![0.0; quantities];
+        let multipliers = quantities.clone();
+        Self { x: x.to_vec(), quantities, w, multipliers, is_ahead: false, was_good: true, failure: None }
+    }
 }
 
 impl<'a, N: Nlp> Core<'a, N> {
@@ -97,7 +115,7 @@ impl<'a, N: Nlp> Core<'a, N> {
         memory: &'a mut Memory<N::Workspace>,
     ) -> Result<Self, NotFinite> {
         let begin = Instant::now();
-        let mut system = System::for_program(memory.0.take(), nlp);
+        let mut system = System::for_program(memory.system.take(), nlp, memory.is_same_program);
         let n = nlp.variables();
         let sizes = Scales::sizes(nlp.limits());
         let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();
@@ -110,6 +128,7 @@ impl<'a, N: Nlp> Core<'a, N> {
         );
         system.rescale(nlp, &x, settings.scaling)?;
         let sides = Sides::new(&system.scales.limits(nlp.limits()), system.first_variable());
+        system.find_equalities(&sides.equality);
         let unit = (MANY_SIDES / sides.side.len().max(1) as f64).min(1.0);
         let count = system.quantities();
         let (step, rows) = (super::direction::Direction::new(n, count, &sides, &system), sides.w.clone());
@@ -127,7 +146,7 @@ impl<'a, N: Nlp> Core<'a, N> {
             kept: step.clone(),
             elastic: None,
             step,
-            trial: Trial { x: x.clone(), quantities: vec![0.0; count], w: rows, failure: None },
+            trial: Trial::new(&x, count, rows),
             record: IterationRecord::default(),
             history: Vec::with_capacity(settings.max_iterations.min(HISTORY) + 1),
             iterations: 0,
@@ -142,7 +161,8 @@ impl<'a, N: Nlp> Core<'a, N> {
 
     /// First distances, multipliers and derivatives.
     fn start(&mut self, from: Start<'_>) -> Result<(), NotFinite> {
-        self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.quantities)?;
+        // The scales were chosen by derivatives at this point.
+        self.system.quantities_here(&self.x, &mut self.quantities);
         match (from, from.multipliers(self.nlp)) {
             (_, Some(from)) => self.start_warm(from),
             (Start::Cold, None) => self.start_at(FIRST_BARRIER, INSIDE),
@@ -166,6 +186,11 @@ impl<'a, N: Nlp> Core<'a, N> {
     /// Derivatives at the present point with the present multipliers.
     pub(super) fn evaluate(&mut self) -> Result<(), NotFinite> {
         self.sides.multipliers(self.system.objective(), &mut self.multipliers);
+        if std::mem::take(&mut self.trial.is_ahead) && self.multipliers == self.trial.multipliers {
+            std::mem::swap(&mut self.quantities, &mut self.trial.quantities);
+            self.system.move_ahead();
+            return Ok(());
+        }
         self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.quantities)
     }
 

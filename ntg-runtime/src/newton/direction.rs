@@ -152,7 +152,7 @@ impl<N: Nlp> Core<'_, N> {
         if self.system.factorise(0.0) {
             return true;
         }
-        self.system.make_convex();
+        self.system.make_convex(&self.step.sigma);
         self.record.mixed = true;
         let mut shift = 0.0;
         while shift <= LARGEST_SHIFT {
@@ -182,9 +182,9 @@ impl<N: Nlp> Core<'_, N> {
         let n = self.x.len() - 1;
         self.system.solve(&mut self.step.x[..n], &mut self.step.border);
         self.step.x[n] = 0.0;
-        self.system.along(&self.step.x, &mut self.step.along);
         self.step.y.fill(0.0);
         self.refine_equalities();
+        self.system.along(&self.step.x, &mut self.step.along);
         let (sides, step) = (&self.sides, &mut self.step);
         for (k, side) in sides.side.iter().enumerate() {
             step.w[k] = side.sign * step.along[side.of] + step.r[k];
@@ -207,6 +207,10 @@ impl<N: Nlp> Core<'_, N> {
     /// is removed with the same factors.
     fn refine_equalities(&mut self) {
         let n = self.x.len() - 1;
+        if self.sides.equality.is_empty() {
+            return;
+        }
+        self.system.along_equalities(&self.step.x, &mut self.step.along);
         let size = self.step.c.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
         let mut before = f64::INFINITY;
         for round in 0..=REFINEMENTS {
@@ -225,10 +229,10 @@ impl<N: Nlp> Core<'_, N> {
             }
             before = left;
             self.split_border();
-            self.system.gradient(&self.step.right, &mut self.step.more_x);
+            self.system.gradient_of_equalities(&self.step.right, &mut self.step.more_x);
             self.system.solve(&mut self.step.more_x[..n], &mut self.step.border);
             self.step.more_x[n] = 0.0;
-            self.system.along(&self.step.more_x, &mut self.step.more_along);
+            self.system.along_equalities(&self.step.more_x, &mut self.step.more_along);
             let step = &mut self.step;
             step.x.iter_mut().zip(&step.more_x).for_each(|(x, more)| *x += more);
             step.along.iter_mut().zip(&step.more_along).for_each(|(along, more)| *along += more);
@@ -256,7 +260,7 @@ impl<N: Nlp> Core<'_, N> {
         self.step.border.fill(0.0);
         self.system.solve(&mut self.step.x[..n], &mut self.step.border);
         self.step.x[n] = 0.0;
-        self.system.along(&self.step.x, &mut self.step.along);
+        self.system.along_equalities(&self.step.x, &mut self.step.along);
         for ((of, _), y) in self.sides.equality.iter().zip(&mut self.sides.y) {
             *y = -self.step.along[*of] / PROXIMAL;
         }

@@ -55,7 +55,7 @@ impl<N: Nlp> Core<'_, N> {
             (0..n).map(|j| self.multipliers[first + j] / self.system.scales.variables[j] / objective).collect();
         let x = self.system.point(self.nlp, &self.x).to_vec();
         let residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
-        self.memory.0 = Some(self.system);
+        self.memory.system = Some(self.system);
         Outcome {
             status,
             x,

@@ -11,129 +11,191 @@
 //!
 //! Reference: G. H. Golub and C. F. Van Loan, *Matrix Computations*, sections 4.2 and 4.3.
 
-use super::shape::Shape;
+use super::shape::{BLOCK, Component, Shape};
+use ntg_math::{Simd, Task, dispatch};
 
 /// A pivot smaller than this fraction of the column's largest entry counts as zero.
 const SINGULAR: f64 = 1e-14;
+
+/// Numbers of as many unknowns as a block has.
+type Chunk = [f64; BLOCK];
+/// A block, column by column.
+type Square = [Chunk; BLOCK];
 
 /// The factors of one matrix.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     /// As the matrix, with `L`, `V`, and the factors of `S`.
     value: Vec<f64>,
-    /// Reciprocal pivots, of all unknowns.
-    inverse: Vec<f64>,
-    /// A row of the border, for one component.
-    row: Vec<f64>,
-    /// One column, divided by its pivot.
-    scaled: Vec<f64>,
+    /// Reciprocal pivots: of the band, filled up, and of the border.
+    inverse: Vec<Chunk>,
+    border_inverse: Vec<f64>,
+    /// A column of blocks below the diagonal, times its pivots.
+    panel: Vec<Square>,
+    /// A row of the border, or a right-hand side of the band.
+    run: Vec<Chunk>,
+}
+
+/// `to -= block x`.
+#[inline(always)]
+fn subtract_product(to: &mut Chunk, block: &Square, x: &Chunk) {
+    // All is read before anything is written: so the compiler makes vector instructions of it.
+    let (mut sum, block, x) = (*to, *block, *x);
+    for c in 0..BLOCK {
+        for r in 0..BLOCK {
+            sum[r] -= block[c][r] * x[c];
+        }
+    }
+    *to = sum;
+}
+
+/// `x = L^-1 x`, where `L` has ones on its diagonal.
+#[inline(always)]
+fn forward(lower: &Square, x: &mut Chunk) {
+    for c in 0..BLOCK {
+        for r in c + 1..BLOCK {
+            x[r] -= lower[c][r] * x[c];
+        }
+    }
+}
+
+/// The sum of the products of two rows.
+#[inline(always)]
+fn dot(a: &[Chunk], b: &[Chunk]) -> f64 {
+    let mut sum = [0.0; BLOCK];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..BLOCK {
+            sum[lane] += a[lane] * b[lane];
+        }
+    }
+    (sum[0] + sum[1]) + (sum[2] + sum[3])
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a.abs() > b { a.abs() } else { b }
+}
+
+/// Numbers as blocks.
+#[inline(always)]
+fn squares(numbers: &mut [f64]) -> &mut [Square] {
+    numbers.as_chunks_mut::<BLOCK>().0.as_chunks_mut::<BLOCK>().0
 }
 
 impl Factor {
     /// Room for the factors of a matrix of this shape.
     pub(super) fn new(shape: &Shape) -> Self {
-        let longest = (0..shape.band).map(|j| shape.column[j + 1] - shape.column[j]).max().unwrap_or(0);
+        let blocks = shape.column.len() - 1;
         Self {
             value: vec![0.0; shape.len],
-            inverse: vec![0.0; shape.unknowns()],
-            row: vec![0.0; shape.border],
-            scaled: vec![0.0; longest],
+            inverse: vec![[0.0; BLOCK]; blocks],
+            border_inverse: vec![0.0; shape.border],
+            panel: vec![[[0.0; BLOCK]; BLOCK]; blocks],
+            run: vec![[0.0; BLOCK]; blocks],
         }
     }
 
     /// Factorises `matrix` with `shift` added to the diagonal entries of variables; the number of
     /// negative pivots, or none where a pivot vanishes.
     pub(super) fn factorise(&mut self, shape: &Shape, matrix: &[f64], shift: f64) -> Option<usize> {
+        let mut negative = None;
+        dispatch(Factorise { factor: self, shape, matrix, shift, negative: &mut negative });
+        negative
+    }
+
+    /// Replaces `b` by the solution of the system.
+    pub(super) fn solve(&mut self, shape: &Shape, b: &mut [f64]) {
+        dispatch(Solve { factor: self, shape, b });
+    }
+
+    #[inline(always)]
+    fn factorise_here(&mut self, shape: &Shape, matrix: &[f64], shift: f64) -> Option<usize> {
         self.value.copy_from_slice(matrix);
         if shift != 0.0 {
-            for &at in &shape.column[..shape.band] {
-                self.value[at] += shift;
-            }
-            for b in 0..shape.border_variables {
-                self.value[shape.corner + b * (shape.border + 1)] += shift;
+            for j in 0..shape.band + shape.border_variables {
+                self.value[shape.position(j, j)] += shift;
             }
         }
         let mut negative = 0;
         for component in &shape.components {
-            let width = component.columns.len();
-            for j in component.first..component.last {
-                let pivot = self.eliminate(shape, j)?;
-                negative += usize::from(pivot < 0.0);
-                if width > 0 {
-                    self.eliminate_border(shape, j, component.at, component.first, width);
-                }
+            for j in component.blocks.clone() {
+                negative += self.eliminate(shape, component, j)?;
             }
             self.subtract_from_corner(shape, component);
         }
         Some(negative + self.corner(shape)?)
     }
 
-    /// Eliminates unknown `j` from the band; its pivot, or none if that vanishes.
-    fn eliminate(&mut self, shape: &Shape, j: usize) -> Option<f64> {
-        let (at, end) = (shape.column[j], shape.column[j + 1]);
-        let (head, tail) = self.value.split_at_mut(end);
-        let column = &mut head[at..];
-        let pivot = column[0];
-        let largest = column[1..].iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
-        if !pivot.is_finite() || pivot.abs() <= SINGULAR * largest || pivot == 0.0 {
-            return None;
-        }
-        let inverse = 1.0 / pivot;
-        self.inverse[j] = inverse;
-        let below = &mut column[1..];
-        let mut start = 0;
-        for i in 0..below.len() {
-            let factor = below[i] * inverse;
-            self.scaled[i] = factor;
-            if factor != 0.0 {
-                for (to, entry) in tail[start..].iter_mut().zip(&below[i..]) {
-                    *to -= factor * entry;
+    /// Eliminates the unknowns of column `j` of blocks from the band and the border's rows; how many pivots are
+    /// negative, or none if one vanishes.
+    #[inline(always)]
+    fn eliminate(&mut self, shape: &Shape, component: &Component, j: usize) -> Option<usize> {
+        let (band, rows) = self.value.split_at_mut(BLOCK * BLOCK * shape.column[shape.column.len() - 1]);
+        let (head, tail) = squares(band).split_at_mut(shape.column[j + 1]);
+        let (diagonal, below) = head[shape.column[j]..].split_first_mut()?;
+        let (pivots, inverse, mut largest) = factors_of(diagonal);
+        let panel = &mut self.panel[..below.len()];
+        for (block, panel) in below.iter_mut().zip(&mut *panel) {
+            let mut columns = *block;
+            for c in 0..BLOCK {
+                for d in c + 1..BLOCK {
+                    for r in 0..BLOCK {
+                        columns[d][r] -= diagonal[c][d] * columns[c][r];
+                    }
                 }
             }
-            start += shape.column[j + i + 2] - shape.column[j + i + 1];
+            *panel = columns;
+            for c in 0..BLOCK {
+                for r in 0..BLOCK {
+                    largest[c] = larger(columns[c][r], largest[c]);
+                    columns[c][r] *= inverse[c];
+                }
+            }
+            *block = columns;
         }
-        below.copy_from_slice(&self.scaled[..below.len()]);
-        Some(pivot)
-    }
-
-    /// The forward substitution of `V` that belongs to unknown `j`.
-    fn eliminate_border(&mut self, shape: &Shape, j: usize, at: usize, first: usize, width: usize) {
-        let (band, border) = self.value.split_at_mut(at);
-        let column = &band[shape.column[j] + 1..shape.column[j + 1]];
-        let (done, below) = border[(j - first) * width..].split_at_mut(width);
-        if done.iter().all(|v| *v == 0.0) {
-            return;
-        }
-        for (rows, factor) in below.chunks_exact_mut(width).zip(column) {
-            for (to, v) in rows.iter_mut().zip(&*done) {
-                *to -= factor * v;
+        for (pivot, largest) in pivots.iter().zip(&largest) {
+            if !pivot.is_finite() || pivot.abs() <= SINGULAR * largest || *pivot == 0.0 {
+                return None;
             }
         }
+        self.inverse[j] = inverse;
+        for (k, (factors, &at)) in below.iter().zip(&shape.column[j + 1..]).enumerate() {
+            let to = &mut tail[at - shape.column[j + 1]..];
+            for (to, panel) in to.iter_mut().zip(&panel[k..]) {
+                subtract_square(to, panel, factors);
+            }
+        }
+        for place in 0..component.columns.len() {
+            let row = component.row(place);
+            let offset = BLOCK * BLOCK * shape.column[shape.column.len() - 1];
+            let row = rows[row.start - offset..row.end - offset].as_chunks_mut::<BLOCK>().0;
+            let (own, after) = row[j - component.blocks.start..].split_first_mut()?;
+            forward(diagonal, own);
+            for (to, block) in after.iter_mut().zip(&*below) {
+                subtract_product(to, block, own);
+            }
+        }
+        Some(pivots.iter().filter(|pivot| **pivot < 0.0).count())
     }
 
     /// `S -= V D^-1 V^T` of one component.
-    fn subtract_from_corner(&mut self, shape: &Shape, component: &super::shape::Component) {
-        let width = component.columns.len();
-        if width == 0 {
-            return;
-        }
-        let (border, corner) = self.value.split_at_mut(shape.corner);
-        let rows = border[component.at..].chunks_exact(width).take(component.last - component.first);
-        for (v, inverse) in rows.zip(&self.inverse[component.first..]) {
-            for (c, &a) in component.columns.iter().enumerate() {
-                let factor = v[c] * inverse;
-                if factor == 0.0 {
-                    continue;
-                }
-                let row = a as usize * shape.border;
-                for (v, &b) in v[..=c].iter().zip(&component.columns) {
-                    corner[row + b as usize] -= factor * v;
-                }
+    #[inline(always)]
+    fn subtract_from_corner(&mut self, shape: &Shape, component: &Component) {
+        let run = &mut self.run[..component.blocks.len()];
+        for (c, &a) in component.columns.iter().enumerate() {
+            let row = self.value[component.row(c)].as_chunks::<BLOCK>().0;
+            for ((to, v), inverse) in run.iter_mut().zip(row).zip(&self.inverse[component.blocks.clone()]) {
+                *to = std::array::from_fn(|lane| v[lane] * inverse[lane]);
+            }
+            for (d, &b) in component.columns[..=c].iter().enumerate() {
+                let sum = dot(run, self.value[component.row(d)].as_chunks::<BLOCK>().0);
+                self.value[shape.corner + a as usize * shape.border + b as usize] -= sum;
             }
         }
     }
 
     /// Factorises the corner; the number of negative pivots.
+    #[inline(always)]
     fn corner(&mut self, shape: &Shape) -> Option<usize> {
         let n = shape.border;
         let s = &mut self.value[shape.corner..];
@@ -145,7 +207,7 @@ impl Factor {
                 return None;
             }
             let inverse = 1.0 / pivot;
-            self.inverse[shape.band + j] = inverse;
+            self.border_inverse[j] = inverse;
             negative += usize::from(pivot < 0.0);
             for i in j + 1..n {
                 let factor = s[i * n + j] * inverse;
@@ -160,78 +222,147 @@ impl Factor {
         Some(negative)
     }
 
-    /// Replaces `b` by the solution of the system.
-    pub(super) fn solve(&mut self, shape: &Shape, b: &mut [f64]) {
+    #[inline(always)]
+    fn solve_here(&mut self, shape: &Shape, b: &mut [f64]) {
         let (band, border) = b.split_at_mut(shape.band);
-        for j in 0..shape.band {
-            let column = &self.value[shape.column[j] + 1..shape.column[j + 1]];
-            let (head, tail) = band.split_at_mut(j + 1);
-            for (to, entry) in tail.iter_mut().zip(column) {
-                *to -= entry * head[j];
+        self.run.fill([0.0; BLOCK]);
+        for (value, &slot) in band.iter().zip(&shape.slot) {
+            self.run[slot / BLOCK][slot % BLOCK] = *value;
+        }
+        let (blocks, _) = self.value.split_at(BLOCK * BLOCK * shape.column[shape.column.len() - 1]);
+        let blocks = blocks.as_chunks::<BLOCK>().0.as_chunks::<BLOCK>().0;
+        for (j, ends) in shape.column.windows(2).enumerate() {
+            let (own, after) = self.run[j..].split_at_mut(1);
+            let column = &blocks[ends[0]..ends[1]];
+            forward(&column[0], &mut own[0]);
+            for (to, block) in after.iter_mut().zip(&column[1..]) {
+                subtract_product(to, block, &own[0]);
             }
         }
+        for (y, inverse) in self.run.iter_mut().zip(&self.inverse) {
+            *y = std::array::from_fn(|lane| y[lane] * inverse[lane]);
+        }
         for component in &shape.components {
-            self.forward_border(component, band, border);
+            let run = &self.run[component.blocks.clone()];
+            for (place, &b) in component.columns.iter().enumerate() {
+                border[b as usize] -= dot(run, self.value[component.row(place)].as_chunks::<BLOCK>().0);
+            }
         }
-        self.solve_corner(shape, border);
+        Self::solve_corner(shape, &self.value[shape.corner..], &self.border_inverse, border);
         for component in &shape.components {
-            self.backward_border(component, band, border);
+            let (run, inverse) = (&mut self.run[component.blocks.clone()], &self.inverse[component.blocks.clone()]);
+            for (place, &b) in component.columns.iter().enumerate() {
+                let row = self.value[component.row(place)].as_chunks::<BLOCK>().0;
+                for ((y, v), inverse) in run.iter_mut().zip(row).zip(inverse) {
+                    *y = std::array::from_fn(|lane| y[lane] - v[lane] * border[b as usize] * inverse[lane]);
+                }
+            }
         }
-        for j in (0..shape.band).rev() {
-            let column = &self.value[shape.column[j] + 1..shape.column[j + 1]];
-            let (head, tail) = band.split_at_mut(j + 1);
-            let sum: f64 = column.iter().zip(&*tail).map(|(entry, x)| entry * x).sum();
-            head[j] -= sum;
+        for (j, ends) in shape.column.windows(2).enumerate().rev() {
+            let (own, after) = self.run[j..].split_at_mut(1);
+            let column = &blocks[ends[0]..ends[1]];
+            backward(column, &mut own[0], after);
         }
-    }
-
-    /// `border -= V D^-1 y`.
-    fn forward_border(&mut self, component: &super::shape::Component, band: &[f64], border: &mut [f64]) {
-        let width = component.columns.len();
-        if width == 0 {
-            return;
-        }
-        let sums = &mut self.row[..width];
-        sums.fill(0.0);
-        let rows = self.value[component.at..].chunks_exact(width);
-        let range = component.first..component.last;
-        for ((v, y), inverse) in rows.zip(&band[range.clone()]).zip(&self.inverse[range]) {
-            let factor = y * inverse;
-            sums.iter_mut().zip(v).for_each(|(sum, v)| *sum += factor * v);
-        }
-        for (sum, &b) in sums.iter().zip(&component.columns) {
-            border[b as usize] -= sum;
+        for (value, &slot) in band.iter_mut().zip(&shape.slot) {
+            *value = self.run[slot / BLOCK][slot % BLOCK];
         }
     }
 
-    /// `y = D^-1 (y - V^T x)`.
-    fn backward_border(&mut self, component: &super::shape::Component, band: &mut [f64], border: &[f64]) {
-        let width = component.columns.len();
-        let range = component.first..component.last;
-        if width == 0 {
-            band[range.clone()].iter_mut().zip(&self.inverse[range]).for_each(|(y, inverse)| *y *= inverse);
-            return;
-        }
-        let known = &mut self.row[..width];
-        known.iter_mut().zip(&component.columns).for_each(|(x, &b)| *x = border[b as usize]);
-        let rows = self.value[component.at..].chunks_exact(width);
-        for ((v, y), inverse) in rows.zip(&mut band[range.clone()]).zip(&self.inverse[range]) {
-            let sum: f64 = v.iter().zip(&*known).map(|(v, x)| v * x).sum();
-            *y = (*y - sum) * inverse;
-        }
-    }
-
-    fn solve_corner(&self, shape: &Shape, border: &mut [f64]) {
+    #[inline(always)]
+    fn solve_corner(shape: &Shape, s: &[f64], inverse: &[f64], border: &mut [f64]) {
         let n = shape.border;
-        let s = &self.value[shape.corner..];
         for i in 0..n {
             let sum: f64 = (0..i).map(|j| s[i * n + j] * border[j]).sum();
             border[i] -= sum;
         }
         for i in (0..n).rev() {
             let sum: f64 = (i + 1..n).map(|k| s[k * n + i] * border[k]).sum();
-            border[i] = border[i] * self.inverse[shape.band + i] - sum;
+            border[i] = border[i] * inverse[i] - sum;
         }
+    }
+}
+
+/// Replaces a block on the diagonal by `L`; its pivots, their reciprocals, and the largest entry below each.
+#[inline(always)]
+fn factors_of(diagonal: &mut Square) -> (Chunk, Chunk, Chunk) {
+    let mut d = *diagonal;
+    let (mut pivots, mut inverse, mut largest) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+    for c in 0..BLOCK {
+        (pivots[c], inverse[c]) = (d[c][c], 1.0 / d[c][c]);
+        for k in c + 1..BLOCK {
+            largest[c] = larger(d[c][k], largest[c]);
+            let factor = d[c][k] * inverse[c];
+            for r in k..BLOCK {
+                d[k][r] -= factor * d[c][r];
+            }
+        }
+        for r in c + 1..BLOCK {
+            d[c][r] *= inverse[c];
+        }
+    }
+    *diagonal = d;
+    (pivots, inverse, largest)
+}
+
+/// `to -= panel factors^T`.
+#[inline(always)]
+fn subtract_square(to: &mut Square, panel: &Square, factors: &Square) {
+    let (mut sum, panel, factors) = (*to, *panel, *factors);
+    for c in 0..BLOCK {
+        for p in 0..BLOCK {
+            for r in 0..BLOCK {
+                sum[c][r] -= panel[p][r] * factors[p][c];
+            }
+        }
+    }
+    *to = sum;
+}
+
+/// `x = L^-T (x - sum of block^T y)` with the blocks of a column, the first of which is `L`.
+#[inline(always)]
+fn backward(column: &[Square], x: &mut Chunk, after: &[Chunk]) {
+    let mut sums = [[0.0; BLOCK]; BLOCK];
+    for (block, y) in column[1..].iter().zip(after) {
+        for c in 0..BLOCK {
+            for r in 0..BLOCK {
+                sums[c][r] += block[c][r] * y[r];
+            }
+        }
+    }
+    for c in (0..BLOCK).rev() {
+        let sum = (sums[c][0] + sums[c][1]) + (sums[c][2] + sums[c][3]);
+        let inner: f64 = (c + 1..BLOCK).map(|r| column[0][c][r] * x[r]).sum();
+        x[c] -= sum + inner;
+    }
+}
+
+/// A factorisation, to be compiled for the widest instructions of the processor.
+struct Factorise<'a> {
+    factor: &'a mut Factor,
+    shape: &'a Shape,
+    matrix: &'a [f64],
+    shift: f64,
+    negative: &'a mut Option<usize>,
+}
+
+impl Task for Factorise<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        *self.negative = self.factor.factorise_here(self.shape, self.matrix, self.shift);
+    }
+}
+
+/// A solution, likewise.
+struct Solve<'a> {
+    factor: &'a mut Factor,
+    shape: &'a Shape,
+    b: &'a mut [f64],
+}
+
+impl Task for Solve<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        self.factor.solve_here(self.shape, self.b);
     }
 }
 
@@ -258,6 +389,7 @@ mod tests {
         ];
         let shape = Shape::new(9, [2, 1], cliques.iter().map(Vec::as_slice));
         let (mut value, mut dense) = (vec![0.0; shape.len], vec![vec![0.0; 12]; 12]);
+        shape.clear(&mut value);
         let mut seed = 7;
         for clique in &cliques {
             for &a in clique {
@@ -294,6 +426,47 @@ mod tests {
         factor.solve(&shape, &mut b);
         for (found, wanted) in b.iter().zip(&x) {
             assert!((found - wanted).abs() < 1e-13, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn bands_of_any_shape_are_solved() {
+        let mut seed = 11;
+        for band in 1..30 {
+            for reach in [1, 2, 5, 9] {
+                let mut cliques: Vec<Vec<u32>> = (0..band).map(|j| vec![j]).collect();
+                for j in 0..band {
+                    let far = j + ((noise(&mut seed).abs() * f64::from(reach + 1)) as u32).min(band - 1 - j);
+                    cliques.push((j..=far).chain((noise(&mut seed) > 0.6).then_some(band)).collect());
+                }
+                cliques.push(vec![band, band + 1]);
+                let shape = Shape::new(band as usize, [2, 0], cliques.iter().map(Vec::as_slice));
+                let n = band as usize + 2;
+                let (mut value, mut dense) = (vec![0.0; shape.len], nalgebra::DMatrix::<f64>::zeros(n, n));
+                shape.clear(&mut value);
+                for clique in &cliques {
+                    for &a in clique {
+                        for &b in clique.iter().filter(|&&b| b <= a) {
+                            let large = if a % 7 == 3 { -30.0 } else { 30.0 };
+                            let entry = noise(&mut seed) + if a == b { large } else { 0.0 };
+                            value[shape.position(a as usize, b as usize)] += entry;
+                            dense[(a as usize, b as usize)] += entry;
+                            if a != b {
+                                dense[(b as usize, a as usize)] += entry;
+                            }
+                        }
+                    }
+                }
+                let mut factor = Factor::new(&shape);
+                let negative = dense.clone().symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
+                assert_eq!(factor.factorise(&shape, &value, 0.0), Some(negative), "band {band} reach {reach}");
+                let x = nalgebra::DVector::from_fn(n, |_, _| noise(&mut seed));
+                let mut b: Vec<f64> = (&dense * &x).iter().copied().collect();
+                factor.solve(&shape, &mut b);
+                for (found, wanted) in b.iter().zip(&x) {
+                    assert!((found - wanted).abs() < 1e-10, "band {band} reach {reach}: {found} {wanted}");
+                }
+            }
         }
     }
 

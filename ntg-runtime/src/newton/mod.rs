@@ -13,6 +13,7 @@
 //!
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006).
 
+mod carriers;
 mod core;
 mod direction;
 mod elastic;
@@ -20,7 +21,6 @@ mod elements;
 mod ending;
 mod factor;
 mod filter;
-mod map;
 mod order;
 mod pack;
 mod pattern;

@@ -5,8 +5,7 @@
 //! (integrals), or whose variables are far apart, are unknowns of the border; all other rows are
 //! condensed into the second derivatives of their one element.
 
-use super::map::BlockMap;
-use super::pack::LANES;
+use super::carriers::Carriers;
 use crate::nlp::{Block, Nlp, Target};
 
 /// A reach beyond this multiple of the typical one is far.
@@ -31,13 +30,13 @@ pub(super) struct Order {
 
 impl Order {
     /// Sorts the unknowns of a program.
-    pub(super) fn new<N: Nlp>(nlp: &N, maps: &[BlockMap]) -> Self {
+    pub(super) fn new<N: Nlp>(nlp: &N, carriers: &[Carriers]) -> Self {
         let n = nlp.variables();
         let mut in_border = vec![false; n];
         in_border[nlp.globals()..].fill(true);
         let limit = limit(nlp.blocks(), &in_border);
-        for (block, map) in nlp.blocks().iter().zip(maps) {
-            far_variables(block, map, limit, &mut in_border);
+        for (block, carriers) in nlp.blocks().iter().zip(carriers) {
+            far_variables(block, carriers, limit, &mut in_border);
         }
         let (mut unknown, mut band) = (vec![0; n], 0);
         for j in (0..n).filter(|&j| !in_border[j]) {
@@ -78,19 +77,17 @@ fn reach(variables: impl Iterator<Item = u32>, in_border: &[bool]) -> usize {
 }
 
 /// Moves variables to the border that second derivatives connect with others far before them.
-fn far_variables(block: &Block, map: &BlockMap, limit: usize, in_border: &mut [bool]) {
+fn far_variables(block: &Block, carriers: &Carriers, limit: usize, in_border: &mut [bool]) {
     for e in 0..block.elements {
         if reach(block.variables(e).iter().copied(), in_border) <= limit {
             continue;
         }
         for &(i, j) in &block.hessian {
-            let of = |slot: usize| map.carrier[slot].map(|c| map.carriers[c].first..map.carriers[c].last);
-            let (Some(a), Some(b)) = (of(i), of(j)) else { continue };
-            let variables = || {
-                let packs = map.variables(e / LANES);
-                let both = packs[a.clone()].iter().chain(&packs[b.clone()]);
-                both.map(|lanes| lanes[e % LANES]).filter(|&v| (v as usize) < in_border.len())
-            };
+            let (a, b) = (carriers.range(i), carriers.range(j));
+            if a.is_empty() || b.is_empty() {
+                continue;
+            }
+            let variables = || carriers.variables(block, e, a.clone()).chain(carriers.variables(block, e, b.clone()));
             if reach(variables(), in_border) <= limit {
                 continue;
             }

@@ -1,76 +1,81 @@
-//! Eight numbers side by side: the same entry of eight elements. The loops over them are written so
-//! that the compiler turns each into a few vector instructions.
+//! Numbers side by side: the same entry of several elements. The loops over them are written so that
+//! the compiler turns each into a few vector instructions: all is read before anything is written, so that
+//! it need not ask whether the two overlap.
 
-/// Elements that are worked on together.
-pub(super) const LANES: usize = 8;
+/// One number for each of `L` elements.
+pub(super) type Pack<const L: usize> = [f64; L];
 
-/// One number for each of eight elements.
-pub(super) type Pack = [f64; LANES];
+/// Elements that are worked on together where there are many.
+pub(super) const WIDE: usize = 8;
+/// No element.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// `a b`.
+#[inline(always)]
+pub(super) fn product<const L: usize>(a: &Pack<L>, b: &Pack<L>) -> Pack<L> {
+    std::array::from_fn(|lane| a[lane] * b[lane])
+}
 
 /// `sum += a b`.
 #[inline(always)]
-pub(super) fn add_product(sum: &mut Pack, a: &Pack, b: &Pack) {
-    for lane in 0..LANES {
-        sum[lane] += a[lane] * b[lane];
+pub(super) fn add_product<const L: usize>(sum: &mut Pack<L>, a: &Pack<L>, b: &Pack<L>) {
+    let (a, b, mut total) = (*a, *b, *sum);
+    for lane in 0..L {
+        total[lane] += a[lane] * b[lane];
     }
+    *sum = total;
 }
 
-/// `row += factor from`, pack by pack: both rows are equally long. Rows as long as splines have active
-/// basis functions are written out, so that sums stay in registers.
+/// The sum of the products of two rows.
 #[inline(always)]
-pub(super) fn add_row(row: &mut [Pack], factor: &Pack, from: &[Pack]) {
-    #[inline(always)]
-    fn fixed<const N: usize>(row: &mut [Pack], factor: &Pack, from: &[Pack]) {
-        if let (Some(row), Some(from)) = (row.first_chunk_mut::<N>(), from.first_chunk::<N>()) {
-            for i in 0..N {
-                add_product(&mut row[i], factor, &from[i]);
-            }
-        }
-    }
-    match row.len() {
-        1 => fixed::<1>(row, factor, from),
-        2 => fixed::<2>(row, factor, from),
-        3 => fixed::<3>(row, factor, from),
-        4 => fixed::<4>(row, factor, from),
-        5 => fixed::<5>(row, factor, from),
-        6 => fixed::<6>(row, factor, from),
-        _ => row.iter_mut().zip(from).for_each(|(to, from)| add_product(to, factor, from)),
-    }
-}
-
-/// The sum of the products of two rows, pack by pack.
-#[inline(always)]
-pub(super) fn row_product(a: &[Pack], b: &[Pack]) -> Pack {
-    let mut sum = [0.0; LANES];
+pub(super) fn row_product<const L: usize>(a: &[Pack<L>], b: &[Pack<L>]) -> Pack<L> {
+    let mut sum = [0.0; L];
     for (a, b) in a.iter().zip(b) {
         add_product(&mut sum, a, b);
     }
     sum
 }
 
-/// `a b`.
+/// One factor and where the row begins that it multiplies.
+pub(super) type Term = (u32, u32);
+
+/// `row += sum over terms of factors[f] rows[r ..]`. Rows as long as splines have active basis functions are
+/// written out, so that their sums stay in registers.
 #[inline(always)]
-pub(super) fn product(a: &Pack, b: &Pack) -> Pack {
-    std::array::from_fn(|lane| a[lane] * b[lane])
+pub(super) fn combine<const L: usize>(row: &mut [Pack<L>], terms: &[Term], factors: &[Pack<L>], rows: &[Pack<L>]) {
+    match row.len() {
+        1 => written_out::<L, 1>(row, terms, factors, rows),
+        2 => written_out::<L, 2>(row, terms, factors, rows),
+        3 => written_out::<L, 3>(row, terms, factors, rows),
+        4 => written_out::<L, 4>(row, terms, factors, rows),
+        5 => written_out::<L, 5>(row, terms, factors, rows),
+        6 => written_out::<L, 6>(row, terms, factors, rows),
+        _ => {
+            for &(factor, first) in terms {
+                let factor = factors[factor as usize];
+                for (sum, from) in row.iter_mut().zip(&rows[first as usize..]) {
+                    add_product(sum, &factor, from);
+                }
+            }
+        }
+    }
 }
 
-/// `a - b`.
 #[inline(always)]
-pub(super) fn difference(a: &Pack, b: &Pack) -> Pack {
-    std::array::from_fn(|lane| a[lane] - b[lane])
-}
-
-/// The numbers from `at` on, as far as there are any; zeros after them.
-#[inline(always)]
-pub(super) fn load(numbers: &[f64], at: usize, end: usize) -> Pack {
-    if at + LANES <= end
-        && let Some(whole) = numbers[at..].first_chunk::<LANES>()
-    {
-        return *whole;
+fn written_out<const L: usize, const N: usize>(
+    row: &mut [Pack<L>],
+    terms: &[Term],
+    factors: &[Pack<L>],
+    rows: &[Pack<L>],
+) {
+    let Some(row) = row.first_chunk_mut::<N>() else { return };
+    let mut sum = *row;
+    for &(factor, first) in terms {
+        let factor = factors[factor as usize];
+        let Some(from) = rows[first as usize..].first_chunk::<N>() else { return };
+        for (sum, from) in sum.iter_mut().zip(from) {
+            add_product(sum, &factor, from);
+        }
     }
-    let mut pack = [0.0; LANES];
-    for (to, from) in pack.iter_mut().zip(&numbers[at..end]) {
-        *to = *from;
-    }
-    pack
+    *row = sum;
 }

@@ -10,7 +10,7 @@ use crate::nlp::Nlp;
 use crate::outcome::IterationRecord;
 
 /// Iterations after the tolerances are met, at most.
-const ITERATIONS: usize = 8;
+const ITERATIONS: usize = 3;
 /// What they aim for, as a fraction of the tolerances and of the last barrier parameter.
 const FINE: f64 = 1e-3;
 

@@ -4,7 +4,7 @@
 //! Reference: A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), sections 2.3 and 2.4, whose
 //! constants these are.
 
-use super::core::Core;
+use super::core::{Core, Trial};
 use super::filter::{Filter, LARGEST_THETA};
 use crate::nlp::Nlp;
 
@@ -56,12 +56,17 @@ impl<N: Nlp> Core<'_, N> {
         }
         let shortest = SHORTEST * self.shortest(here);
         let mut alpha = longest;
+        let ahead = self.trial.was_good;
         while alpha >= shortest {
-            if self.try_step(alpha) {
+            let first = alpha == longest;
+            let has_value = if first && ahead { self.try_ahead(alpha) } else { self.try_step(alpha) };
+            if has_value {
                 if self.acceptable(here, alpha) {
+                    self.trial.was_good = first;
                     return self.move_on(alpha, Searched::Accepted);
                 }
-                if alpha == longest && self.settings.second_order_correction && self.corrected(here, alpha) {
+                (self.trial.was_good, self.trial.is_ahead) = (false, false);
+                if first && self.settings.second_order_correction && self.corrected(here, alpha) {
                     self.record.corrected = true;
                     return self.move_on(alpha, Searched::Accepted);
                 }
@@ -88,14 +93,36 @@ impl<N: Nlp> Core<'_, N> {
         self.step.x.iter().zip(&self.x).all(|(d, x)| d.abs() <= TINY * (1.0 + x.abs()))
     }
 
-    /// Evaluates the trial point; false where it has no value.
-    pub(super) fn try_step(&mut self, alpha: f64) -> bool {
+    /// Evaluates the trial point with derivatives, which the next iteration needs if it is accepted; false where
+    /// it has no value.
+    fn try_ahead(&mut self, alpha: f64) -> bool {
+        self.place_trial(alpha);
+        let dual = self.to_boundary(&self.sides.z, &self.step.z);
+        let (y, z) = ((alpha, &*self.step.y), (dual, &*self.step.z));
+        self.sides.multipliers_after(self.system.objective(), y, z, &mut self.trial.multipliers);
+        let Trial { x, quantities, multipliers, .. } = &mut self.trial;
+        match self.system.derivatives_ahead(self.nlp, x, multipliers, quantities) {
+            Ok(()) => {
+                (self.trial.is_ahead, self.trial.failure) = (true, None);
+                true
+            }
+            Err(_) => self.try_step(alpha),
+        }
+    }
+
+    fn place_trial(&mut self, alpha: f64) {
         for (to, (x, d)) in self.trial.x.iter_mut().zip(self.x.iter().zip(&self.step.x)) {
             *to = x + alpha * d;
         }
         for (to, (w, d)) in self.trial.w.iter_mut().zip(self.sides.w.iter().zip(&self.step.w)) {
             *to = w + alpha * d;
         }
+    }
+
+    /// Evaluates the trial point; false where it has no value.
+    pub(super) fn try_step(&mut self, alpha: f64) -> bool {
+        self.place_trial(alpha);
+        self.trial.is_ahead = false;
         match self.system.values(self.nlp, &self.trial.x, &mut self.trial.quantities) {
             Ok(()) => {
                 self.trial.failure = None;

@@ -5,12 +5,17 @@
 //! other rows that touch many unknowns).
 //!
 //! ```text
-//! [ K            ]   lower triangle by columns, each as long as the farthest unknown it meets
+//! [ K            ]   lower triangle in blocks of four by four, each column of them as long as the farthest
+//! [              ]   unknown it meets
 //! [ B    C       ]   for each component of the band the border's rows that touch it; C is dense
 //! ```
 //!
-//! A column is at least as long as what is left of its predecessor, so that the factors need no
-//! more room than the matrix.
+//! A column of blocks is at least as long as what is left of its predecessor, so that the factors need no
+//! more room than the matrix. Components begin with a block of their own; unknowns that fill up their last
+//! block have a diagonal of 1 and meet nobody. Work on blocks needs no lengths: that is what makes it fast.
+
+/// Unknowns of a block.
+pub(super) const BLOCK: usize = 4;
 
 /// A stretch of the band that no entry connects with the rest: an agent, as a rule.
 #[derive(Clone, Debug)]
@@ -19,10 +24,21 @@ pub(super) struct Component {
     pub(super) first: usize,
     /// One past its last unknown.
     pub(super) last: usize,
+    /// Its columns of blocks.
+    pub(super) blocks: std::ops::Range<usize>,
     /// The unknowns of the border that touch it, counted from the first of the border.
     pub(super) columns: Vec<u32>,
-    /// Where its part of `B` begins: row by row, one entry for each of `columns`.
+    /// Where its part of `B` begins: one row for each of `columns`.
     pub(super) at: usize,
+}
+
+impl Component {
+    /// Where the row of its part of `B` at this place stands.
+    #[inline(always)]
+    pub(super) fn row(&self, place: usize) -> std::ops::Range<usize> {
+        let stride = BLOCK * self.blocks.len();
+        self.at + place * stride..self.at + (place + 1) * stride
+    }
 }
 
 /// The layout of a matrix and of its factors.
@@ -34,7 +50,9 @@ pub(super) struct Shape {
     pub(super) border_variables: usize,
     /// Unknowns of the border.
     pub(super) border: usize,
-    /// Where the column of each unknown of the band begins, its diagonal first; and the end.
+    /// Where the unknowns of the band stand once components are filled up.
+    pub(super) slot: Vec<usize>,
+    /// Where each column of blocks begins, its diagonal first, counted in blocks; and the end.
     pub(super) column: Vec<usize>,
     /// The components of the band, in order.
     pub(super) components: Vec<Component>,
@@ -42,6 +60,8 @@ pub(super) struct Shape {
     component_of: Vec<u32>,
     /// For each component the position of each unknown of the border among its columns.
     place: Vec<Vec<u32>>,
+    /// The diagonals of the unknowns that fill up components.
+    fillers: Vec<usize>,
     /// Where `C` begins: row by row, the full square.
     pub(super) corner: usize,
     /// Length of the storage; its last entry is written to and never read.
@@ -64,35 +84,53 @@ impl Shape {
         for j in 1..band {
             last[j] = last[j].max(last[j - 1]);
         }
-        let mut column = vec![0];
-        column.extend(last.iter().enumerate().scan(0, |at, (j, last)| {
-            *at += last - j + 1;
-            Some(*at)
-        }));
         let mut shape = Self {
             band,
             border_variables: border[0],
             border: border[0] + border[1],
-            len: column[band],
-            column,
+            slot: vec![],
+            column: vec![0],
             components: vec![],
             component_of: vec![],
             place: vec![],
+            fillers: vec![],
             corner: 0,
+            len: 0,
         };
         shape.find_components(&last);
+        shape.find_blocks(&last);
         shape.find_touching(cliques);
         shape
     }
 
     fn find_components(&mut self, last: &[usize]) {
-        let mut first = 0;
+        let (mut first, mut block) = (0, 0);
         for (j, last) in last.iter().enumerate() {
             self.component_of.push(self.components.len() as u32);
+            self.slot.push(BLOCK * block + j - first);
             if *last == j {
-                self.components.push(Component { first, last: j + 1, columns: vec![], at: 0 });
+                let blocks = block..block + (j + 1 - first).div_ceil(BLOCK);
+                block = blocks.end;
+                self.components.push(Component { first, last: j + 1, blocks, columns: vec![], at: 0 });
                 first = j + 1;
             }
+        }
+    }
+
+    /// Columns of blocks as long as the farthest unknown of any of their columns.
+    fn find_blocks(&mut self, last: &[usize]) {
+        let mut far: Vec<usize> = (0..self.components.last().map_or(0, |c| c.blocks.end)).collect();
+        for (slot, last) in self.slot.iter().zip(last) {
+            far[slot / BLOCK] = far[slot / BLOCK].max(self.slot[*last] / BLOCK);
+        }
+        for (block, far) in far.iter().enumerate() {
+            self.column.push(self.column[block] + far - block + 1);
+        }
+        self.len = BLOCK * BLOCK * self.column[far.len()];
+        for component in &self.components {
+            let filled = BLOCK * component.blocks.start + component.last - component.first;
+            let fillers = filled..BLOCK * component.blocks.end;
+            self.fillers.extend(fillers.map(|slot| entry(&self.column, slot, slot)));
         }
     }
 
@@ -112,7 +150,7 @@ impl Shape {
                 component.columns.push(b as u32);
             }
             component.at = self.len;
-            self.len += (component.last - component.first) * component.columns.len();
+            self.len = component.row(component.columns.len()).start;
             self.place.push(place);
         }
         self.corner = self.len;
@@ -129,12 +167,11 @@ impl Shape {
     pub(super) fn position(&self, a: usize, b: usize) -> usize {
         let (low, high) = (a.min(b), a.max(b));
         if high < self.band {
-            self.column[low] + high - low
+            entry(&self.column, self.slot[high], self.slot[low])
         } else if low < self.band {
             let of = self.component_of[low] as usize;
             let component = &self.components[of];
-            let place = self.place[of][high - self.band];
-            component.at + (low - component.first) * component.columns.len() + place as usize
+            component.row(self.place[of][high - self.band] as usize).start + low - component.first
         } else {
             self.corner + (high - self.band) * self.border + low - self.band
         }
@@ -145,14 +182,27 @@ impl Shape {
         let border = unknown - self.band;
         let parts = self.components.iter().zip(&self.place).filter(move |(_, place)| place[border] != NONE);
         let band = parts.flat_map(move |(c, place)| {
-            (0..c.last - c.first).map(move |i| c.at + i * c.columns.len() + place[border] as usize)
+            let first = c.row(place[border] as usize).start;
+            first..first + c.last - c.first
         });
         let corner = self.corner + border * self.border;
         band.chain(corner..corner + border.min(self.border_variables))
+    }
+
+    /// Makes a matrix empty.
+    pub(super) fn clear(&self, matrix: &mut [f64]) {
+        matrix.fill(0.0);
+        self.fillers.iter().for_each(|&at| matrix[at] = 1.0);
     }
 
     /// Where what nobody reads is written.
     pub(super) fn trash(&self) -> usize {
         self.len - 1
     }
+}
+
+/// Where the entry of two slots of the band is stored, the later one first: block by block, column by column.
+fn entry(column: &[usize], high: usize, low: usize) -> usize {
+    let block = column[low / BLOCK] + high / BLOCK - low / BLOCK;
+    BLOCK * BLOCK * block + BLOCK * (low % BLOCK) + high % BLOCK
 }

@@ -103,6 +103,24 @@ impl Sides {
         }
     }
 
+    /// As [`Sides::multipliers`], of those at the end of a step: `y` moves by `alpha dy`, `z` by `dual dz`.
+    pub(super) fn multipliers_after(
+        &self,
+        objective: usize,
+        (alpha, dy): (f64, &[f64]),
+        (dual, dz): (f64, &[f64]),
+        out: &mut [f64],
+    ) {
+        out.fill(0.0);
+        out[objective] = -1.0;
+        for (((of, _), y), d) in self.equality.iter().zip(&self.y).zip(dy) {
+            out[*of] += y + alpha * d;
+        }
+        for ((side, z), d) in self.side.iter().zip(&self.z).zip(dz) {
+            out[side.of] += side.sign * (z + dual * d);
+        }
+    }
+
     /// The sum of all residuals: how infeasible a point is for the barrier problem.
     pub(super) fn infeasibility(&self, quantities: &[f64], w: &[f64]) -> f64 {
         let sides = self.side.iter().zip(w).map(|(side, w)| (side.distance(quantities) - w).abs()).sum::<f64>();

@@ -9,31 +9,30 @@
 //! one entry that nobody reads, and the variables (from [`System::first_variable`] on): a bound on a
 //! variable is a row whose derivative is 1.
 
-use super::elements::{BlockPlan, Buffers, Curvature, Weights};
+use super::carriers::Carriers;
+use super::elements::{Curvature, Elements, Rows, Weights};
 use super::factor::Factor;
-use super::map::BlockMap;
 use super::order::Order;
 use super::pattern::Pattern;
 use super::shape::Shape;
-use crate::nlp::{Block, Convexifier, Evaluation, Nlp, NotFinite, Scales, Slopes};
+use crate::nlp::{Block, Evaluation, Nlp, NotFinite, Scales, Slopes};
 use crate::settings::Scaling;
 
 /// A program, its plans, and its derivatives at the latest point. `W` is the program's workspace.
 pub(super) struct System<W> {
     /// What the plans were made for.
     made_for: Vec<Pattern>,
-    blocks: Vec<BlockPlan>,
+    elements: Elements,
     pub(super) order: Order,
     pub(super) shape: Shape,
     pub(super) scales: Scales,
     /// The unfactorised matrix.
     pub(super) matrix: Vec<f64>,
     pub(super) factor: Factor,
-    buffers: Buffers,
     work: W,
     /// Element derivatives at the latest point.
     at: Evaluation,
-    /// Values at a trial point.
+    /// Values at a trial point, and derivatives where they were asked for.
     trial: Evaluation,
     /// A point in the program's own units.
     x: Vec<f64>,
@@ -41,6 +40,9 @@ pub(super) struct System<W> {
     weights: Vec<f64>,
     /// Right-hand side and solution, by unknown.
     side: Vec<f64>,
+    /// The scaled point at which scales were chosen, by which rule and from which sizes of rows; none where the
+    /// program has changed since.
+    scaled_at: Option<(Vec<f64>, Scaling, Vec<f64>)>,
 }
 
 impl<W> System<W> {
@@ -48,48 +50,42 @@ impl<W> System<W> {
     pub(super) fn new<N: Nlp<Workspace = W>>(nlp: &N) -> Self {
         let (n, m) = (nlp.variables(), nlp.rows());
         let sizes = Scales::sizes(nlp.limits());
-        let maps: Vec<BlockMap> = nlp.blocks().iter().map(|block| BlockMap::new(block, &sizes, n as u32)).collect();
-        let order = Order::new(nlp, &maps);
-        let plans = nlp.blocks().iter().zip(maps).enumerate();
-        let plans = plans.map(|(number, (block, map))| BlockPlan::new(number, block, map, &order));
-        let mut blocks: Vec<BlockPlan> = plans.collect();
+        let carriers: Vec<Carriers> = nlp.blocks().iter().map(Carriers::new).collect();
+        let order = Order::new(nlp, &carriers);
+        let mut elements = Elements::new(nlp.blocks(), &carriers, &order, &sizes);
         let mut cliques: Vec<u32> = vec![];
         let mut ends = vec![0];
-        for block in &blocks {
-            block.cliques(&order, |list| {
-                cliques.extend_from_slice(list);
-                ends.push(cliques.len());
-            });
-        }
+        elements.cliques(&order, |list| {
+            cliques.extend_from_slice(list);
+            ends.push(cliques.len());
+        });
         let lists = ends.windows(2).map(|range| &cliques[range[0]..range[1]]);
         let shape = Shape::new(order.band, [order.border, order.bordered.len()], lists);
-        let mut buffers = Buffers::new(Convexifier::new(nlp.blocks(), &sizes));
-        for block in &mut blocks {
-            block.place(&order, &shape);
-            buffers.fit(block);
-        }
+        elements.place(&order, &shape);
         let (work, at) = nlp.workspace();
         Self {
             made_for: nlp.blocks().iter().map(Pattern::of).collect(),
-            blocks,
+            elements,
             scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0 },
             matrix: vec![0.0; shape.len],
             factor: Factor::new(&shape),
             side: vec![0.0; shape.unknowns()],
-            buffers,
             work,
             trial: at.clone(),
             at,
             x: vec![0.0; n],
             weights: vec![0.0; m],
+            scaled_at: None,
             order,
             shape,
         }
     }
 
-    /// The plans of a program, made again only where `earlier` was made for another one.
-    pub(super) fn for_program<N: Nlp<Workspace = W>>(earlier: Option<Self>, nlp: &N) -> Self {
+    /// The plans of a program, made again only where `earlier` was made for another one. `is_same`: it was made for
+    /// this one.
+    pub(super) fn for_program<N: Nlp<Workspace = W>>(earlier: Option<Self>, nlp: &N, is_same: bool) -> Self {
         match earlier {
+            Some(system) if is_same && system.scales.variables == Scales::sizes(nlp.limits()) => system,
             Some(system) if system.fits(nlp) => system.refit(nlp),
             _ => Self::new(nlp),
         }
@@ -106,12 +102,10 @@ impl<W> System<W> {
     /// The plans with the numbers of another program. Its workspace holds its data.
     fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N) -> Self {
         let sizes = Scales::sizes(nlp.limits());
-        for (plan, block) in self.blocks.iter_mut().zip(nlp.blocks()) {
-            plan.map.refill(block, &sizes);
-        }
-        self.buffers.set_convexifier(Convexifier::new(nlp.blocks(), &sizes));
+        self.elements.refill(nlp.blocks(), &sizes);
         self.scales = Scales { variables: sizes, rows: vec![1.0; self.weights.len()], objective: 1.0 };
         (self.work, _) = nlp.workspace();
+        self.scaled_at = None;
         self
     }
 
@@ -140,17 +134,22 @@ impl<W> System<W> {
         self.unscale(nlp, scaled);
         self.weights.fill(0.0);
         nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.work, &mut self.at)?;
+        let rows = &nlp.limits().row_scale;
+        if self.scaled_at.as_ref().is_some_and(|(at, by, of)| *at == scaled && *by == scaling && of == rows) {
+            self.elements.take(&self.at.blocks);
+            return Ok(());
+        }
         let plain = Scales { rows: vec![1.0; self.weights.len()], objective: 1.0, ..self.scales.clone() };
         self.set_scales(nlp, plain);
         let slopes = self.slopes();
         self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
+        self.scaled_at = Some((scaled.to_vec(), scaling, rows.clone()));
         Ok(())
     }
 
     fn set_scales<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scales: Scales) {
-        for (plan, block) in self.blocks.iter_mut().zip(nlp.blocks()) {
-            plan.scale(block, &scales);
-        }
+        self.elements.scale(nlp.blocks(), &scales);
+        self.elements.take(&self.at.blocks);
         self.scales = scales;
     }
 
@@ -158,9 +157,7 @@ impl<W> System<W> {
     fn slopes(&mut self) -> Slopes {
         let (m, n) = (self.weights.len(), self.x.len());
         let mut rows = vec![0.0; m + 2];
-        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
-            block.slopes(at, &mut rows);
-        }
+        self.elements.slopes(&mut rows);
         rows.truncate(m);
         let mut multipliers = vec![0.0; self.quantities()];
         self.assemble(Weights { sigma: &multipliers, curvature: Curvature::Exact });
@@ -214,13 +211,38 @@ impl<W> System<W> {
         multipliers: &[f64],
         out: &mut [f64],
     ) -> Result<(), NotFinite> {
+        self.derivatives_ahead(nlp, scaled, multipliers, out)?;
+        self.move_ahead();
+        Ok(())
+    }
+
+    /// As [`System::derivatives`], but the methods below stay with the latest point until
+    /// [`System::move_ahead`].
+    pub(super) fn derivatives_ahead<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        multipliers: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), NotFinite> {
         self.unscale(nlp, scaled);
         for ((weight, multiplier), factor) in self.weights.iter_mut().zip(multipliers).zip(&self.scales.rows) {
             *weight = -multiplier * factor;
         }
-        nlp.derivatives(&self.x, self.scales.objective, &self.weights, &mut self.work, &mut self.at)?;
-        self.copy_quantities(&self.at, scaled, out);
+        nlp.derivatives(&self.x, self.scales.objective, &self.weights, &mut self.work, &mut self.trial)?;
+        self.copy_quantities(&self.trial, scaled, out);
         Ok(())
+    }
+
+    /// Moves to the point of [`System::derivatives_ahead`], which was the last to be evaluated.
+    pub(super) fn move_ahead(&mut self) {
+        std::mem::swap(&mut self.at, &mut self.trial);
+        self.elements.take(&self.at.blocks);
+    }
+
+    /// Writes all quantities at the latest point, which this scaled one is.
+    pub(super) fn quantities_here(&self, scaled: &[f64], out: &mut [f64]) {
+        self.copy_quantities(&self.at, scaled, out);
     }
 
     fn copy_quantities(&self, at: &Evaluation, scaled: &[f64], out: &mut [f64]) {
@@ -231,44 +253,62 @@ impl<W> System<W> {
         out[self.first_variable()..].copy_from_slice(&scaled[..self.x.len()]);
     }
 
+    /// Learns which quantities are equalities, for what concerns them alone.
+    pub(super) fn find_equalities(&mut self, equalities: &[(usize, f64)]) {
+        let mut is_equality = vec![false; self.quantities()];
+        equalities.iter().for_each(|(of, _)| is_equality[*of] = true);
+        self.elements.find_equalities(&is_equality);
+    }
+
     /// Writes `sum over quantities of multiplier * gradient`; `out` has an entry for each variable
     /// and one for nobody.
     pub(super) fn gradient(&mut self, multipliers: &[f64], out: &mut [f64]) {
+        self.gradient_of(Rows::All, multipliers, out);
+    }
+
+    /// As [`System::gradient`], where only equalities have multipliers.
+    pub(super) fn gradient_of_equalities(&mut self, multipliers: &[f64], out: &mut [f64]) {
+        self.gradient_of(Rows::Equalities, multipliers, out);
+    }
+
+    fn gradient_of(&mut self, rows: Rows, multipliers: &[f64], out: &mut [f64]) {
         let n = self.x.len();
         out[..n].copy_from_slice(&multipliers[self.first_variable()..]);
-        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
-            block.gradient(at, multipliers, &mut self.buffers, out);
-        }
+        out[n] = 0.0;
+        self.elements.gradient(rows, multipliers, out);
         out[n] = 0.0;
     }
 
     /// Writes the change of all quantities along a direction, which ends with a 0 for nobody.
     pub(super) fn along(&mut self, direction: &[f64], out: &mut [f64]) {
+        self.along_of(Rows::All, direction, out);
+    }
+
+    /// As [`System::along`], where only the change of equalities is wanted; the others' is undefined.
+    pub(super) fn along_equalities(&mut self, direction: &[f64], out: &mut [f64]) {
+        self.along_of(Rows::Equalities, direction, out);
+    }
+
+    fn along_of(&mut self, rows: Rows, direction: &[f64], out: &mut [f64]) {
         let first = self.first_variable();
         out[..first].fill(0.0);
-        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
-            block.along(at, direction, &mut self.buffers, out);
-        }
+        self.elements.along(rows, direction, out);
         out[first..].copy_from_slice(&direction[..self.x.len()]);
     }
 
     /// Builds the matrix at the latest point. Rows of the border need [`System::set_border`] besides.
     pub(super) fn assemble(&mut self, weights: Weights<'_>) {
-        self.matrix.fill(0.0);
-        for (block, at) in self.blocks.iter().zip(&self.at.blocks) {
-            block.assemble(at, weights, &mut self.buffers, &mut self.matrix);
-        }
+        self.shape.clear(&mut self.matrix);
+        self.elements.assemble(weights, &mut self.matrix);
         for (weight, &unknown) in weights.sigma[self.first_variable()..].iter().zip(&self.order.unknown) {
             let at = self.shape.position(unknown as usize, unknown as usize);
             self.matrix[at] += weight;
         }
     }
 
-    /// Makes each element of the matrix convex. Before: [`System::assemble`].
-    pub(super) fn make_convex(&mut self) {
-        for block in &self.blocks {
-            block.make_convex(&mut self.buffers, &mut self.matrix);
-        }
+    /// Makes each element of the matrix convex. Before: [`System::assemble`] with the same `sigma`.
+    pub(super) fn make_convex(&mut self, sigma: &[f64]) {
+        self.elements.make_convex(sigma, &mut self.matrix);
     }
 
     /// Sets the diagonal of a row of the border to `-compliance`.

@@ -32,7 +32,7 @@ pub(crate) struct Convexifier<const L: usize> {
 impl<const L: usize> Convexifier<L> {
     /// For elements of `blocks` whose variables have these sizes.
     pub(crate) fn new(blocks: &[Block], variables: &[f64]) -> Self {
-        let sizes: Vec<Vec<f64>> = blocks.iter().map(|block| slot_sizes(block, variables)).collect();
+        let sizes = slot_sizes(blocks, variables);
         let largest = blocks.iter().map(|block| block.slots).max().unwrap_or(0);
         Self { sizes, matrix: vec![[0.0; L]; largest * largest], vectors: vec![[0.0; L]; largest * largest] }
     }
@@ -43,23 +43,14 @@ impl<const L: usize> Convexifier<L> {
         _ = self.change(k, block, |value| value.max(0.0));
     }
 
-    /// As [`Convexifier::clip`], with negative curvature taken as positive: a direction of descent that
-    /// was bent downwards keeps a measure of length. Whether any of them was not convex.
-    #[inline(always)]
-    pub(crate) fn reflect(&mut self, k: &mut [Lanes<L>], block: usize) -> bool {
-        self.change(k, block, f64::abs)
-    }
-
     /// Which matrices are positive semidefinite already.
-    #[inline(always)]
-    pub(crate) fn convex(&mut self, k: &[Lanes<L>], block: usize) -> [bool; L] {
+    fn convex(&mut self, k: &[Lanes<L>], block: usize) -> [bool; L] {
         let sizes = &self.sizes[block];
         let matrix = &mut self.matrix[..sizes.len() * sizes.len()];
         scale(matrix, k, sizes);
         semidefinite(matrix, sizes.len())
     }
 
-    #[inline(always)]
     fn change(&mut self, k: &mut [Lanes<L>], block: usize, value: impl Fn(f64) -> f64) -> bool {
         let mut convex = self.convex(k, block);
         if convex == [true; L] {
@@ -110,8 +101,12 @@ fn scale<const L: usize>(to: &mut [Lanes<L>], k: &[Lanes<L>], sizes: &[f64]) {
     }
 }
 
-/// A typical size of each slot: how far one variable can move it.
-fn slot_sizes(block: &Block, variables: &[f64]) -> Vec<f64> {
+/// A typical size of each slot of each block: how far one variable of a size can move it.
+pub(crate) fn slot_sizes(blocks: &[Block], variables: &[f64]) -> Vec<Vec<f64>> {
+    blocks.iter().map(|block| sizes_of(block, variables)).collect()
+}
+
+fn sizes_of(block: &Block, variables: &[f64]) -> Vec<f64> {
     let mut sizes = vec![0.0_f64; block.slots];
     for e in 0..block.elements {
         let (map, width) = (block.map(e), block.variables(e).len());
@@ -124,10 +119,10 @@ fn slot_sizes(block: &Block, variables: &[f64]) -> Vec<f64> {
     sizes.iter().map(|&size| if size > 0.0 { size } else { 1.0 }).collect()
 }
 
-/// Whether Cholesky factorisations succeed, where a zero pivot needs a zero column.
-/// Overwrites the matrices.
+/// Whether Cholesky factorisations succeed, where a zero pivot needs a zero column: of matrices of order `n`, side
+/// by side, of which the lower triangles are read. Overwrites them.
 #[inline(always)]
-fn semidefinite<const L: usize>(a: &mut [Lanes<L>], n: usize) -> [bool; L] {
+pub(crate) fn semidefinite<const L: usize>(a: &mut [Lanes<L>], n: usize) -> [bool; L] {
     let mut good = [true; L];
     for p in 0..n {
         let pivot = a[p * n + p];
@@ -259,14 +254,6 @@ mod tests {
             let lane: Vec<f64> = together.iter().map(|entry| entry[lane]).collect();
             assert_eq!(lane, clip(alone, &sizes));
         }
-    }
-
-    #[test]
-    fn reflected_curvature_has_the_same_size_and_no_sign() {
-        let mut k = [[-3.0], [0.0], [0.0], [2.0]];
-        assert!(of(&[1.0, 1.0]).reflect(&mut k, 0));
-        assert_eq!(k, [[3.0], [0.0], [0.0], [2.0]]);
-        assert!(!of(&[1.0, 1.0]).reflect(&mut k, 0));
     }
 
     #[test]

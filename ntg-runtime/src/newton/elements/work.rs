@@ -1,31 +1,62 @@
 //! What the elements of one block do, a pack at a time: gradients, products with the Jacobian, and
 //! the condensed matrix (docs/maths.md, section 11.2).
 
-use super::super::pack::{LANES, Pack, add_product, add_row, difference, load, product, row_product};
-use super::{BlockPlan, BorderRow, Buffers, Curvature, Weights};
-use crate::nlp::BlockValues;
+use super::super::pack::{Pack, add_product, combine, product, row_product};
+use super::plan::{BorderRow, Plan};
+use super::{Curvature, Weights};
 
-impl BlockPlan {
+/// Room for one pack of the largest block.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Room<const L: usize> {
+    /// One number for each slot.
+    pub(super) slot: Vec<Pack<L>>,
+    /// One number for each local.
+    local: Vec<Pack<L>>,
+    /// Second derivatives, one for each pair of slots.
+    pub(super) second: Vec<Pack<L>>,
+    /// `K E`.
+    pub(super) half: Vec<Pack<L>>,
+    /// What a group adds to the matrix.
+    pub(super) entry: Vec<Pack<L>>,
+    /// Second derivatives between scaled slots, lower triangle of a full matrix.
+    pub(super) element: Vec<Pack<L>>,
+    /// One over the size of each slot.
+    pub(super) inverse: Vec<f64>,
+}
+
+impl<const L: usize> Room<L> {
+    /// Makes room for a plan.
+    pub(super) fn fit(&mut self, plan: &Plan<L>) {
+        let grow = |buffer: &mut Vec<Pack<L>>, len: usize| buffer.resize(buffer.len().max(len), [0.0; L]);
+        grow(&mut self.slot, plan.slots);
+        grow(&mut self.local, plan.carriers.locals);
+        grow(&mut self.second, plan.bent.pairs.len());
+        grow(&mut self.half, plan.slots * plan.carriers.locals);
+        grow(&mut self.entry, plan.entries);
+        grow(&mut self.element, plan.slots * plan.slots);
+        self.inverse.resize(self.inverse.len().max(plan.slots), 0.0);
+    }
+}
+
+impl<const L: usize> Plan<L> {
+    /// Adds `sum over rows of multiplier * gradient` to `out`.
     #[inline(always)]
-    pub(super) fn gradient_of_packs(
-        &self,
-        at: &BlockValues,
-        multiplier: &[f64],
-        buffers: &mut Buffers,
-        out: &mut [f64],
-    ) {
-        for pack in 0..self.map.packs {
-            let slots = &mut buffers.slot[..self.slots];
-            slots.fill([0.0; LANES]);
-            for (row, entries) in self.row_entries.iter().enumerate() {
-                let factor = self.factor(pack, row, multiplier);
-                for &(entry, slot) in entries {
-                    add_product(&mut slots[slot], &factor, &self.jacobian(at, entry, pack));
+    pub(super) fn gradient(&self, multiplier: &[f64], room: &mut Room<L>, out: &mut [f64]) {
+        let (slots, local) = (&mut room.slot[..self.slots], &mut room.local[..self.carriers.locals]);
+        for group in 0..self.lay.groups() {
+            local.fill([0.0; L]);
+            for pack in self.lay.packs_of(group) {
+                slots.fill([0.0; L]);
+                let jacobian = self.jacobian_of(pack);
+                for (row, of) in self.rows.iter().enumerate() {
+                    let factor = self.of_quantity(pack, row, multiplier);
+                    for &(entry, slot) in &of.entries {
+                        add_product(&mut slots[slot], &factor, &jacobian[entry]);
+                    }
                 }
+                self.spread(pack, slots, local);
             }
-            let (variables, local) = (self.map.variables(pack), &mut buffers.local[..self.map.locals]);
-            self.spread(pack, slots, local);
-            for (variables, terms) in variables.iter().zip(&*local) {
+            for (variables, terms) in self.map.variables(group).iter().zip(&*local) {
                 for (&variable, term) in variables.iter().zip(terms) {
                     out[variable as usize] += term;
                 }
@@ -33,257 +64,130 @@ impl BlockPlan {
         }
     }
 
+    /// Adds the change of all quantities along `direction`.
     #[inline(always)]
-    pub(super) fn along_packs(&self, at: &BlockValues, direction: &[f64], buffers: &mut Buffers, out: &mut [f64]) {
-        for pack in 0..self.map.packs {
-            let slots = &mut buffers.slot[..self.slots];
-            slots.fill([0.0; LANES]); // Some may belong to no carrier.
-            let local = &mut buffers.local[..self.map.locals];
-            for (local, variables) in local.iter_mut().zip(self.map.variables(pack)) {
-                *local = variables.map(|variable| direction[variable as usize]);
+    pub(super) fn along(&self, direction: &[f64], room: &mut Room<L>, out: &mut [f64]) {
+        let (slots, local) = (&mut room.slot[..self.slots], &mut room.local[..self.carriers.locals]);
+        slots.fill([0.0; L]); // Some may belong to no carrier.
+        for group in 0..self.lay.groups() {
+            for (local, variables) in local.iter_mut().zip(self.map.variables(group)) {
+                *local = std::array::from_fn(|lane| direction[variables[lane] as usize]);
             }
-            for carrier in &self.map.carriers {
-                for &slot in &carrier.slots {
-                    slots[slot] = row_product(self.map.row(pack, slot), &local[carrier.first..carrier.last]);
+            for pack in self.lay.packs_of(group) {
+                let (coefficients, jacobian) = (self.map.coefficients(pack), self.jacobian_of(pack));
+                for carrier in &self.carriers.all {
+                    let local = &local[carrier.first..carrier.last];
+                    for &slot in &carrier.slots {
+                        slots[slot] = row_product(&coefficients[self.map.coefficient_of[slot]..][..local.len()], local);
+                    }
                 }
-            }
-            for (row, entries) in self.row_entries.iter().enumerate() {
-                let mut sum = [0.0; LANES];
-                for &(entry, slot) in entries {
-                    add_product(&mut sum, &slots[slot], &self.jacobian(at, entry, pack));
-                }
-                let change = product(&sum, &self.weight[pack * self.rows + row]);
-                for (&quantity, change) in self.quantity[pack * self.rows + row].iter().zip(&change) {
-                    out[quantity as usize] += change;
-                }
-            }
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn assemble_packs(
-        &self,
-        at: &BlockValues,
-        weights: Weights<'_>,
-        buffers: &mut Buffers,
-        matrix: &mut [f64],
-    ) {
-        for pack in 0..self.map.packs {
-            if !self.pairs.is_empty() {
-                self.second(at, pack, weights, buffers);
-                self.keep(pack, buffers);
-                self.scatter(pack, buffers, matrix);
-            }
-            for border in &self.border {
-                self.border_row(at, pack, border, buffers, matrix);
-            }
-        }
-    }
-
-    /// Second derivatives between slots with condensed rows.
-    #[inline(always)]
-    fn second(&self, at: &BlockValues, pack: usize, weights: Weights<'_>, buffers: &mut Buffers) {
-        let n = self.slots;
-        let second = &mut buffers.second[..n * n];
-        for &(i, j) in &self.pairs {
-            second[i * n + j] = [0.0; LANES];
-        }
-        for (entry, &(i, j)) in self.hessian.iter().enumerate().filter(|_| weights.curvature != Curvature::None) {
-            second[i.max(j) * n + i.min(j)] =
-                load(&at.hessian, entry * self.elements + pack * LANES, (entry + 1) * self.elements);
-        }
-        let gradient = &mut buffers.slot;
-        for (row, entries) in self.row_entries.iter().enumerate().filter(|(row, _)| self.condensed[*row]) {
-            let weight = &self.weight[pack * self.rows + row];
-            let factor = product(weight, &self.factor(pack, row, weights.sigma));
-            for (to, &(entry, _)) in gradient.iter_mut().zip(entries) {
-                *to = self.jacobian(at, entry, pack);
-            }
-            for (k, &(_, i)) in entries.iter().enumerate() {
-                let scaled = product(&factor, &gradient[k]);
-                for (other, &(_, j)) in gradient.iter().zip(&entries[..=k]) {
-                    add_product(&mut second[i.max(j) * n + i.min(j)], &scaled, other);
-                }
-            }
-        }
-    }
-
-    /// Keeps the second derivatives of a pack for [`BlockPlan::make_packs_convex`].
-    #[inline(always)]
-    fn keep(&self, pack: usize, buffers: &mut Buffers) {
-        let kept = &mut buffers.kept[self.block][pack * self.pairs.len()..];
-        for (kept, &(i, j)) in kept.iter_mut().zip(&self.pairs) {
-            *kept = buffers.second[i * self.slots + j];
-        }
-    }
-
-    /// Adds to the matrix what makes the second derivatives of every lane positive semidefinite. Most are so
-    /// already; the others are collected, so that no lane is worked on in vain.
-    #[inline(always)]
-    pub(super) fn make_packs_convex(&self, buffers: &mut Buffers, matrix: &mut [f64]) {
-        let (n, pairs) = (self.slots, self.pairs.len());
-        if pairs == 0 {
-            return;
-        }
-        buffers.concave.clear();
-        for pack in 0..self.map.packs {
-            let Buffers { element, kept, convexifier, concave, .. } = &mut *buffers;
-            let kept = &mut kept[self.block][pack * pairs..][..pairs];
-            self.fill(&mut element[..n * n], |pair| kept[pair]);
-            let convex = convexifier.convex(&element[..n * n], self.block);
-            concave.extend((0..LANES).filter(|lane| !convex[*lane]).map(|lane| (pack, lane)));
-        }
-        for first in (0..buffers.concave.len()).step_by(LANES) {
-            self.reflect(first, buffers);
-        }
-        let mut next = 0;
-        while let Some(&(pack, _)) = buffers.concave.get(next) {
-            let Buffers { second, change, concave, .. } = &mut *buffers;
-            self.pairs.iter().for_each(|&(i, j)| second[i * n + j] = [0.0; LANES]);
-            while let Some((_, lane)) = concave.get(next).filter(|(of, _)| *of == pack) {
-                for (pair, &(i, j)) in self.pairs.iter().enumerate() {
-                    second[i * n + j][*lane] = change[next / LANES * pairs + pair][next % LANES];
-                }
-                next += 1;
-            }
-            self.scatter(pack, buffers, matrix);
-        }
-    }
-
-    /// What is to be added to the collected elements from the one with this number on, a lane each.
-    #[inline(always)]
-    fn reflect(&self, first: usize, buffers: &mut Buffers) {
-        let (n, pairs) = (self.slots, self.pairs.len());
-        let Buffers { element, kept, convexifier, concave, change, .. } = buffers;
-        let element = &mut element[..n * n];
-        let of = &concave[first..concave.len().min(first + LANES)];
-        let change = &mut change[first / LANES * pairs..][..pairs];
-        for (pair, change) in change.iter_mut().enumerate() {
-            *change = [0.0; LANES];
-            for (to, &(pack, lane)) in change.iter_mut().zip(of) {
-                *to = kept[self.block][pack * pairs + pair][lane];
-            }
-        }
-        self.fill(element, |pair| change[pair]);
-        _ = convexifier.reflect(element, self.block);
-        for (change, &(i, j)) in change.iter_mut().zip(&self.pairs) {
-            *change = difference(&element[i * n + j], change);
-        }
-    }
-
-    /// A full symmetric matrix from its entries at the pairs.
-    #[inline(always)]
-    fn fill(&self, element: &mut [Pack], entry: impl Fn(usize) -> Pack) {
-        element.fill([0.0; LANES]);
-        for (pair, &(i, j)) in self.pairs.iter().enumerate() {
-            element[i * self.slots + j] = entry(pair);
-            element[j * self.slots + i] = entry(pair);
-        }
-    }
-
-    /// `E^T second E`, added to the matrix.
-    #[inline(always)]
-    fn scatter(&self, pack: usize, buffers: &mut Buffers, matrix: &mut [f64]) {
-        let (n, locals) = (self.slots, self.map.locals);
-        let Buffers { second, half, local, .. } = buffers;
-        let half = &mut half[..n * locals];
-        half.fill([0.0; LANES]);
-        for &(i, j) in &self.pairs {
-            self.half_product(pack, (i, j), &second[i * n + j], half);
-            if i != j {
-                self.half_product(pack, (j, i), &second[i * n + j], half);
-            }
-        }
-        let mut position = self.position[pack * self.entries..].iter();
-        let entry = &mut *local;
-        for &(p, q) in &self.carrier_pairs {
-            let (a, b) = (&self.map.carriers[p], &self.map.carriers[q]);
-            let columns = b.last - b.first;
-            for i in a.first..a.last {
-                let row = &mut entry[..columns];
-                row.fill([0.0; LANES]);
-                for &slot in &a.slots {
-                    let from = slot * locals + b.first;
-                    add_row(row, &self.map.row(pack, slot)[i - a.first], &half[from..from + columns]);
-                }
-                let needed = if p == q { i + 1 - a.first } else { columns };
-                for (sum, position) in row[..needed].iter().zip(&mut position) {
-                    for (&at, term) in position.iter().zip(sum) {
-                        matrix[at as usize] += term;
+                for (row, of) in self.rows.iter().enumerate() {
+                    let mut change = [0.0; L];
+                    for &(entry, slot) in &of.entries {
+                        add_product(&mut change, &slots[slot], &jacobian[entry]);
+                    }
+                    for (&quantity, change) in self.quantity[pack * self.rows.len() + row].iter().zip(&change) {
+                        out[quantity as usize] += change;
                     }
                 }
             }
         }
     }
 
-    /// `half[i] += second[i, j] E[j]`.
+    /// Adds `E^T (K + sum over condensed rows of sigma * gradient gradient^T) E` and the rows of the
+    /// border to the matrix.
     #[inline(always)]
-    fn half_product(&self, pack: usize, (i, j): (usize, usize), second: &Pack, half: &mut [Pack]) {
-        let (Some(c), Some(_)) = (self.map.carrier[j], self.map.carrier[i]) else { return };
-        let row = self.map.row(pack, j);
-        let first = i * self.map.locals + self.map.carriers[c].first;
-        add_row(&mut half[first..first + row.len()], second, row);
+    pub(super) fn assemble(&self, weights: Weights<'_>, room: &mut Room<L>, matrix: &mut [f64]) {
+        for group in 0..self.lay.groups() {
+            room.entry[..self.entries].fill([0.0; L]);
+            for pack in self.lay.packs_of(group) {
+                self.second(pack, weights, &mut room.second);
+                let Room { second, half, entry, .. } = &mut *room;
+                self.exact.add(second, self.map.coefficients(pack), half, entry);
+                for border in &self.border {
+                    self.border_row(pack, border, room, matrix);
+                }
+            }
+            self.add_entries(group, &room.entry, matrix);
+        }
+    }
+
+    /// Adds what the elements of a group have added up.
+    #[inline(always)]
+    pub(super) fn add_entries(&self, group: usize, entry: &[Pack<L>], matrix: &mut [f64]) {
+        let positions = &self.position[group * self.entries..][..self.entries];
+        for (position, sum) in positions.iter().zip(entry) {
+            for (&at, term) in position.iter().zip(sum) {
+                matrix[at as usize] += term;
+            }
+        }
+    }
+
+    /// Second derivatives between slots with condensed rows, one for each pair.
+    #[inline(always)]
+    pub(super) fn second(&self, pack: usize, weights: Weights<'_>, second: &mut [Pack<L>]) {
+        second[..self.exact.pairs.len()].fill([0.0; L]);
+        if weights.curvature == Curvature::Exact {
+            for (entry, pair) in self.hessian_of(pack).iter().zip(&self.pair_of) {
+                if let Some(pair) = pair {
+                    second[*pair] = *entry;
+                }
+            }
+        }
+        let jacobian = self.jacobian_of(pack);
+        for (row, of) in self.rows.iter().enumerate().filter(|(_, of)| !of.pairs.is_empty()) {
+            let sigma = self.of_condensed(pack, row, weights.sigma);
+            let mut pairs = of.pairs.iter();
+            for (k, &(a, _)) in of.entries.iter().enumerate() {
+                let scaled = product(&sigma, &jacobian[a]);
+                for (&(b, _), &pair) in of.entries[..=k].iter().zip(&mut pairs) {
+                    add_product(&mut second[pair], &scaled, &jacobian[b]);
+                }
+            }
+        }
     }
 
     #[inline(always)]
-    fn border_row(&self, at: &BlockValues, pack: usize, border: &BorderRow, buffers: &mut Buffers, matrix: &mut [f64]) {
-        let slots = &mut buffers.slot[..self.slots];
-        slots.fill([0.0; LANES]);
-        for &(entry, slot) in &self.row_entries[border.row] {
-            let weight = &self.weight[pack * self.rows + border.row];
-            slots[slot] = product(weight, &self.jacobian(at, entry, pack));
+    fn border_row(&self, pack: usize, border: &BorderRow<L>, room: &mut Room<L>, matrix: &mut [f64]) {
+        let (slots, local) = (&mut room.slot[..self.slots], &mut room.local[..self.carriers.locals]);
+        slots.fill([0.0; L]);
+        local.fill([0.0; L]);
+        for &(entry, slot) in &self.rows[border.row].entries {
+            slots[slot] = self.jacobian_of(pack)[entry];
         }
-        let local = &mut buffers.local[..self.map.locals];
         self.spread(pack, slots, local);
-        for (position, terms) in border.position[pack * self.map.locals..].iter().zip(&*local) {
+        for (position, terms) in border.position[pack * self.carriers.locals..].iter().zip(&*local) {
             for (&at, term) in position.iter().zip(terms) {
                 matrix[at as usize] += term;
             }
         }
     }
 
-    /// `local = E^T slots`.
+    /// `local += E^T slots`.
     #[inline(always)]
-    fn spread(&self, pack: usize, slots: &[Pack], local: &mut [Pack]) {
-        local.fill([0.0; LANES]);
-        for carrier in &self.map.carriers {
-            let local = &mut local[carrier.first..carrier.last];
-            for &slot in &carrier.slots {
-                add_row(local, &slots[slot], self.map.row(pack, slot));
-            }
+    fn spread(&self, pack: usize, slots: &[Pack<L>], local: &mut [Pack<L>]) {
+        let coefficients = self.map.coefficients(pack);
+        for (carrier, terms) in self.carriers.all.iter().zip(&self.spread) {
+            combine(&mut local[carrier.first..carrier.last], terms, slots, coefficients);
         }
     }
 
-    /// The largest slope of each condensed quantity by any scaled variable.
-    pub(in super::super) fn slopes(&self, at: &BlockValues, out: &mut [f64]) {
-        for pack in 0..self.map.packs {
-            for (row, entries) in self.row_entries.iter().enumerate() {
-                for carrier in &self.map.carriers {
-                    for i in 0..carrier.last - carrier.first {
-                        let mut sum = [0.0; LANES];
-                        for &(entry, slot) in entries.iter().filter(|(_, slot)| carrier.slots.contains(slot)) {
-                            add_product(&mut sum, &self.map.row(pack, slot)[i], &self.jacobian(at, entry, pack));
-                        }
-                        let slope = product(&sum, &self.weight[pack * self.rows + row]);
-                        for (&quantity, slope) in self.quantity[pack * self.rows + row].iter().zip(&slope) {
-                            out[quantity as usize] = out[quantity as usize].max(slope.abs());
-                        }
-                    }
+    /// The largest slope of each quantity by any scaled variable.
+    pub(super) fn slopes(&self, room: &mut Room<L>, out: &mut [f64]) {
+        let (slots, local) = (&mut room.slot[..self.slots], &mut room.local[..self.carriers.locals]);
+        for (pack, lanes) in self.quantity.chunks_exact(self.rows.len().max(1)).enumerate() {
+            for (of, quantities) in self.rows.iter().zip(lanes) {
+                slots.fill([0.0; L]);
+                local.fill([0.0; L]);
+                for &(entry, slot) in &of.entries {
+                    slots[slot] = self.jacobian_of(pack)[entry];
+                }
+                self.spread(pack, slots, local);
+                for (lane, &quantity) in quantities.iter().enumerate() {
+                    let largest = local.iter().fold(0.0_f64, |most, slope| most.max(slope[lane].abs()));
+                    out[quantity as usize] = out[quantity as usize].max(largest);
                 }
             }
         }
-    }
-
-    #[inline(always)]
-    fn jacobian(&self, at: &BlockValues, entry: usize, pack: usize) -> Pack {
-        load(&at.jacobian, entry * self.elements + pack * LANES, (entry + 1) * self.elements)
-    }
-
-    /// Weight times a number for each quantity.
-    #[inline(always)]
-    fn factor(&self, pack: usize, row: usize, of: &[f64]) -> Pack {
-        let at = pack * self.rows + row;
-        let numbers: Pack = self.quantity[at].map(|quantity| of[quantity as usize]);
-        product(&self.weight[at], &numbers)
     }
 }

@@ -1,0 +1,139 @@
+//! The products that take second derivatives between slots to the matrix (docs/maths.md, section 11.2):
+//! which rows of `K E` and `E^T K E` there are, and what is added up in each.
+
+use super::super::carriers::Carriers;
+use super::super::pack::{Pack, Term, combine};
+
+/// `E^T K E` for one pattern of `K`.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Products {
+    /// Pairs of slots with an entry in `K`, `i >= j`.
+    pub(super) pairs: Vec<(usize, usize)>,
+    /// Rows of `K E`.
+    half: Vec<Row>,
+    /// Rows of `E^T K E`.
+    full: Vec<Row>,
+}
+
+/// A row of a product: where it stands, and what it is made of.
+#[derive(Clone, Debug)]
+struct Row {
+    first: usize,
+    len: usize,
+    terms: Vec<Term>,
+}
+
+/// Where the entries of the lower triangle of `E^T K E` stand: one run for each pair of carriers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Entries {
+    /// Pairs of carriers, the later one first.
+    pub(super) pairs: Vec<(usize, usize)>,
+    /// How many entries there are.
+    pub(super) len: usize,
+}
+
+impl Entries {
+    /// Those of all pairs of carriers that some pairs of slots belong to.
+    pub(super) fn new(carriers: &Carriers, slots: &[(usize, usize)]) -> Self {
+        let both = slots.iter().filter_map(|&(i, j)| Some((carriers.of[i]?, carriers.of[j]?)));
+        let mut pairs: Vec<(usize, usize)> = both.map(|(a, b)| (a.max(b), a.min(b))).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut entries = Self { pairs, len: 0 };
+        let mut len = 0;
+        entries.each_row(carriers, |_, _, _, width| len += width);
+        entries.len = len;
+        entries
+    }
+
+    /// Visits every row: its pair of carriers, its local within the first of them, where it begins, and how long it
+    /// is. Within one carrier only the lower triangle is there.
+    fn each_row(&self, carriers: &Carriers, mut visit: impl FnMut((usize, usize), usize, usize, usize)) {
+        let mut first = 0;
+        for &(p, q) in &self.pairs {
+            let (a, b) = (&carriers.all[p], &carriers.all[q]);
+            for i in 0..a.last - a.first {
+                let len = if p == q { i + 1 } else { b.last - b.first };
+                visit((p, q), i, first, len);
+                first += len;
+            }
+        }
+    }
+
+    /// Visits the pair of locals of every entry, in order.
+    pub(super) fn each(&self, carriers: &Carriers, mut visit: impl FnMut(usize, usize)) {
+        self.each_row(carriers, |(p, q), i, _, len| {
+            let (a, b) = (carriers.all[p].first + i, carriers.all[q].first);
+            (b..b + len).for_each(|b| visit(a, b));
+        });
+    }
+}
+
+impl Products {
+    /// Those of a pattern, whose carriers' pairs are among those of `entries`. `coefficient_of` says where the
+    /// coefficients of each slot begin.
+    pub(super) fn new(
+        pairs: Vec<(usize, usize)>,
+        carriers: &Carriers,
+        coefficient_of: &[usize],
+        entries: &Entries,
+    ) -> Self {
+        let slots = carriers.of.len();
+        let mut half: Vec<Row> = vec![];
+        let mut known = vec![vec![false; carriers.all.len()]; slots];
+        for slot in 0..slots {
+            for (c, carrier) in carriers.all.iter().enumerate() {
+                let with = |other: usize| pairs.iter().position(|&p| p == (slot.max(other), slot.min(other)));
+                let terms = carrier.slots.iter().filter_map(|&other| Some((with(other)?, coefficient_of[other])));
+                let terms: Vec<Term> = terms.map(|(pair, at)| (pair as u32, at as u32)).collect();
+                if !terms.is_empty() {
+                    known[slot][c] = true;
+                    let (first, len) = (slot * carriers.locals + carrier.first, carrier.last - carrier.first);
+                    half.push(Row { first, len, terms });
+                }
+            }
+        }
+        let mut full = vec![];
+        entries.each_row(carriers, |(p, q), i, first, len| {
+            let slots = carriers.all[p].slots.iter().filter(|slot| known[**slot][q]);
+            let term = |slot: &usize| (coefficient_of[*slot] + i, slot * carriers.locals + carriers.all[q].first);
+            let terms: Vec<Term> = slots.map(term).map(|(c, h)| (c as u32, h as u32)).collect();
+            if !terms.is_empty() {
+                full.push(Row { first, len, terms });
+            }
+        });
+        Self { pairs, half, full }
+    }
+
+    /// Adds `E^T K E` of one pack, whose entries of `K` are `second`. `half` is room.
+    #[inline(always)]
+    pub(super) fn add<const L: usize>(
+        &self,
+        second: &[Pack<L>],
+        coefficients: &[Pack<L>],
+        half: &mut [Pack<L>],
+        to: &mut [Pack<L>],
+    ) {
+        for row in &self.half {
+            let out = &mut half[row.first..row.first + row.len];
+            out.fill([0.0; L]);
+            combine(out, &row.terms, second, coefficients);
+        }
+        for row in &self.full {
+            combine(&mut to[row.first..row.first + row.len], &row.terms, coefficients, half);
+        }
+    }
+}
+
+/// All pairs of slots that a chain of pairs connects: what factors of `K` may fill.
+pub(super) fn closure(pairs: &[(usize, usize)], slots: usize) -> Vec<(usize, usize)> {
+    let mut leader: Vec<usize> = (0..slots).collect();
+    for &(i, j) in pairs {
+        let (low, high) = (leader[i].min(leader[j]), leader[i].max(leader[j]));
+        leader.iter_mut().filter(|l| **l == high).for_each(|l| *l = low);
+    }
+    let touched = |slot: usize| pairs.iter().any(|&(i, j)| i == slot || j == slot);
+    let used: Vec<usize> = (0..slots).filter(|&slot| touched(slot)).collect();
+    let all = used.iter().flat_map(|&i| used.iter().filter(move |&&j| j <= i).map(move |&j| (i, j)));
+    all.filter(|&(i, j)| leader[i] == leader[j]).collect()
+}
