@@ -35,14 +35,13 @@ pub(crate) fn steps(structure: &Structure) -> Vec<Vec<Setting>> {
 }
 
 /// The structure of one step.
-pub(crate) fn set(structure: &Structure, settings: &[Setting]) -> Structure {
-    let mut changed = structure.clone();
+pub(crate) fn set(mut structure: Structure, settings: &[Setting]) -> Structure {
     for (parameter, value) in settings {
-        if let Some(parameter) = changed.parameters.get_mut(*parameter) {
+        if let Some(parameter) = structure.parameters.get_mut(*parameter) {
             parameter.value.fill(*value);
         }
     }
-    changed
+    structure
 }
 
 #[cfg(test)]
@@ -61,7 +60,7 @@ mod tests {
     fn the_program_decides_the_last_step() {
         assert_eq!(steps(&structure(1.0)), [[(0, 20.0)], [(0, 5.0)], [(0, 1.0)]]);
         assert_eq!(steps(&structure(2.0))[2], [(0, 2.0)]);
-        assert_eq!(set(&structure(1.0), &[(0, 20.0)]).parameters[0].value, [20.0]);
+        assert_eq!(set(structure(1.0), &[(0, 20.0)]).parameters[0].value, [20.0]);
     }
 
     #[test]

@@ -2,22 +2,20 @@
 
 use super::fine::Plan;
 use super::{ConstraintReport, Worst, multipliers};
-use crate::nlp::Nlp;
+use crate::nlp::Evaluation;
 use crate::sqp::Outcome;
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
 use crate::transcribe::{SetupError, Transcription, names};
 
 /// One entry for each constraint of the spec, and the terms on the finer grid.
+/// `at` holds the program's values at the last point.
 pub(super) fn constraints(
     nlp: &Transcription,
-    outcome: &Outcome,
+    (outcome, at): (&Outcome, &Evaluation),
     fine: &mut Plan,
 ) -> Result<(Vec<ConstraintReport>, Vec<f64>), SetupError> {
     let structure = &nlp.model.structure;
-    let (mut work, mut out) = nlp.workspace();
-    // Where a value is not finite, the status says so.
-    let _ = nlp.values(&outcome.x, &mut work, &mut out);
     let declared = structure.constraints.iter();
     let mut reports: Vec<ConstraintReport> = declared
         .map(|constraint| ConstraintReport {
@@ -36,7 +34,7 @@ pub(super) fn constraints(
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
         let report = &mut reports[constraint];
         let unit = report.unit.factor;
-        keep(nlp, &outcome.x, &mut report.points, (out.rows[row], bounds, unit), &info.point);
+        keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, unit), &info.point);
         multipliers::add(nlp, outcome, row, report);
     }
     let terms = fine.evaluate(nlp, &outcome.x, |checked| {
@@ -55,6 +53,9 @@ fn keep(
     (value, (lower, upper), unit): (f64, (f64, f64), f64),
     point: &Point,
 ) {
+    if worst.is_some() && lower <= value && value <= upper {
+        return; // As nearly all are.
+    }
     let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
     let relative = missed / scale(lower, upper, unit);
     let worse = |held: &Worst| relative > held.relative || (relative.is_nan() && !held.relative.is_nan());

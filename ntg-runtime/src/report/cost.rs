@@ -1,19 +1,16 @@
 //! The objective by terms, as discretised and on the finer grid.
 
 use super::TermReport;
-use crate::nlp::Nlp;
+use crate::nlp::Evaluation;
 use crate::transcribe::Transcription;
 use ntg_structure::Row;
 
-/// One entry for each term, in the user's sense and the term's unit.
-pub(super) fn terms(nlp: &Transcription, x: &[f64], fine: &[f64]) -> Vec<TermReport> {
+/// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.
+pub(super) fn terms(nlp: &Transcription, at: &Evaluation, fine: &[f64]) -> Vec<TermReport> {
     let structure = &nlp.model.structure;
     let mut sums = vec![0.0; structure.terms.len()];
-    let (mut work, mut out) = nlp.workspace();
-    // Where a value is not finite, the status says so; the sums then show what there is.
-    let _ = nlp.values(x, &mut work, &mut out);
     for (index, group) in nlp.elements.batches.iter().enumerate() {
-        let (block, values) = (&nlp.elements.blocks[index], &out.blocks[index].values);
+        let (block, values) = (&nlp.elements.blocks[index], &at.blocks[index].values);
         for (row, meaning) in structure.groups[group.group].rows.iter().enumerate() {
             let Row::Cost { term } = meaning else { continue };
             let range = row * block.elements..(row + 1) * block.elements;

@@ -12,6 +12,7 @@ mod traces;
 
 pub use traces::Trace;
 
+use crate::nlp::Nlp;
 use crate::refine::Refined;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};
 use crate::sqp::Outcome;
@@ -198,8 +199,11 @@ impl Report {
         history: Vec<StepReport>,
     ) -> Result<Self, SetupError> {
         let structure = &nlp.model.structure;
-        let (constraints, fine_terms) = constraints::constraints(nlp, &outcome, fine)?;
-        let terms = cost::terms(nlp, &outcome.x, &fine_terms);
+        let (mut work, mut at) = nlp.workspace();
+        // Where a value is not finite, the status says so; sums then show what there is.
+        _ = nlp.values(&outcome.x, &mut work, &mut at);
+        let (constraints, fine_terms) = constraints::constraints(nlp, (&outcome, &at), fine)?;
+        let terms = cost::terms(nlp, &at, &fine_terms);
         let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };

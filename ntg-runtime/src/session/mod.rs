@@ -24,7 +24,7 @@ use crate::report::{Report, StepReport, user};
 use crate::settings::Settings;
 use crate::solution::{Inner, Solution, Value};
 use crate::status::Status;
-use crate::transcribe::{Change, Kept, SetupError, Transcription, Workspace, singular};
+use crate::transcribe::{Change, Kept, Model, SetupError, Singular, Transcription, Workspace, singular};
 use meshes::start_from_coarse;
 use ntg_structure::Structure;
 use std::sync::Arc;
@@ -37,8 +37,17 @@ pub(crate) struct Session {
     /// Plans of the method for this program.
     memory: Memory<Workspace>,
     fine: Option<Fine>,
+    /// Where the last solve from the spec's own guess began.
+    first: Option<First>,
     /// The same problem on coarser knots.
     coarser: Option<Box<Self>>,
+}
+
+/// The spec's own guess for one model.
+struct First {
+    model: Arc<Model>,
+    x: Vec<f64>,
+    singular: Vec<Singular>,
 }
 
 /// The plan of the finer grid.
@@ -68,21 +77,26 @@ impl Session {
     fn solve_on_own_mesh(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
         let began = Instant::now();
         let (problem, guess) = task;
-        let structure = problem.structure();
+        let mut structure = problem.structure();
         let steps = steps(&structure);
         let mut history: Vec<StepReport> = vec![];
         let mut last: Option<Outcome> = None;
         let mut at_guess = vec![];
         for (i, step) in steps.iter().enumerate() {
             let step_began = Instant::now();
-            let mut nlp = self.program(problem, set(&structure, step))?;
+            let is_last = i + 1 == steps.len();
+            let own = if is_last { std::mem::take(&mut structure) } else { structure.clone() };
+            let mut nlp = self.program(problem, set(own, step))?;
             // The layout is the same in every step: only parameters change.
             let (mut first, mut spent, mut from) = match &last {
                 Some(last) => (start(&nlp, Some(&Guess::raw(last.x.clone())))?, 0, Start::Cold),
-                None => (start(&nlp, guess)?, 0, Start::Cold),
+                None => {
+                    let (first, singular) = self.first_point(&nlp, guess)?;
+                    at_guess = singular;
+                    (first, 0, Start::Cold)
+                }
             };
             if i == 0 {
-                at_guess = singular(&nlp, &first);
                 let level = &nlp.model.structure;
                 let (found, iterations) =
                     start_from_coarse(&mut self.coarser, task, level, &settings.after(began.elapsed()))?;
@@ -99,8 +113,8 @@ impl Session {
             let left = settings.after(began.elapsed());
             let mut outcome = self.by_all_means(&nlp, task, (&first, from), &left)?;
             outcome.iterations += spent;
-            history.push(record(&nlp, &structure, step, &outcome, step_began));
-            if i + 1 == steps.len() || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
+            history.push(record(&nlp, step, &outcome, step_began));
+            if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
                 let mut report = self.report(nlp, outcome, history, settings)?;
                 report.singular = at_guess;
                 report.seconds = began.elapsed().as_secs_f64();
@@ -137,14 +151,31 @@ impl Session {
             self.program = Some(nlp.keep());
             return Ok(None);
         }
-        let structure = Arc::clone(&nlp.model);
-        let step = record(&nlp, &structure.structure, &[], &once, began);
+        let step = record(&nlp, &[], &once, began);
         let mut report = self.report(nlp, once, vec![step], settings)?;
         report.seconds = began.elapsed().as_secs_f64();
         match &settings.refine {
             Some(wanted) => refine(problem, report, wanted, settings).map(Some),
             None => Ok(Some(report)),
         }
+    }
+
+    /// The first point, and what is singular there. The spec's own guess is kept until parameters change.
+    fn first_point(
+        &mut self,
+        nlp: &Transcription,
+        guess: Option<&Guess>,
+    ) -> Result<(Vec<f64>, Vec<Singular>), SetupError> {
+        let known = self.first.as_ref().filter(|first| guess.is_none() && Arc::ptr_eq(&first.model, &nlp.model));
+        if let Some(first) = known {
+            return Ok((first.x.clone(), first.singular.clone()));
+        }
+        let x = start(nlp, guess)?;
+        let singular = singular(nlp, &x);
+        if guess.is_none() {
+            self.first = Some(First { model: Arc::clone(&nlp.model), x: x.clone(), singular: singular.clone() });
+        }
+        Ok((x, singular))
     }
 
     /// A solution to a rough tolerance, to start from; and the iterations that were spent.
@@ -175,7 +206,9 @@ impl Session {
     fn program<'p>(&mut self, problem: &'p dyn Problem, structure: Structure) -> Result<Transcription<'p>, SetupError> {
         let Some(kept) = self.program.take() else { return Transcription::with(problem, structure) };
         let mut nlp = kept.of(problem);
-        match nlp.take(structure)? {
+        let change = nlp.take(structure)?;
+        self.memory.is_same_program = matches!(change, Change::Nothing);
+        match change {
             Change::Nothing => {}
             Change::Data => self.fine.iter_mut().for_each(|fine| fine.stale = true),
             Change::All => self.fine = None,
@@ -217,15 +250,9 @@ fn solution(nlp: &Transcription, outcome: Outcome) -> Solution {
     }
 }
 
-fn record(
-    nlp: &Transcription,
-    structure: &Structure,
-    step: &[Setting],
-    outcome: &Outcome,
-    began: Instant,
-) -> StepReport {
+fn record(nlp: &Transcription, step: &[Setting], outcome: &Outcome, began: Instant) -> StepReport {
     let parameter = |(parameter, value): &Setting| {
-        let declared = &structure.parameters[*parameter];
+        let declared = &nlp.model.structure.parameters[*parameter];
         Value { name: declared.name.clone(), value: value / declared.unit.factor, unit: declared.unit.clone() }
     };
     StepReport {
