@@ -36,6 +36,15 @@ pub(super) struct Factor {
     run: Vec<Chunk>,
 }
 
+/// `a - factor b`.
+#[inline(always)]
+fn less(mut a: Chunk, factor: f64, b: Chunk) -> Chunk {
+    for r in 0..BLOCK {
+        a[r] -= factor * b[r];
+    }
+    a
+}
+
 /// `to -= block x`.
 #[inline(always)]
 fn subtract_product(to: &mut Chunk, block: &Square, x: &Chunk) {
@@ -139,16 +148,14 @@ impl Factor {
             let mut columns = *block;
             for c in 0..BLOCK {
                 for d in c + 1..BLOCK {
-                    for r in 0..BLOCK {
-                        columns[d][r] -= diagonal[c][d] * columns[c][r];
-                    }
+                    columns[d] = less(columns[d], diagonal[c][d], columns[c]);
                 }
             }
             *panel = columns;
             for c in 0..BLOCK {
-                for r in 0..BLOCK {
-                    largest[c] = larger(columns[c][r], largest[c]);
-                    columns[c][r] *= inverse[c];
+                for entry in &mut columns[c] {
+                    largest[c] = larger(*entry, largest[c]);
+                    *entry *= inverse[c];
                 }
             }
             *block = columns;
@@ -291,14 +298,10 @@ fn factors_of(diagonal: &mut Square) -> (Chunk, Chunk, Chunk) {
         (pivots[c], inverse[c]) = (d[c][c], 1.0 / d[c][c]);
         for k in c + 1..BLOCK {
             largest[c] = larger(d[c][k], largest[c]);
-            let factor = d[c][k] * inverse[c];
-            for r in k..BLOCK {
-                d[k][r] -= factor * d[c][r];
-            }
+            // Above the diagonal stands what nobody reads.
+            d[k] = less(d[k], d[c][k] * inverse[c], d[c]);
         }
-        for r in c + 1..BLOCK {
-            d[c][r] *= inverse[c];
-        }
+        d[c].iter_mut().skip(c + 1).for_each(|entry| *entry *= inverse[c]);
     }
     *diagonal = d;
     (pivots, inverse, largest)

@@ -10,9 +10,11 @@ use crate::nlp::Nlp;
 use crate::outcome::IterationRecord;
 
 /// Iterations after the tolerances are met, at most.
-const ITERATIONS: usize = 3;
+const ITERATIONS: usize = 8;
 /// What they aim for, as a fraction of the tolerances and of the last barrier parameter.
 const FINE: f64 = 1e-3;
+/// This many times that is close to it.
+const CLOSE: f64 = 10.0;
 
 /// Room for a point that meets all tolerances.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +56,11 @@ impl<N: Nlp> Core<'_, N> {
             (best.record, best.is_held) = (*record, true);
         }
         let fine = FINE * self.settings.tolerance.min(self.settings.constraint_tolerance);
-        let over = largest(&self.record) <= fine || self.iterations >= since + ITERATIONS;
+        // Close to the end, an iteration whose matrix was not that of a minimum leads on to nothing finer.
+        let astray = self.iterations > since
+            && self.history.last().is_some_and(|last| last.mixed)
+            && largest(&self.best.record) <= CLOSE * fine;
+        let over = largest(&self.record) <= fine || astray || self.iterations >= since + ITERATIONS;
         if over {
             self.take_best();
         }

@@ -285,9 +285,12 @@ fn union(maps: &[AffineMap]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    /// Elements of two slots whose maps have these terms and offsets.
-    fn maps(of: &[[(&[(u32, f64)], f64); 2]]) -> Vec<Vec<AffineMap>> {
-        let map = |(terms, offset): &(&[(u32, f64)], f64)| AffineMap { terms: terms.to_vec(), offset: *offset };
+    /// The terms and the offset of a map.
+    type Affine<'a> = (&'a [(u32, f64)], f64);
+
+    /// Elements of two slots with these maps.
+    fn maps(of: &[[Affine; 2]]) -> Vec<Vec<AffineMap>> {
+        let map = |(terms, offset): &Affine| AffineMap { terms: terms.to_vec(), offset: *offset };
         of.iter().map(|slots| slots.iter().map(map).collect()).collect()
     }
 

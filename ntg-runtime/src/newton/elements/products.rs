@@ -81,13 +81,13 @@ impl Products {
         let slots = carriers.of.len();
         let mut half: Vec<Row> = vec![];
         let mut known = vec![vec![false; carriers.all.len()]; slots];
-        for slot in 0..slots {
+        for (slot, known) in known.iter_mut().enumerate() {
             for (c, carrier) in carriers.all.iter().enumerate() {
                 let with = |other: usize| pairs.iter().position(|&p| p == (slot.max(other), slot.min(other)));
                 let terms = carrier.slots.iter().filter_map(|&other| Some((with(other)?, coefficient_of[other])));
                 let terms: Vec<Term> = terms.map(|(pair, at)| (pair as u32, at as u32)).collect();
                 if !terms.is_empty() {
-                    known[slot][c] = true;
+                    known[c] = true;
                     let (first, len) = (slot * carriers.locals + carrier.first, carrier.last - carrier.first);
                     half.push(Row { first, len, terms });
                 }
