@@ -137,3 +137,62 @@ pub(super) fn closure(pairs: &[(usize, usize)], slots: usize) -> Vec<(usize, usi
     let all = used.iter().flat_map(|&i| used.iter().filter(move |&&j| j <= i).map(move |&j| (i, j)));
     all.filter(|&(i, j)| leader[i] == leader[j]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nlp::Block;
+    use nalgebra::DMatrix;
+
+    /// One element of four slots: two depend on variables 3, 5 and 6, one on 8, one on nothing.
+    fn element() -> Block {
+        Block {
+            elements: 1,
+            slots: 4,
+            rows: 1,
+            variable_start: vec![0, 4],
+            variables: vec![3, 5, 6, 8],
+            map_start: vec![0, 16],
+            map: vec![1.0, 2.0, 3.0, 0.0, 0.0, -1.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0],
+            ..Block::default()
+        }
+    }
+
+    #[test]
+    fn the_entries_are_those_of_the_product() {
+        let block = element();
+        let carriers = Carriers::new(&block);
+        let e = DMatrix::from_row_slice(4, 4, &block.map);
+        let all = vec![(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
+        let entries = Entries::new(&carriers, &all);
+        for pairs in [all.clone(), vec![(0, 0), (2, 2)], vec![(2, 1)]] {
+            let second: Vec<[f64; 1]> = (0..pairs.len()).map(|at| [at as f64 - 1.5]).collect();
+            let mut k = DMatrix::zeros(4, 4);
+            for (&(i, j), value) in pairs.iter().zip(&second) {
+                (k[(i, j)], k[(j, i)]) = (value[0], value[0]);
+            }
+            let wanted = e.transpose() * k * &e;
+            // The coefficients of slots 0 and 1 belong to three locals, those of slot 2 to one.
+            let coefficients = [1.0, 2.0, 3.0, 0.0, -1.0, 4.0, 0.5].map(|c| [c]);
+            let mut to = vec![[0.0]; entries.len];
+            Products::new(pairs, &carriers, &[0, 3, 6, 7], &entries).add(
+                &second,
+                &coefficients,
+                &mut [[f64::NAN]; 16],
+                &mut to,
+            );
+            let mut found = to.iter();
+            entries.each(&carriers, |a, b| assert_eq!(found.next(), Some(&[wanted[(a, b)]]), "entry {a}, {b}"));
+            assert_eq!(found.next(), None);
+        }
+    }
+
+    #[test]
+    fn what_a_chain_of_entries_connects_is_filled() {
+        assert_eq!(
+            closure(&[(0, 0), (3, 0), (3, 1), (2, 2)], 5),
+            [(0, 0), (1, 0), (1, 1), (2, 2), (3, 0), (3, 1), (3, 3)]
+        );
+        assert_eq!(closure(&[], 3), []);
+    }
+}
