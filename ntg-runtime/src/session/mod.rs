@@ -25,7 +25,7 @@ use crate::settings::Settings;
 use crate::solution::{Inner, Solution, Value};
 use crate::status::Status;
 use crate::transcribe::{Change, Kept, Model, SetupError, Singular, Transcription, Workspace, singular};
-use meshes::start_from_coarse;
+use meshes::{Levels, start_from_coarse, start_from_coarser};
 use ntg_structure::Structure;
 use std::sync::Arc;
 use std::time::Instant;
@@ -182,10 +182,10 @@ impl Session {
     fn rough_solution(
         &mut self,
         (problem, guess): Task<'_>,
-        structure: Structure,
+        (structure, levels): (Structure, Levels),
         settings: &Settings,
     ) -> Result<(Option<Solution>, usize), SetupError> {
-        let (earlier, spent) = start_from_coarse(&mut self.coarser, (problem, guess), &structure, settings)?;
+        let (earlier, spent) = start_from_coarser(&mut self.coarser, (problem, guess), (&structure, levels), settings)?;
         let mut nlp = self.program(problem, structure)?;
         let (first, from) = match &earlier {
             Some(solution) => (start(&nlp, Some(&Guess::from(solution)))?, Start::Near),
