@@ -67,7 +67,7 @@ pub struct Derivatives<'a> {
 ///     }
 /// }
 ///
-/// # fn main() -> Result<(), ntg::Error> {
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let problem = Move::default();
 /// let finer = WithStructure::new(&problem).edited(|structure| {
 ///     structure.phases[0].outputs[0].spline.breakpoints = vec![0.0, 0.1, 0.5, 0.9, 1.0];
