@@ -46,15 +46,14 @@ pub(super) fn start_from_coarse(
     settings: &Settings,
 ) -> Result<(Option<Solution>, usize), SetupError> {
     let most = intervals(structure);
-    if most <= FEW || guess.is_some_and(Guess::is_near) {
+    if most <= FEW {
         return Ok((None, 0));
     }
     let levels = if most <= SOME { SMALL } else { LARGE };
-    let coarse = coarsened(structure, most.div_ceil(levels.finer));
-    coarser.get_or_insert_default().rough_solution((problem, guess), (coarse, levels), &rough(settings))
+    start_from_coarser(coarser, (problem, guess), (structure, levels), &rough(settings))
 }
 
-/// As [`start_from_coarse`], where `structure` is a coarser level itself.
+/// As [`start_from_coarse`], on known levels, to the tolerance of `settings`.
 pub(super) fn start_from_coarser(
     coarser: &mut Option<Box<Session>>,
     (problem, guess): (&dyn Problem, Option<&Guess>),

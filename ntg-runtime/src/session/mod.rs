@@ -204,10 +204,14 @@ impl Session {
 
     /// The program of a structure. It is to be kept again.
     fn program<'p>(&mut self, problem: &'p dyn Problem, structure: Structure) -> Result<Transcription<'p>, SetupError> {
-        let Some(kept) = self.program.take() else { return Transcription::with(problem, structure) };
+        let Some(kept) = self.program.take() else {
+            self.memory.is_same_program = false;
+            return Transcription::with(problem, structure);
+        };
         let mut nlp = kept.of(problem);
         let change = nlp.take(structure)?;
-        self.memory.is_same_program = matches!(change, Change::Nothing);
+        // What another method has solved since is not what the plans were made for.
+        self.memory.is_same_program &= matches!(change, Change::Nothing);
         match change {
             Change::Nothing => {}
             Change::Data => self.fine.iter_mut().for_each(|fine| fine.stale = true),

@@ -47,7 +47,11 @@ impl Session {
     ) -> Outcome {
         match settings.method {
             Method::Sqp => method::solve_from(nlp, first, from, settings),
-            Method::Newton | Method::Auto => newton::solve_in(&mut self.memory, nlp, (first, from), settings),
+            Method::Newton | Method::Auto => {
+                let outcome = newton::solve_in(&mut self.memory, nlp, (first, from), settings);
+                self.memory.is_same_program = true;
+                outcome
+            }
         }
     }
 
