@@ -55,6 +55,26 @@ fn a_solver_finds_to_the_bit_what_a_fresh_solve_finds_whatever_it_solved_before(
 }
 
 #[test]
+fn another_method_or_an_error_in_between_leaves_nothing_stale() {
+    // The parameter stands in the integrand alone: the scales cannot tell that it has changed.
+    let spec =
+        RACE.replace("der(x, 2)^2", "(der(x, 2) - drag * der(x))^2").replace("param far", "param drag = 1; param far");
+    let mut solver = Shipped::text(&spec).solver();
+    solved(solver.solve());
+    let auto = solver.settings.clone();
+    for (value, settings) in
+        [(2.0, Settings { method: Method::Sqp, ..auto.clone() }), (3.0, Settings { samples: 0, ..auto.clone() })]
+    {
+        Shipped::set(&mut solver, "drag", value);
+        solver.settings = settings;
+        _ = solver.solve();
+        solver.settings = auto.clone();
+        let kept = solved(solver.solve());
+        assert_eq!(numbers(&kept), numbers(&solved(solve(&solver.problem, &auto))), "drag = {value}");
+    }
+}
+
+#[test]
 fn of_a_problem_with_a_closed_form_every_parameter_gives_its_own_answer() {
     // A cubic: 12 far^2 / long^3.
     let mut solver = Shipped::text(RACE).solver();
