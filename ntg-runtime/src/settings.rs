@@ -184,7 +184,22 @@ impl fmt::Display for InvalidSetting {
 
 impl std::error::Error for InvalidSetting {}
 
+/// The tolerance of solutions that only serve as guesses.
+const ROUGH: f64 = 1e-4;
+
 impl Settings {
+    /// The same for a solution that only serves as a guess: of coarser knots, or of a step of a continuation.
+    pub(crate) fn rough(&self) -> Self {
+        let tolerance = self.tolerance.max(ROUGH);
+        let constraint_tolerance = self.constraint_tolerance.max(ROUGH);
+        Self { tolerance, constraint_tolerance, ..self.clone() }
+    }
+
+    /// Whether no more is asked than a guess needs.
+    pub(crate) fn is_rough(&self) -> bool {
+        self.tolerance.min(self.constraint_tolerance) >= ROUGH
+    }
+
     /// The same with a callback that, once it has asked to stop, is not asked again: a problem may be
     /// solved in several parts, and none may go on after one was cancelled.
     pub(crate) fn remembering(&self) -> Self {

@@ -34,7 +34,7 @@ mod quadrature;
 mod table;
 
 pub use basis::Spline;
-pub use fit::{Ends, Sample, fit};
+pub use fit::{Ends, Place, Sample, Sampled, fit, fit_all};
 pub use knots::{KnotError, Knots, MAX_INTERVALS, MAX_ORDER, Side};
 pub use quadrature::{Rule, gauss, trapezoid};
 pub use table::{Axis, Extrapolation, FitReport, MAX_ARGUMENTS, MAX_TABLE_ORDER, Method, Symmetry, Table, TableError};

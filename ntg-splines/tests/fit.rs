@@ -1,7 +1,7 @@
 //! Laws of the least-squares fit: exactness, optimality, and that nothing makes it fail.
 
 use nalgebra::{DMatrix, DVector};
-use ntg_splines::{Ends, Knots, Sample, Side, Spline, fit};
+use ntg_splines::{Ends, Knots, Place, Sample, Sampled, Side, Spline, fit, fit_all};
 use proptest::prelude::*;
 
 fn samples(points: impl Iterator<Item = (f64, f64)>) -> Vec<Sample> {
@@ -52,6 +52,30 @@ fn it_is_the_least_squares_solution() {
     let oracle = matrix.svd(true, true).solve(&right, 1e-12).expect("both factors were asked for");
     let found = fit(&knots, &points, Ends::Free);
     assert!(found.iter().zip(oracle.iter()).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {oracle}");
+}
+
+#[test]
+fn functions_that_are_fitted_together_are_fitted_as_if_alone() {
+    let knots = Knots::new(5, vec![0.0, 0.3, 0.4, 1.0], 3).expect("sound");
+    let places: Vec<Place> =
+        (0..30_u32).map(|i| Place { tau: f64::from(i * 7 % 30) / 29.0, weight: 1.0 + f64::from(i % 3) }).collect();
+    let of = |f: &dyn Fn(f64) -> f64| Sampled {
+        values: places.iter().map(|place| f(place.tau)).collect(),
+        ends: (f(0.0), f(1.0)),
+    };
+    let sound = [of(&f64::sin), of(&|_| 0.0), of(&|t| 1e9 * t * t)];
+    let broken = [of(&f64::sin), of(&|t| 1.0 / (t - 0.0))];
+    for functions in [&sound[..], &broken, &[]] {
+        let together = fit_all(&knots, &places, functions);
+        assert_eq!(together.len(), functions.len());
+        for (found, function) in together.iter().zip(functions) {
+            let samples: Vec<Sample> = (places.iter().zip(&function.values))
+                .map(|(place, &value)| Sample { tau: place.tau, value, weight: place.weight })
+                .collect();
+            let (start, end) = function.ends;
+            assert_eq!(*found, fit(&knots, &samples, Ends::Exact { start, end }));
+        }
+    }
 }
 
 #[test]

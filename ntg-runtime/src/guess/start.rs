@@ -9,7 +9,7 @@ use crate::nlp::Nlp;
 use crate::transcribe::layout::{Layout, Time};
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Transcription};
-use ntg_splines::{Ends, Knots, Sample, fit};
+use ntg_splines::{Knots, Place, Sampled, fit_all};
 use std::rc::Rc;
 
 /// A guessed function of scaled time, SI.
@@ -55,11 +55,12 @@ pub fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, Set
     clamp(nlp, &mut x);
 
     defaults::outputs(nlp, &mut x);
-    apply(layout, &statements.spec_curves(&x)?, &mut x)?;
+    let mut curves = statements.spec_curves(&x)?;
     if let Base::Solution(solution) = &guess.base {
-        apply(layout, &earlier::curves(nlp, solution), &mut x)?;
+        curves.extend(earlier::curves(nlp, solution));
     }
-    apply(layout, &statements.program_curves(&x)?, &mut x)?;
+    curves.extend(statements.program_curves(&x)?);
+    apply(layout, &curves, &mut x)?;
     finish(nlp, x)
 }
 
@@ -81,33 +82,44 @@ fn raw_start(nlp: &Transcription, guess: &Guess, raw: &[f64]) -> Result<Vec<f64>
     Ok(x)
 }
 
-/// Fits every curve, later ones replacing earlier ones.
+/// Fits curves, each output by the last one that is its own. Those on the same knots are fitted together.
 pub(crate) fn apply(layout: &Layout, curves: &[Curve], x: &mut [f64]) -> Result<(), SetupError> {
-    for curve in curves {
-        let member = &layout.phases[curve.phase].outputs[curve.output];
-        let time = if curve.whole { Whole::new(layout, curve.phase, x) } else { Whole::PHASE };
-        let fitted = fitted(&member.knots, |tau| (curve.function)(time.at(tau)))?;
-        for (variable, value) in member.coefficients.iter().zip(fitted) {
-            x[*variable as usize] = value;
-        }
+    let knots = |curve: &Curve| &layout.phases[curve.phase].outputs[curve.output].knots;
+    let of = |curve: &Curve| (curve.phase, curve.output);
+    let counts = |(i, curve): (usize, &Curve)| !curves[i + 1..].iter().any(|later| of(later) == of(curve));
+    let mut left: Vec<&Curve> =
+        curves.iter().enumerate().filter(|&pair| counts(pair)).map(|(_, curve)| curve).collect();
+    while let Some(&first) = left.first() {
+        let (together, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|curve| knots(curve) == knots(first));
+        fit_together(layout, &together, knots(first), x)?;
+        left = others;
     }
     Ok(())
 }
 
 /// Least squares through samples in every interval, with exact ends (equation 8.3).
-fn fitted(knots: &Knots, value: impl Fn(f64) -> Result<f64, SetupError>) -> Result<Vec<f64>, SetupError> {
+fn fit_together(layout: &Layout, curves: &[&Curve], knots: &Knots, x: &mut [f64]) -> Result<(), SetupError> {
     /// Samples in an interval for each coefficient that acts there.
     const SAMPLES: usize = 4;
     let count = SAMPLES * knots.order();
-    let mut samples = vec![];
+    let mut places = vec![];
     for pair in knots.breakpoints().windows(2) {
         let width = pair[1] - pair[0];
-        for i in 0..count {
-            let tau = pair[0] + width * (i as f64 + 0.5) / count as f64;
-            samples.push(Sample { tau, value: value(tau)?, weight: width });
-        }
+        let at = |i: usize| pair[0] + width * (i as f64 + 0.5) / count as f64;
+        places.extend((0..count).map(|i| Place { tau: at(i), weight: width }));
     }
-    Ok(fit(knots, &samples, Ends::Exact { start: value(0.0)?, end: value(1.0)? }))
+    let mut functions = vec![];
+    for curve in curves {
+        let time = if curve.whole { Whole::new(layout, curve.phase, x) } else { Whole::PHASE };
+        let value = |tau: f64| (curve.function)(time.at(tau));
+        let values: Result<Vec<f64>, SetupError> = places.iter().map(|place| value(place.tau)).collect();
+        functions.push(Sampled { values: values?, ends: (value(0.0)?, value(1.0)?) });
+    }
+    for (curve, fitted) in curves.iter().zip(fit_all(knots, &places, &functions)) {
+        let member = &layout.phases[curve.phase].outputs[curve.output];
+        member.coefficients.iter().zip(fitted).for_each(|(variable, value)| x[*variable as usize] = value);
+    }
+    Ok(())
 }
 
 /// A phase's scaled time as a part of its agent's whole time (equation 8.1).

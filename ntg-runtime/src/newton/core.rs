@@ -18,13 +18,6 @@ const FIRST_BARRIER: f64 = 0.01;
 /// Where there are more sides than this, the barrier parameter is smaller in proportion: finer points
 /// must not weigh more than coarse ones beside an integral, whose weights become smaller.
 const MANY_SIDES: f64 = 160.0;
-/// The last barrier parameter as a fraction of the tolerance.
-const LAST_BARRIER: f64 = 0.1;
-/// A barrier problem is solved well enough when its error is below this multiple of the parameter.
-const ENOUGH: f64 = 10.0;
-/// Linear and superlinear decrease of the barrier parameter, equation (7) there.
-const DECREASE: f64 = 0.2;
-const POWER: f64 = 1.5;
 /// How far inside their bounds the first point lies, relative to bound and room.
 const INSIDE: f64 = 1e-2;
 /// Where the mean multiplier exceeds this, dual residuals are measured relative to it.
@@ -228,13 +221,13 @@ impl<'a, N: Nlp> Core<'a, N> {
         };
     }
 
-    fn dual(&self) -> f64 {
+    pub(super) fn dual(&self) -> f64 {
         let finite = self.descent.iter().sum::<f64>().is_finite();
         if finite { self.descent.iter().fold(0.0, |most: f64, g| most.max(g.abs())) } else { f64::INFINITY }
     }
 
     /// Equation (6.5).
-    fn relaxation(&self) -> f64 {
+    pub(super) fn relaxation(&self) -> f64 {
         let (sum, count) = self.sides.multiplier_sum();
         if count > 0.0 { (sum / count / LARGE).max(1.0) } else { 1.0 }
     }
@@ -244,37 +237,6 @@ impl<'a, N: Nlp> Core<'a, N> {
         let Self { settings, record, history, iterations, begin, x, .. } = self;
         let objective = self.quantities[self.system.objective()];
         Stage { settings, record, history, iterations: *iterations, begin: *begin, objective, x }.stops()
-    }
-
-    /// The barrier parameter that ends the sequence.
-    pub(super) fn last_barrier(&self) -> f64 {
-        self.fineness() * LAST_BARRIER * self.settings.tolerance.min(self.settings.constraint_tolerance) * self.unit
-    }
-
-    /// Lowers the barrier as long as its problem is solved well enough, equation (11.6).
-    pub(super) fn lower_barrier(&mut self) -> Option<Status> {
-        let last = self.last_barrier();
-        let (relax, dual) = (self.relaxation(), self.dual());
-        let before = self.mu;
-        while self.mu > last {
-            let apart = match &self.elastic {
-                Some(elastic) => elastic.deviation(&self.sides, self.mu) / relax,
-                None => self.sides.residual(&self.quantities),
-            };
-            let error = (dual / relax).max(self.sides.deviation(self.mu) / relax).max(apart);
-            if error > ENOUGH * self.mu {
-                break;
-            }
-            if let Some(status) = self.reconsider_price() {
-                return Some(status);
-            }
-            let relative = self.mu / self.unit;
-            self.mu = (self.unit * (DECREASE * relative).min(relative.powf(POWER))).max(last);
-        }
-        if self.mu != before {
-            self.filter.clear();
-        }
-        None
     }
 }
 

@@ -7,12 +7,13 @@
 //!
 //! 1. the gradient of the Lagrangian, and the end if all residuals are small;
 //! 2. a lower barrier, if the present one is reached;
-//! 3. the matrix, its factors, and the primal-dual direction;
+//! 3. the matrix, its factors, and the primal-dual direction; a lower barrier if it promises little;
 //! 4. a search by a filter, with second-order corrections; where that is stuck, and from then on, a
 //!    search by an exact penalty with elastic bounds.
 //!
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006).
 
+mod barrier;
 mod carriers;
 mod core;
 mod direction;
@@ -153,6 +154,6 @@ impl<N: Nlp> Core<'_, N> {
             self.place_elastic();
             return if self.direction() { self.elastic_search() } else { Searched::Stuck };
         }
-        if self.direction() { self.search() } else { Searched::Stuck }
+        if self.direction() && self.lower_along() { self.search() } else { Searched::Stuck }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Near a solution the method converges fast, so that a few iterations after the tolerances are met
 //! cost little and bring constraints to rounding and the objective to what the barrier leaves of it,
-//! which is lowered for them. The best point is kept in case they lead away.
+//! which is lowered for them. The best point is kept in case they lead away. A rough tolerance asks for none of it.
 
 use super::core::Core;
 use super::sides::Sides;
@@ -60,7 +60,8 @@ impl<N: Nlp> Core<'_, N> {
         let astray = self.iterations > since
             && self.history.last().is_some_and(|last| last.mixed)
             && largest(&self.best.record) <= CLOSE * fine;
-        let over = largest(&self.record) <= fine || astray || self.iterations >= since + ITERATIONS;
+        let enough = solved && self.settings.is_rough();
+        let over = enough || largest(&self.record) <= fine || astray || self.iterations >= since + ITERATIONS;
         if over {
             self.take_best();
         }

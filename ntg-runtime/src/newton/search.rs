@@ -77,9 +77,13 @@ impl<N: Nlp> Core<'_, N> {
     }
 
     fn here(&self) -> Here {
+        Here { theta: self.theta(), phi: self.phi(&self.quantities, &self.sides.w), slope: self.slope() }
+    }
+
+    /// Derivative of the barrier objective along the direction.
+    pub(super) fn slope(&self) -> f64 {
         let decrease: f64 = self.step.w.iter().zip(&self.sides.w).map(|(dw, w)| dw / w).sum();
-        let slope = self.step.along[self.system.objective()] - self.mu * decrease;
-        Here { theta: self.theta(), phi: self.phi(&self.quantities, &self.sides.w), slope }
+        self.step.along[self.system.objective()] - self.mu * decrease
     }
 
     /// The longest step that keeps positive numbers positive.

@@ -33,8 +33,6 @@ const SMALL: Levels = Levels { few: 12, finer: 2 };
 const LARGE: Levels = Levels { few: FEW, finer: 4 };
 /// With as few intervals as this, there is nothing coarser.
 const FEWEST: usize = 2;
-/// The tolerance of all levels but the last.
-const ROUGH: f64 = 1e-5;
 
 /// A start near a solution of `structure`, found on coarser knots; none where the knots are few, the
 /// guess is a solution already, or the coarser problem has no solution. The second number is how many
@@ -50,7 +48,7 @@ pub(super) fn start_from_coarse(
         return Ok((None, 0));
     }
     let levels = if most <= SOME { SMALL } else { LARGE };
-    start_from_coarser(coarser, (problem, guess), (structure, levels), &rough(settings))
+    start_from_coarser(coarser, (problem, guess), (structure, levels), &settings.rough())
 }
 
 /// As [`start_from_coarse`], on known levels, to the tolerance of `settings`.
@@ -81,7 +79,7 @@ pub(super) fn start_from_fewer(
     while most > FEWEST {
         most = most.div_ceil(2);
         let coarse = coarsened(structure, most);
-        let settings = rough(&settings.after(began.elapsed()));
+        let settings = settings.after(began.elapsed()).rough();
         let (found, iterations) = Session::default().rough_solution((problem, guess), (coarse, LARGE), &settings)?;
         spent += iterations;
         if found.is_some() {
@@ -117,13 +115,6 @@ fn coarsened(structure: &Structure, most: usize) -> Structure {
         }
     }
     coarse
-}
-
-/// The settings of a level that is not the last.
-fn rough(settings: &Settings) -> Settings {
-    let tolerance = settings.tolerance.max(ROUGH);
-    let constraint_tolerance = settings.constraint_tolerance.max(ROUGH);
-    Settings { tolerance, constraint_tolerance, ..settings.clone() }
 }
 
 #[cfg(test)]

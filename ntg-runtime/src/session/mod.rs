@@ -110,7 +110,10 @@ impl Session {
             if let Some(last) = last.as_ref().filter(|last| last.status.is_solved()) {
                 from = Start::Warm(last.multipliers());
             }
-            let left = settings.after(began.elapsed());
+            let mut left = settings.after(began.elapsed());
+            if !is_last {
+                left = left.rough();
+            }
             let mut outcome = self.by_all_means(&nlp, task, (&first, from), &left)?;
             outcome.iterations += spent;
             history.push(record(&nlp, step, &outcome, step_began));

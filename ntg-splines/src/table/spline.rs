@@ -117,7 +117,7 @@ impl Basis {
             let span = self.span(*x, Side::Right);
             let mut entries = vec![0.0; self.order];
             derivative(&self.knots, self.order, span, *x, 0, &mut entries);
-            rows.push((Row { start: span + 1 - self.order, entries, side: 0.0 }, Some(number)));
+            rows.push((Row { start: span + 1 - self.order, entries }, Some(number)));
         }
         if self.smoothing {
             let more = straight(&greville(&self.knots, self.order)).into_iter().chain(level_rows(count));
