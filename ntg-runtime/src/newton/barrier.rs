@@ -27,7 +27,8 @@ impl<N: Nlp> Core<'_, N> {
         let dual = self.dual() / relax;
         let (before, last) = (self.mu, self.last_barrier());
         while self.mu > last {
-            if dual.max(self.off_path(relax)) > ENOUGH * self.mu {
+            let enough = ENOUGH * self.mu;
+            if dual > enough || self.off_path(relax) > enough {
                 break;
             }
             if let Some(status) = self.reconsider_price() {

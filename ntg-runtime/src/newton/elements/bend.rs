@@ -84,10 +84,15 @@ impl Bend {
         self.columns.iter_mut().for_each(|column| grow(column, w));
     }
 
-    /// What is to be added to the symmetric matrix of `n` slots at `(i, j)`.
+    /// What is to be added to the symmetric matrix, by [`Bend::at`].
     #[inline(always)]
-    pub(super) fn entry(&self, n: usize, i: usize, j: usize) -> f64 {
-        self.change[i * width(n) + j / TOGETHER][j % TOGETHER]
+    pub(super) fn change(&self) -> &[f64] {
+        self.change.as_flattened()
+    }
+
+    /// Where what is to be added to the matrix of `n` slots at `(i, j)` stands.
+    pub(super) fn at(n: usize, (i, j): (usize, usize)) -> u32 {
+        (i * width(n) * TOGETHER + j) as u32
     }
 
     /// Takes in elements side by side, the lower triangles of full matrices.
@@ -104,15 +109,13 @@ impl Bend {
         self.change[..TOGETHER * w * w].fill([0.0; TOGETHER]);
         self.diagonal[..w].fill([0.0; TOGETHER]);
         let (rows, diagonal) = (self.rows.as_flattened_mut(), self.diagonal.as_flattened_mut());
-        let lanes = self.lanes[lane..].iter().step_by(lanes);
-        for (at, entry) in lanes.enumerate().take(n * n) {
-            let (i, j) = (at / n, at % n);
-            if j < i {
-                rows[i * w * TOGETHER + j] = *entry;
-                rows[j * w * TOGETHER + i] = *entry;
-            } else if j == i {
-                diagonal[i] = *entry;
+        for i in 0..n {
+            let own = &self.lanes[i * n * lanes..][..n * lanes];
+            for j in 0..i {
+                rows[i * w * TOGETHER + j] = own[j * lanes + lane];
+                rows[j * w * TOGETHER + i] = own[j * lanes + lane];
             }
+            diagonal[i] = own[i * lanes + lane];
         }
     }
 
@@ -281,7 +284,7 @@ mod tests {
         bend.keep(&elements, n);
         bend.take(0, 1, n);
         let bent = bend.compute(n);
-        (bent, DMatrix::from_fn(n, n, |i, j| bend.entry(n, i.max(j), i.min(j))))
+        (bent, DMatrix::from_fn(n, n, |i, j| bend.change()[Bend::at(n, (i.max(j), i.min(j))) as usize]))
     }
 
     fn random(n: usize, rank: usize, seed: &mut u64, sign: impl Fn(usize) -> f64) -> DMatrix<f64> {

@@ -21,6 +21,9 @@ impl<const L: usize> Plan<L> {
         if self.exact.pairs.is_empty() {
             return;
         }
+        for (back, &(i, j)) in room.back.iter_mut().zip(&self.bent.pairs) {
+            *back = 1.0 / (sizes[i] * sizes[j]);
+        }
         for group in 0..self.lay.groups() {
             let mut bent = false;
             for pack in self.lay.packs_of(group) {
@@ -42,8 +45,7 @@ impl<const L: usize> Plan<L> {
     #[inline(always)]
     fn bend(&self, pack: usize, sizes: &[f64], room: &mut Room<L>, bend: &mut Bend) -> bool {
         let n = self.slots;
-        let Room { second, element, inverse, .. } = room;
-        inverse.iter_mut().zip(sizes).for_each(|(inverse, size)| *inverse = 1.0 / size);
+        let Room { second, element, back, .. } = room;
         let element = &mut element[..n * n];
         element.fill([0.0; L]);
         for (entry, &(i, j)) in second.iter().zip(&self.exact.pairs) {
@@ -59,8 +61,9 @@ impl<const L: usize> Plan<L> {
             bend.take(lane, L, n);
             if bend.compute(n) {
                 bent = true;
-                for (entry, &(i, j)) in second.iter_mut().zip(&self.bent.pairs) {
-                    entry[lane] = bend.entry(n, i, j) * (inverse[i] * inverse[j]);
+                let change = bend.change();
+                for ((entry, &at), back) in second.iter_mut().zip(&self.change_at).zip(&*back) {
+                    entry[lane] = change[at as usize] * back;
                 }
             }
         }

@@ -20,8 +20,8 @@ pub(super) struct Room<const L: usize> {
     pub(super) entry: Vec<Pack<L>>,
     /// Second derivatives between scaled slots, lower triangle of a full matrix.
     pub(super) element: Vec<Pack<L>>,
-    /// One over the size of each slot.
-    pub(super) inverse: Vec<f64>,
+    /// What turns second derivatives between scaled slots back, pair by pair of those that make elements convex.
+    pub(super) back: Vec<f64>,
 }
 
 impl<const L: usize> Room<L> {
@@ -34,7 +34,7 @@ impl<const L: usize> Room<L> {
         grow(&mut self.half, plan.slots * plan.carriers.locals);
         grow(&mut self.entry, plan.entries);
         grow(&mut self.element, plan.slots * plan.slots);
-        self.inverse.resize(self.inverse.len().max(plan.slots), 0.0);
+        self.back.resize(self.back.len().max(plan.bent.pairs.len()), 0.0);
     }
 }
 
