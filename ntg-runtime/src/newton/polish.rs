@@ -8,6 +8,7 @@ use super::core::Core;
 use super::sides::Sides;
 use crate::nlp::Nlp;
 use crate::outcome::IterationRecord;
+use crate::status::Residual;
 
 /// Iterations after the tolerances are met, at most.
 const ITERATIONS: usize = 8;
@@ -60,8 +61,10 @@ impl<N: Nlp> Core<'_, N> {
         let astray = self.iterations > since
             && self.history.last().is_some_and(|last| last.mixed)
             && largest(&self.best.record) <= CLOSE * fine;
-        let enough = solved && self.settings.is_rough();
-        let over = enough || largest(&self.record) <= fine || astray || self.iterations >= since + ITERATIONS;
+        // A gradient that is small enough is felt in the objective by its square.
+        let Residual { primal, complementarity, .. } = self.record.residuals.scaled;
+        let enough = solved && (self.settings.is_rough() || primal.max(complementarity) <= fine);
+        let over = enough || astray || self.iterations >= since + ITERATIONS;
         if over {
             self.take_best();
         }

@@ -7,6 +7,7 @@
 use super::layout::{Layout, Time};
 use super::node::Site;
 use super::points::Point;
+use ntg_math::{Simd, Task, dispatch};
 use ntg_splines::basis::derivative;
 use ntg_splines::{MAX_ORDER, Side};
 use ntg_structure::At;
@@ -112,7 +113,8 @@ struct Bundle {
     ends: Vec<usize>,
     /// `width` for each run.
     variables: Vec<u32>,
-    /// `width` for each element, slot by slot.
+    /// Slot by slot, `width` for each element: those of a run stand together, the first of all its elements, the
+    /// second of all of them, and so on.
     coefficients: Vec<Vec<f64>>,
 }
 
@@ -150,6 +152,7 @@ impl SlotMaps {
                 }
                 bundle.push(&maps);
             }
+            bundle.transpose();
             all.bundles.push(bundle);
         }
         all
@@ -157,19 +160,7 @@ impl SlotMaps {
 
     /// Writes slot `s` of element `e` to `u[s * elements + e]`.
     pub(crate) fn refresh(&self, x: &[f64], u: &mut [f64]) {
-        u.copy_from_slice(&self.offset);
-        for bundle in &self.bundles {
-            match bundle.width {
-                0 => {}
-                1 => bundle.refresh::<1>(x, self.elements, u),
-                2 => bundle.refresh::<2>(x, self.elements, u),
-                3 => bundle.refresh::<3>(x, self.elements, u),
-                4 => bundle.refresh::<4>(x, self.elements, u),
-                5 => bundle.refresh::<5>(x, self.elements, u),
-                6 => bundle.refresh::<6>(x, self.elements, u),
-                _ => bundle.refresh_any(x, self.elements, u),
-            }
-        }
+        dispatch(Refresh { maps: self, x, u });
     }
 
     /// How many numbers `refresh` writes.
@@ -235,36 +226,108 @@ impl Bundle {
         }
     }
 
+    /// From element by element, as they were added, to run by run.
+    fn transpose(&mut self) {
+        let width = self.width;
+        for of in &mut self.coefficients {
+            let mut first = 0;
+            for &end in &self.ends {
+                let run = &mut of[first * width..end * width];
+                let before = run.to_vec();
+                for (i, to) in run.chunks_exact_mut((end - first).max(1)).enumerate() {
+                    to.iter_mut().zip(before.chunks_exact(width)).for_each(|(to, element)| *to = element[i]);
+                }
+                first = end;
+            }
+        }
+    }
+
+    #[inline(always)]
     fn refresh<const W: usize>(&self, x: &[f64], elements: usize, u: &mut [f64]) {
         let mut first = 0;
         for (variables, &end) in self.variables.as_chunks::<W>().0.iter().zip(&self.ends) {
-            let x = variables.map(|variable| x[variable as usize]);
+            let mut own = [0.0; W];
+            for i in 0..W {
+                own[i] = x[variables[i] as usize];
+            }
             for (&slot, coefficients) in self.slots.iter().zip(&self.coefficients) {
                 let values = &mut u[slot * elements..][first..end];
-                for (value, c) in values.iter_mut().zip(&coefficients.as_chunks::<W>().0[first..end]) {
-                    let mut sum = *value;
-                    for i in 0..W {
-                        sum += c[i] * x[i];
-                    }
-                    *value = sum;
-                }
+                add_products(values, &own, &coefficients[first * W..end * W]);
             }
             first = end;
         }
     }
 
+    #[inline(always)]
     fn refresh_any(&self, x: &[f64], elements: usize, u: &mut [f64]) {
         let width = self.width;
         let mut first = 0;
         for (variables, &end) in self.variables.chunks_exact(width).zip(&self.ends) {
             for (&slot, coefficients) in self.slots.iter().zip(&self.coefficients) {
-                let values = u[slot * elements..][first..end].iter_mut();
-                for (value, c) in values.zip(coefficients[first * width..].chunks_exact(width)) {
-                    let terms = variables.iter().zip(c);
-                    *value = terms.fold(*value, |sum, (variable, c)| sum + c * x[*variable as usize]);
+                let values = &mut u[slot * elements..][first..end];
+                for (i, variable) in variables.iter().enumerate() {
+                    let own = &coefficients[first * width..][i * (end - first)..][..end - first];
+                    add_products(values, &[x[*variable as usize]], own);
                 }
             }
             first = end;
+        }
+    }
+}
+
+/// Adds to every value the products of `x` with its column of `coefficients`, in order.
+#[inline(always)]
+fn add_products<const W: usize>(values: &mut [f64], x: &[f64; W], coefficients: &[f64]) {
+    const TOGETHER: usize = 4;
+    let count = values.len();
+    let mut rows: [&[f64]; W] = [&[]; W];
+    for i in 0..W {
+        rows[i] = &coefficients[i * count..][..count];
+    }
+    let (chunks, rest) = values.as_chunks_mut::<TOGETHER>();
+    let done = chunks.len() * TOGETHER;
+    for (k, values) in chunks.iter_mut().enumerate() {
+        // All is read before anything is written: so the compiler makes vector instructions of it.
+        let mut sum = *values;
+        for i in 0..W {
+            let c = &rows[i][k * TOGETHER..][..TOGETHER];
+            for lane in 0..TOGETHER {
+                sum[lane] += c[lane] * x[i];
+            }
+        }
+        *values = sum;
+    }
+    for (k, value) in rest.iter_mut().enumerate() {
+        let mut sum = *value;
+        for i in 0..W {
+            sum += rows[i][done + k] * x[i];
+        }
+        *value = sum;
+    }
+}
+
+struct Refresh<'a> {
+    maps: &'a SlotMaps,
+    x: &'a [f64],
+    u: &'a mut [f64],
+}
+
+impl Task for Refresh<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let Self { maps: SlotMaps { offset, bundles, elements, .. }, x, u } = self;
+        u.copy_from_slice(offset);
+        for bundle in bundles {
+            match bundle.width {
+                0 => {}
+                1 => bundle.refresh::<1>(x, *elements, u),
+                2 => bundle.refresh::<2>(x, *elements, u),
+                3 => bundle.refresh::<3>(x, *elements, u),
+                4 => bundle.refresh::<4>(x, *elements, u),
+                5 => bundle.refresh::<5>(x, *elements, u),
+                6 => bundle.refresh::<6>(x, *elements, u),
+                _ => bundle.refresh_any(x, *elements, u),
+            }
         }
     }
 }
