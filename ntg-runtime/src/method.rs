@@ -47,27 +47,28 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Se
 fn automatic<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, settings: &Settings) -> Outcome {
     let began = Instant::now();
     let first = newton::solve_from(nlp, start, from, settings);
-    if is_final(&first.status) {
-        return first;
-    }
-    others(nlp, start, first, &settings.after(began.elapsed()))
+    let second = elastic(nlp, start, first, &settings.after(began.elapsed()));
+    programming(nlp, start, second, &settings.after(began.elapsed()))
 }
 
-/// What else there is where the Newton method has failed: the same with elastic bounds from the start; where
-/// that fails, the sequential quadratic program from the start.
-pub(crate) fn others<N: Nlp>(nlp: &N, start: &[f64], failed: Outcome, settings: &Settings) -> Outcome {
-    let began = Instant::now();
-    let mut best = failed;
-    for attempt in [newton::solve_elastic, sqp::solve] {
-        if is_final(&best.status) {
-            break;
-        }
-        let next = attempt(nlp, start, &settings.after(began.elapsed()));
-        let (iterations, seconds) = (best.iterations + next.iterations, best.seconds + next.seconds);
-        // Where nothing was solved, the last one has the best-founded reason why.
-        best = Outcome { iterations, seconds, ..next };
+/// Where a method has failed, the Newton method with elastic bounds from the start.
+pub(crate) fn elastic<N: Nlp>(nlp: &N, start: &[f64], failed: Outcome, settings: &Settings) -> Outcome {
+    unless_final(failed, || newton::solve_elastic(nlp, start, settings))
+}
+
+/// Where all else has failed, the sequential quadratic program from the start: its iterations cost many times more.
+pub(crate) fn programming<N: Nlp>(nlp: &N, start: &[f64], failed: Outcome, settings: &Settings) -> Outcome {
+    unless_final(failed, || sqp::solve(nlp, start, settings))
+}
+
+/// Another attempt, where one has failed. Where nothing was solved, the last one has the best-founded reason why.
+fn unless_final(failed: Outcome, attempt: impl FnOnce() -> Outcome) -> Outcome {
+    if is_final(&failed.status) {
+        return failed;
     }
-    best
+    let next = attempt();
+    let (iterations, seconds) = (failed.iterations + next.iterations, failed.seconds + next.seconds);
+    Outcome { iterations, seconds, ..next }
 }
 
 /// Whether another method could do no better.

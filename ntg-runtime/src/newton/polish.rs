@@ -8,7 +8,6 @@ use super::core::Core;
 use super::sides::Sides;
 use crate::nlp::Nlp;
 use crate::outcome::IterationRecord;
-use crate::status::Residual;
 
 /// Iterations after the tolerances are met, at most.
 const ITERATIONS: usize = 8;
@@ -61,9 +60,9 @@ impl<N: Nlp> Core<'_, N> {
         let astray = self.iterations > since
             && self.history.last().is_some_and(|last| last.mixed)
             && largest(&self.best.record) <= CLOSE * fine;
-        // A gradient that is small enough is felt in the objective by its square.
-        let Residual { primal, complementarity, .. } = self.record.residuals.scaled;
-        let enough = solved && (self.settings.is_rough() || primal.max(complementarity) <= fine);
+        // Where bounds are, a gradient that is not fine may hide how far they are.
+        let free = self.sides.side.is_empty() && self.record.residuals.scaled.primal <= fine;
+        let enough = solved && (self.settings.is_rough() || free || largest(&self.record) <= fine);
         let over = enough || astray || self.iterations >= since + ITERATIONS;
         if over {
             self.take_best();

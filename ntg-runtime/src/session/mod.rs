@@ -196,8 +196,8 @@ impl Session {
         };
         nlp.set_scales(&first, settings)?;
         let mut outcome = self.newton(&nlp, (&first, from), settings);
-        if settings.method == crate::settings::Method::Auto && !method::is_final(&outcome.status) {
-            outcome = method::others(&nlp, &first, outcome, settings);
+        if settings.method == crate::settings::Method::Auto {
+            outcome = method::elastic(&nlp, &first, outcome, settings);
         }
         let iterations = spent + outcome.iterations;
         let found = outcome.status.is_solved().then(|| solution(&nlp, outcome));

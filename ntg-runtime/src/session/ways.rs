@@ -26,16 +26,10 @@ impl Session {
             return Ok(outcome);
         }
         let newton = Settings { method: Method::Newton, ..settings.clone() };
-        if !method::is_final(&outcome.status) {
-            outcome = self.way_over_fewer_knots(nlp, task, (first, outcome), &left(&newton))?;
-        }
-        if !method::is_final(&outcome.status) {
-            outcome = method::others(nlp, first, outcome, &left(settings));
-        }
-        if !method::is_final(&outcome.status) {
-            outcome = self.way_over_fewer_knots(nlp, task, (first, outcome), &left(settings))?;
-        }
-        Ok(outcome)
+        outcome = self.way_over_fewer_knots(nlp, task, (first, outcome), &left(&newton))?;
+        outcome = method::elastic(nlp, first, outcome, &left(settings));
+        outcome = self.way_over_fewer_knots(nlp, task, (first, outcome), &left(settings))?;
+        Ok(method::programming(nlp, first, outcome, &left(settings)))
     }
 
     /// One run of the Newton method with the plans of the last, unless the settings say another method.
@@ -55,8 +49,8 @@ impl Session {
         }
     }
 
-    /// The solution from a start on fewer knots, where there was none from the guess; `failed` where there is
-    /// none either.
+    /// Where there was no solution from the guess, the one from a start on fewer knots; `failed` where there is none
+    /// either. An automatic method also tries elastic bounds there.
     fn way_over_fewer_knots(
         &mut self,
         nlp: &Transcription,
@@ -64,6 +58,9 @@ impl Session {
         (first, failed): (&[f64], Outcome),
         settings: &Settings,
     ) -> Result<Outcome, SetupError> {
+        if method::is_final(&failed.status) {
+            return Ok(failed);
+        }
         let began = Instant::now();
         // Coefficients of this transcription fit no other one; the curves that they are do.
         let curves = guess
@@ -75,8 +72,8 @@ impl Session {
         let first = start(nlp, Some(&Guess::from(&solution)))?;
         let left = settings.after(began.elapsed());
         let mut again = self.newton(nlp, (&first, Start::Near), &left);
-        if settings.method == Method::Auto && !method::is_final(&again.status) {
-            again = method::others(nlp, &first, again, &settings.after(began.elapsed()));
+        if settings.method == Method::Auto {
+            again = method::elastic(nlp, &first, again, &settings.after(began.elapsed()));
         }
         let iterations = iterations + again.iterations;
         let better = if method::is_final(&again.status) { again } else { failed };
