@@ -11,6 +11,22 @@ mod grid {
 /// The paper's two coarse routes: their way-points, km.
 const ROUTES: [(f64, f64); 2] = [(-100.0, -15.0), (0.0, -100.0)];
 
+/// What IPOPT finds for the limit of 4.2 where the limit's edge is 20, 10, 5 and 2 degrees wide (tolerance 1e-8).
+const STEPS: [f64; 4] = [134.06846, 131.69749, 131.27243, 131.02446];
+
+#[test]
+fn steps_of_a_continuation_are_near_their_optima_and_the_last_one_is_there() {
+    let report = Shipped::spec("low_observable").solve();
+    assert_eq!(report.history.len(), STEPS.len() + 1);
+    for (step, known) in report.history.iter().zip(STEPS) {
+        assert!(step.status.is_solved(), "{}", step.status);
+        close(step.objective, known, 1e-3);
+    }
+    close(report.history[STEPS.len()].objective, 130.907_227_498, 1e-9);
+    let steps: usize = report.history.iter().map(|step| step.iterations).sum();
+    assert_eq!(report.iterations, steps);
+}
+
 #[test]
 fn the_flight_on_the_papers_grid_from_both_routes() {
     for (x_via, y_via) in ROUTES {

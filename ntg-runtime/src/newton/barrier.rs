@@ -47,6 +47,9 @@ impl<N: Nlp> Core<'_, N> {
     pub(super) fn lower_along(&mut self) -> bool {
         let last = self.last_barrier();
         let sides = self.sides.side.len() as f64;
+        if sides == 0.0 {
+            return true;
+        }
         while self.mu > last {
             let promised = -self.slope();
             if promised > PROMISE * self.mu * sides || self.off_path(self.relaxation()) > ENOUGH * self.mu {

@@ -23,13 +23,15 @@ pub(crate) struct Batch {
     /// What the slots of the first element stand for.
     sources: Vec<Source>,
     composition: Option<Composition>,
+    /// Whether the slots are the first inputs of the kernel, one after the other: then they need no place of their own.
+    is_plain: bool,
 }
 
 /// Buffers of a batch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BatchWork {
-    /// The elements' slots.
-    pub(crate) u: Vec<f64>,
+    /// The elements' slots, where they have a place of their own.
+    u: Vec<f64>,
     pub(crate) node: NodeWork,
     plan: PlanWork,
 }
@@ -101,7 +103,9 @@ impl Batch {
         let sources = traced.sources.clone();
         let node = Node::build(frame, call, &sites, &sources)?;
         let composition = (!node.edges.is_empty()).then(|| Composition::new(&node, &frame.structure.kernels));
-        Ok(Self { node, slots, sites, sources, composition })
+        let in_order = node.slot_of.iter().enumerate().all(|(i, &slot)| slot as usize == i);
+        let is_plain = node.edges.is_empty() && in_order && slots.len() == node.slots * node.lanes();
+        Ok(Self { node, slots, sites, sources, composition, is_plain })
     }
 
     /// Takes in other values of parameters. Layout and clock are those with which the batch was built.
@@ -129,13 +133,23 @@ impl Batch {
     /// Fresh buffers.
     pub(crate) fn work(&self) -> BatchWork {
         let plan = self.composition.as_ref().map_or_else(PlanWork::default, |c| c.work(self.sites.len()));
-        BatchWork { u: vec![0.0; self.slots.len()], node: self.node.work(), plan }
+        let u = if self.is_plain { 0 } else { self.slots.len() };
+        BatchWork { u: vec![0.0; u], node: self.node.work(), plan }
     }
 
     /// Computes `work.node.values`: row `r` of element `e` is `[r * elements + e]`.
     pub(crate) fn values(&self, problem: &dyn Problem, tables: &[Table], x: &[f64], work: &mut BatchWork) {
+        self.inputs(problem, tables, x, work);
+        self.node.values_of_inputs(problem, tables, &mut work.node);
+    }
+
+    /// Brings the inputs of the kernel up to date.
+    fn inputs(&self, problem: &dyn Problem, tables: &[Table], x: &[f64], work: &mut BatchWork) {
+        if self.is_plain {
+            return self.slots.refresh(x, &mut work.node.inputs[..self.slots.len()]);
+        }
         self.slots.refresh(x, &mut work.u);
-        self.node.values(problem, tables, &work.u, &mut work.node);
+        self.node.inputs(problem, tables, &work.u, &mut work.node);
     }
 
     /// Computes values and derivatives of all elements. Before: `work.node.weights` is set.
@@ -148,8 +162,7 @@ impl Batch {
         work: &mut BatchWork,
         out: &mut BlockValues,
     ) {
-        self.slots.refresh(x, &mut work.u);
-        self.node.inputs(problem, tables, &work.u, &mut work.node);
+        self.inputs(problem, tables, x, work);
         match &self.composition {
             Some(composition) => {
                 self.node.derivatives(problem, kernels, tables, &mut work.node);

@@ -291,12 +291,12 @@ impl Frame<'_> {
     /// A linear row of one slot as `slope * slot + offset`, from its values at 0 and 1.
     pub(crate) fn line(&self, group: &GroupBatch, element: usize, row: usize, slot: usize) -> Option<(f64, f64)> {
         let elements = group.batch.sites.len();
-        let mut work = group.batch.work();
+        let mut work = group.batch.node.work();
+        let mut slots = vec![0.0; group.batch.slots.len()];
         let mut value = |at: f64| {
-            work.u.fill(0.0);
-            work.u[slot * elements..][..elements].fill(at);
-            group.batch.node.values(self.problem, self.tables, &work.u, &mut work.node);
-            work.node.values[row * elements + element]
+            slots[slot * elements..][..elements].fill(at);
+            group.batch.node.values(self.problem, self.tables, &slots, &mut work);
+            work.values[row * elements + element]
         };
         let (offset, one) = (value(0.0), value(1.0));
         let slope = one - offset;

@@ -175,6 +175,11 @@ impl Node {
     /// Computes `work.values` from the elements' slots (`u[slot * elements + element]`).
     pub(crate) fn values(&self, problem: &dyn Problem, tables: &[Table], u: &[f64], work: &mut NodeWork) {
         self.inputs(problem, tables, u, work);
+        self.values_of_inputs(problem, tables, work);
+    }
+
+    /// As [`Node::values`], of `work.inputs`.
+    pub(crate) fn values_of_inputs(&self, problem: &dyn Problem, tables: &[Table], work: &mut NodeWork) {
         if self.lanes() > 0 {
             problem.values(self.kernel, self.lanes(), &work.inputs, tables, &mut work.values);
         }
