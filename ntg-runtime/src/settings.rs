@@ -185,7 +185,7 @@ impl fmt::Display for InvalidSetting {
 impl std::error::Error for InvalidSetting {}
 
 /// The tolerance of solutions that only serve as guesses.
-const ROUGH: f64 = 1e-4;
+const ROUGH: f64 = 1e-3;
 
 impl Settings {
     /// The same for a solution that only serves as a guess: of coarser knots, or of a step of a continuation.

@@ -160,7 +160,7 @@ pub struct Multiplier {
     pub time: Option<f64>,
 }
 
-/// One step of a continuation. Steps but the last are solved to a tolerance of 1e-4 only.
+/// One step of a continuation. Steps but the last are solved to a tolerance of 1e-3 only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepReport {
     /// The parameters of the step, in declared units.
