@@ -51,8 +51,8 @@ pub enum Scaling {
 /// Which method solves a program (docs/maths.md, section 11.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
-    /// The structured Newton method; where it fails, sequential quadratic programming, and then the
-    /// Newton method again to finish.
+    /// The structured Newton method; where it fails, the same from a solution on fewer knots and with elastic
+    /// bounds; sequential quadratic programming last.
     #[default]
     Auto,
     /// Sequential quadratic programming on Clarabel.
