@@ -3,7 +3,7 @@
 //! - [`Knots`] is the knot vector of one output over scaled time `0 ..= 1`; [`Knots::basis`]
 //!   gives values and derivatives of the B-splines that act at a point, [`Spline`] joins them
 //!   with coefficients.
-//! - [`gauss`] and [`trapezoid`] are quadrature rules on `0 ..= 1`.
+//! - [`gauss`], [`trapezoid`] and [`equidistant`] are quadrature rules on `0 ..= 1`.
 //! - [`fit()`] finds the coefficients that follow samples, with exact ends, whatever the samples.
 //! - [`Table`] interpolates data over rectangular nodes, with exact partial derivatives.
 //!
@@ -36,5 +36,5 @@ mod table;
 pub use basis::Spline;
 pub use fit::{Ends, Place, Sample, Sampled, fit, fit_all};
 pub use knots::{KnotError, Knots, MAX_INTERVALS, MAX_ORDER, Side};
-pub use quadrature::{Rule, gauss, trapezoid};
+pub use quadrature::{Rule, equidistant, gauss, trapezoid};
 pub use table::{Axis, Extrapolation, FitReport, MAX_ARGUMENTS, MAX_TABLE_ORDER, Method, Symmetry, Table, TableError};

@@ -1,9 +1,10 @@
-//! Quadrature rules on the unit interval: Gauss–Legendre and trapezoid.
+//! Quadrature rules on the unit interval: Gauss–Legendre, trapezoid, and one on many equally spaced points.
 //!
 //! Takes the number of points; gives nodes and weights on `0 ..= 1` (dimensionless),
-//! both in increasing order of the nodes (docs/maths.md, equations 1.8 to 1.10).
+//! both in increasing order of the nodes (docs/maths.md, equations 1.8 to 1.10a).
 //!
-//! Afterwards: the nodes lie symmetrically about 1/2, the weights are positive and sum to one.
+//! Afterwards: the nodes lie symmetrically about 1/2, the weights sum to one, and those of the first two rules are
+//! positive.
 
 use std::f64::consts::PI;
 
@@ -51,6 +52,28 @@ pub fn trapezoid(points: usize) -> Rule {
     weights[0] *= 0.5;
     weights[points - 1] *= 0.5;
     Rule { nodes: (0..points).map(|i| i as f64 / intervals).collect(), weights }
+}
+
+/// A rule on at least `stretches` equal stretches, both ends among the nodes with weight 0: exact for polynomials of
+/// degree 5, also where the integrand has no value at the ends (docs/maths.md, equation 1.10a).
+///
+/// Boole's rule on four stretches at a time, and the open rule of five points on six stretches at either end:
+/// M. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions* (1964), 25.4.14 and 25.4.23.
+pub fn equidistant(stretches: usize) -> Rule {
+    const END: [f64; 7] = [0.0, 3.3, -4.2, 7.8, -4.2, 3.3, 0.0];
+    const INNER: [f64; 5] = [14.0 / 45.0, 64.0 / 45.0, 24.0 / 45.0, 64.0 / 45.0, 14.0 / 45.0];
+    let ends = END.len() - 1;
+    let inner = INNER.len() - 1;
+    let panels = stretches.saturating_sub(2 * ends).div_ceil(inner);
+    let stretches = 2 * ends + inner * panels;
+    let mut weights = vec![0.0; stretches + 1];
+    let mut add = |from: usize, panel: &[f64]| {
+        weights[from..].iter_mut().zip(panel).for_each(|(weight, more)| *weight += more / stretches as f64);
+    };
+    add(0, &END);
+    (0..panels).for_each(|panel| add(ends + inner * panel, &INNER));
+    add(stretches - ends, &END);
+    Rule { nodes: (0..=stretches).map(|i| i as f64 / stretches as f64).collect(), weights }
 }
 
 /// The `i`-th largest root of the Legendre polynomial of degree `n`, and the slope there.

@@ -1,8 +1,9 @@
 //! Constraints and cost on a finer grid (docs/maths.md, section 9).
 //!
-//! A [`Plan`] holds every group at composite Gauss points and at equally spaced points with both
-//! one-sided limits at breakpoints. To build it costs far more than to evaluate it, so a problem that is
-//! solved again keeps it. Integrals that are variables are first replaced by their finer values.
+//! A [`Plan`] holds every group with constraints at equally spaced points with both one-sided limits at breakpoints,
+//! where what is integrated beside them is integrated too, and every other group at composite Gauss points.
+//! To build it costs far more than to evaluate it, so a problem that is solved again keeps it. Integrals that are
+//! variables are first replaced by their finer values.
 
 use crate::transcribe::batch::{Batch, BatchWork, evaluators};
 use crate::transcribe::elements::sites;
@@ -28,16 +29,16 @@ pub(super) struct Checked<'a> {
 /// A problem on the finer grid.
 #[derive(Debug)]
 pub(crate) struct Plan {
-    /// Groups with integrands, at Gauss points.
-    quadrature: Vec<Part>,
-    /// Groups with constraints, at equally spaced points.
-    checks: Vec<Part>,
+    parts: Vec<Part>,
 }
 
 /// One group at points of one shape.
 #[derive(Debug)]
 struct Part {
     group: usize,
+    /// Whether it has rows that add to a sum, and rows that are constraints.
+    adds: bool,
+    checks: bool,
     batch: Batch,
     work: BatchWork,
     /// The bounds of the rows from an element on, where the indices change there.
@@ -51,24 +52,15 @@ impl Plan {
     /// Plans `samples` stretches for each point of the transcription.
     pub(crate) fn new(nlp: &Transcription, samples: usize) -> Result<Self, SetupError> {
         let frame = nlp.frame();
-        let mut plan = Self { quadrature: vec![], checks: vec![] };
+        let mut plan = Self { parts: vec![] };
         for (index, group) in nlp.model.structure.groups.iter().enumerate() {
             let checked = |row: &Row| matches!(row, Row::Constraint { .. });
-            let add = |parts: &mut Vec<Part>, sites| -> Result<(), SetupError> {
-                for batch in evaluators(&frame, &group.call, sites)? {
-                    let work = batch.work();
-                    parts.push(Part { group: index, batch, work, bounds: vec![] });
-                }
-                Ok(())
-            };
-            if !group.rows.iter().all(checked) {
-                let fine =
-                    |points: &_, breakpoints: &[f64], phase| fine_quadrature(points, breakpoints, phase, samples);
-                add(&mut plan.quadrature, sites(&frame, group, fine)?)?;
-            }
-            if group.rows.iter().any(checked) {
-                let fine = |points: &_, breakpoints: &[f64], phase| fine_set(points, breakpoints, phase, samples);
-                add(&mut plan.checks, sites(&frame, group, fine)?)?;
+            let (adds, checks) = (!group.rows.iter().all(checked), group.rows.iter().any(checked));
+            let finer = if checks { fine_set } else { fine_quadrature };
+            let sites = sites(&frame, group, |points, breakpoints, phase| finer(points, breakpoints, phase, samples))?;
+            for batch in evaluators(&frame, &group.call, sites)? {
+                let work = batch.work();
+                plan.parts.push(Part { group: index, adds, checks, batch, work, bounds: vec![] });
             }
         }
         plan.set_bounds(nlp)?;
@@ -78,7 +70,7 @@ impl Plan {
     /// Takes in other values of parameters, where layout and clock are those of the plan.
     pub(crate) fn take_data(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
         let frame = nlp.frame();
-        for part in self.quadrature.iter_mut().chain(&mut self.checks) {
+        for part in &mut self.parts {
             let call = &nlp.model.structure.groups[part.group].call;
             part.batch.take_data(&frame, call)?;
             part.work = part.batch.work();
@@ -88,7 +80,7 @@ impl Plan {
 
     fn set_bounds(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
         let frame = nlp.frame();
-        for Part { group, batch, bounds, .. } in &mut self.checks {
+        for Part { group, batch, bounds, .. } in self.parts.iter_mut().filter(|part| part.checks) {
             let group = &nlp.model.structure.groups[*group];
             bounds.clear();
             for (element, site) in batch.sites.iter().enumerate() {
@@ -109,10 +101,11 @@ impl Plan {
         mut visit: impl FnMut(&Checked<'_>),
     ) -> Result<Vec<f64>, SetupError> {
         let x = self.integrals(nlp, x)?;
+        self.parts.iter_mut().for_each(|part| part.values(nlp, &x));
         let mut terms = vec![0.0; nlp.model.structure.terms.len()];
         let mut parts: BTreeMap<Member, f64> = BTreeMap::new();
-        for part in &mut self.quadrature {
-            part.integrands(nlp, &x, |row, site, value| match row {
+        for part in self.parts.iter().filter(|part| part.adds) {
+            part.integrands(nlp, |row, site, value| match row {
                 Row::Cost { term } => {
                     if let Some(sum) = terms.get_mut(*term) {
                         *sum += value;
@@ -125,8 +118,8 @@ impl Plan {
                 Row::Constraint { .. } | Row::Integral { .. } => {}
             });
         }
-        for part in &mut self.checks {
-            part.check(nlp, &x, &parts, &mut visit);
+        for part in self.parts.iter().filter(|part| part.checks) {
+            part.check(nlp, &parts, &mut visit);
         }
         Ok(terms)
     }
@@ -140,8 +133,9 @@ impl Plan {
         for _ in 0..if structure.integrals.is_empty() { 0 } else { NESTING } {
             let mut sums: BTreeMap<u32, f64> = BTreeMap::new();
             let mut failed = None;
-            for part in &mut self.quadrature {
-                part.integrands(nlp, &x, |row, site, value| {
+            for part in self.parts.iter_mut().filter(|part| part.adds) {
+                part.values(nlp, &x);
+                part.integrands(nlp, |row, site, value| {
                     let Row::Integral { integral, index } = row else { return };
                     let index: Vec<i64> = index.iter().map(|affine| affine.at(&site.indices)).collect();
                     match layout.integral(structure, *integral, &index) {
@@ -160,10 +154,14 @@ impl Plan {
 }
 
 impl Part {
-    /// Calls `add` with every row that adds to a sum, its value times its weight.
-    fn integrands(&mut self, nlp: &Transcription, x: &[f64], mut add: impl FnMut(&Row, &Site, f64)) {
-        let group = &nlp.model.structure.groups[self.group];
+    /// Evaluates all rows.
+    fn values(&mut self, nlp: &Transcription, x: &[f64]) {
         self.batch.values(nlp.problem, &nlp.model.tables, x, &mut self.work);
+    }
+
+    /// Calls `add` with every row that adds to a sum, its value times its weight. Before: [`Part::values`].
+    fn integrands(&self, nlp: &Transcription, mut add: impl FnMut(&Row, &Site, f64)) {
+        let group = &nlp.model.structure.groups[self.group];
         let sites = &self.batch.sites;
         for (row, meaning) in group.rows.iter().enumerate() {
             if matches!(meaning, Row::Constraint { .. }) {
@@ -171,20 +169,23 @@ impl Part {
             }
             for (element, site) in sites.iter().enumerate() {
                 let weight = if matches!(group.domain, Domain::Path { .. }) { site.point.weight } else { 1.0 };
+                // Where it is 0 there may be no value.
+                if weight == 0.0 {
+                    continue;
+                }
                 add(meaning, site, weight * self.work.node.values[row * sites.len() + element]);
             }
         }
     }
 
+    /// Calls `visit` with every constraint everywhere. Before: [`Part::values`].
     fn check(
-        &mut self,
+        &self,
         nlp: &Transcription,
-        x: &[f64],
         parts: &BTreeMap<Member, f64>,
         visit: &mut impl FnMut(&Checked<'_>),
     ) {
         let group = &nlp.model.structure.groups[self.group];
-        self.batch.values(nlp.problem, &nlp.model.tables, x, &mut self.work);
         let sites = &self.batch.sites;
         let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
         for ((first, bounds), end) in self.bounds.iter().zip(ends) {

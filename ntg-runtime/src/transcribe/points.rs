@@ -4,7 +4,7 @@
 //! times, quadrature weights that add up to 1 (or none), and the side from which derivatives that
 //! jump are taken. The same set can be made finer for the check after a solve (section 9).
 
-use ntg_splines::{Side, gauss, trapezoid};
+use ntg_splines::{Side, equidistant, gauss, trapezoid};
 use ntg_structure::Points;
 
 /// Breakpoints nearer to each other than this are one.
@@ -68,40 +68,43 @@ pub(crate) fn point_set(points: &Points, breakpoints: &[f64], phase: usize) -> V
     }
 }
 
-/// The points of the check after a solve: `samples` stretches for each point of the set, both
-/// one-sided limits at every breakpoint, no weights (docs/maths.md, equation 9.1).
+/// The points of the check after a solve: at least `samples` stretches for each point of the set and both
+/// one-sided limits at every breakpoint, with weights for the true cost where the set has any, which are 0 at
+/// breakpoints (docs/maths.md, equations 9.1 and 9.2).
 pub(crate) fn fine_set(points: &Points, breakpoints: &[f64], phase: usize, samples: usize) -> Vec<Point> {
-    let intervals = breakpoints.len() - 1;
     let stretches = match *points {
         Points::Gauss { points } => samples * points,
-        Points::Uniform { points } => (samples * points).div_ceil(intervals),
+        Points::Uniform { points } => (samples * points).div_ceil(breakpoints.len() - 1),
         // These sets have one point an interval and accompany Gauss points that are refined.
         Points::Breakpoints => samples,
         Points::LeftLimits => return vec![], // The sets they accompany take both limits here.
-    }
-    .max(1);
-    let mut fine = vec![];
+    };
+    let rule = equidistant(stretches);
+    let (last, has_weights) = (rule.nodes.len() - 1, !matches!(points, Points::Breakpoints));
+    let mut fine = Vec::with_capacity(rule.nodes.len() * (breakpoints.len() - 1));
     for pair in breakpoints.windows(2) {
-        for i in 0..=stretches {
-            let tau =
-                if i == stretches { pair[1] } else { pair[0] + (pair[1] - pair[0]) * i as f64 / stretches as f64 };
-            let side = if i == stretches { Side::Left } else { Side::Right };
-            fine.push(Point { phase: Some(phase), tau, side, weight: f64::NAN });
+        let width = pair[1] - pair[0];
+        for (i, (node, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
+            let (tau, side) =
+                if i == last { (pair[1], Side::Left) } else { (pair[0] + width * node, Side::Right) };
+            let weight = if has_weights { width * weight } else { f64::NAN };
+            fine.push(Point { phase: Some(phase), tau, side, weight });
         }
     }
     fine
 }
 
-/// Composite Gauss points for the true cost, in a quarter as many parts as the check of constraints has stretches
-/// (docs/maths.md, equation 9.2). The rule has at least three points a part, so its error falls with the sixth
-/// power of their width.
+/// Composite Gauss points for the true cost where nothing else is wanted at the points of the check
+/// (docs/maths.md, section 9): fewer, and exact to a higher degree.
 pub(crate) fn fine_quadrature(points: &Points, breakpoints: &[f64], phase: usize, samples: usize) -> Vec<Point> {
-    /// Gauss points in each part where the transcription itself uses no Gauss rule.
-    const POINTS: usize = 3;
-    /// Stretches of the check to a part of the quadrature.
-    const STRETCHES: usize = 4;
+    /// Least Gauss points in each part.
+    const POINTS: usize = 5;
+    /// A transcription with Gauss points has its intervals cut into one part for each of so many samples.
+    const SAMPLES: usize = 4;
+    /// Stretches of the check to a part, where the transcription itself uses no Gauss rule.
+    const STRETCHES: usize = 10;
     let (order, parts) = match *points {
-        Points::Gauss { points } => (points.max(POINTS), samples.div_ceil(STRETCHES)),
+        Points::Gauss { points } => (points.max(POINTS), samples.div_ceil(SAMPLES)),
         Points::Uniform { points } => (POINTS, (samples * points).div_ceil(STRETCHES * (breakpoints.len() - 1))),
         Points::Breakpoints | Points::LeftLimits => return vec![],
     };
@@ -161,9 +164,13 @@ mod tests {
             let integral: f64 = set.iter().map(|p| p.weight * p.tau.powi(3)).sum();
             assert!((integral - 0.25).abs() < 1e-15);
         }
-        let fine = fine_quadrature(&Points::Uniform { points: 7 }, &THIRDS, 0, 20);
-        let integral: f64 = fine.iter().map(|p| p.weight * p.tau.powi(5)).sum();
-        assert!((integral - 1.0 / 6.0).abs() < 1e-14);
+        for finer in [fine_quadrature, fine_set] {
+            for points in [Points::Uniform { points: 7 }, Points::Gauss { points: 2 }] {
+                let set = finer(&points, &THIRDS, 0, 20);
+                let integral: f64 = set.iter().map(|p| p.weight * p.tau.powi(5)).sum();
+                assert!((integral - 1.0 / 6.0).abs() < 1e-14);
+            }
+        }
     }
 
     #[test]
@@ -174,6 +181,16 @@ mod tests {
         assert_eq!(set[1].side, Side::Right);
         assert_eq!(set[3].side, Side::Left);
         assert!((set.iter().map(|p| p.weight).sum::<f64>() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_check_takes_both_limits_at_breakpoints_and_integrates_without_them() {
+        let set = fine_set(&Points::Uniform { points: 4 }, &THIRDS, 0, 20);
+        let ends: Vec<&Point> = set.iter().filter(|p| THIRDS.contains(&p.tau)).collect();
+        assert_eq!(ends.iter().map(|p| p.side).collect::<Vec<_>>(), [Side::Right, Side::Left].repeat(3));
+        assert!(ends.iter().all(|p| p.weight == 0.0));
+        assert!(set.len() >= 3 * 27 && set.iter().all(|p| p.weight.is_finite()));
+        assert!(fine_set(&Points::Breakpoints, &THIRDS, 0, 20).iter().all(|p| p.weight.is_nan()));
     }
 
     #[test]
