@@ -1,6 +1,6 @@
 //! Every constraint's largest violation, at the points and between them, and its multipliers.
 
-use super::fine::Plan;
+use super::fine::{Plan, Wanted};
 use super::{ConstraintReport, Worst, multipliers};
 use crate::nlp::Evaluation;
 use crate::sqp::Outcome;
@@ -37,7 +37,7 @@ pub(super) fn constraints(
         keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, unit), &info.point);
         multipliers::add(nlp, outcome, row, report);
     }
-    let terms = fine.evaluate(nlp, &outcome.x, |checked| {
+    let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
         let unit = report.unit.factor;
         keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, unit), &checked.point);

@@ -14,6 +14,15 @@ use crate::transcribe::{SetupError, Transcription};
 use ntg_structure::{Domain, Row};
 use std::collections::BTreeMap;
 
+/// Which values of constraints are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    /// Those of constraints that are violated, and one of every other constraint.
+    Violated,
+    /// All.
+    All,
+}
+
 /// A constraint's value somewhere, with its bounds, SI.
 pub(super) struct Checked<'a> {
     pub(super) constraint: usize,
@@ -92,12 +101,11 @@ impl Plan {
         Ok(())
     }
 
-    /// Evaluates everything: calls `visit` with every constraint everywhere, and gives the minimised value of
-    /// every term, SI.
+    /// Evaluates everything: calls `visit` with constraints, and gives the minimised value of every term, SI.
     pub(super) fn evaluate(
         &mut self,
         nlp: &Transcription,
-        x: &[f64],
+        (x, wanted): (&[f64], Wanted),
         mut visit: impl FnMut(&Checked<'_>),
     ) -> Result<Vec<f64>, SetupError> {
         let x = self.integrals(nlp, x)?;
@@ -119,7 +127,7 @@ impl Plan {
             });
         }
         for part in self.parts.iter().filter(|part| part.checks) {
-            part.check(nlp, &parts, &mut visit);
+            part.check(nlp, (&parts, wanted), &mut visit);
         }
         Ok(terms)
     }
@@ -178,29 +186,36 @@ impl Part {
         }
     }
 
-    /// Calls `visit` with every constraint everywhere. Before: [`Part::values`].
+    /// Calls `visit` with what is wanted of the constraints. Before: [`Part::values`].
     fn check(
         &self,
         nlp: &Transcription,
-        parts: &BTreeMap<Member, f64>,
+        (parts, wanted): (&BTreeMap<Member, f64>, Wanted),
         visit: &mut impl FnMut(&Checked<'_>),
     ) {
         let group = &nlp.model.structure.groups[self.group];
         let sites = &self.batch.sites;
         let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
         for ((first, bounds), end) in self.bounds.iter().zip(ends) {
-            for element in *first..end {
-                let Site { indices, point } = &sites[element];
-                for (row, meaning) in group.rows.iter().enumerate() {
-                    let Row::Constraint { constraint, .. } = meaning else { continue };
-                    let (constraint, bounds) = (*constraint, bounds[row]);
-                    let mut value = self.work.node.values[row * sites.len() + element];
-                    if point.phase.is_none() {
-                        value += parts.get(&(constraint, indices.clone())).copied().unwrap_or(0.0);
-                    }
+            for (row, meaning) in group.rows.iter().enumerate() {
+                let Row::Constraint { constraint, .. } = meaning else { continue };
+                let (constraint, bounds) = (*constraint, bounds[row]);
+                let values = &self.work.node.values[row * sites.len()..][*first..end];
+                // Nearly all constraints hold nearly everywhere.
+                let one = wanted == Wanted::Violated && all_within(values, bounds) && sites[*first].point.phase.is_some();
+                let values = if one { &values[..1] } else { values };
+                for (Site { indices, point }, &value) in sites[*first..end].iter().zip(values) {
+                    let elsewhere = if point.phase.is_none() { parts.get(&(constraint, indices.clone())) } else { None };
+                    let value = value + elsewhere.copied().unwrap_or(0.0);
                     visit(&Checked { constraint, point: *point, value, bounds, group: self.group, indices });
                 }
             }
         }
     }
+}
+
+/// Whether all values are within bounds; false where one is not a number.
+fn all_within(values: &[f64], (lower, upper): Pair) -> bool {
+    // Without an exit from the loop the compiler makes vector instructions of it.
+    values.iter().fold(true, |all, value| all & (lower <= *value) & (*value <= upper))
 }

@@ -18,7 +18,7 @@ use crate::solution::{Inner, PhaseTimes, Solution, Value};
 use crate::sqp::Outcome;
 use crate::status::{Residuals, Status};
 use crate::transcribe::{SetupError, Singular, Transcription};
-use fine::Plan;
+use fine::{Plan, Wanted};
 use ntg_structure::{Block, Place, Unit};
 use std::sync::Arc;
 
@@ -249,7 +249,7 @@ pub(crate) fn user(nlp: &Transcription, minimised: f64) -> f64 {
 /// Every relative violation on the finer grid: phase, scaled time, and by how much.
 pub(crate) fn violations(nlp: &Transcription, x: &[f64], samples: usize) -> Result<Vec<(usize, f64, f64)>, SetupError> {
     let mut found = vec![];
-    Plan::new(nlp, samples)?.evaluate(nlp, x, |checked| {
+    Plan::new(nlp, samples)?.evaluate(nlp, (x, Wanted::Violated), |checked| {
         let (lower, upper) = checked.bounds;
         let unit = nlp.model.structure.constraints[checked.constraint].unit.factor;
         let missed = crate::nlp::kkt::violation(checked.value, lower, upper);

@@ -1,7 +1,7 @@
 //! Every member of every constraint over time, with its bounds and multipliers: what plots and
 //! reports show.
 
-use super::fine::Plan;
+use super::fine::{Plan, Wanted};
 use super::multipliers;
 use crate::problem::Problem;
 use crate::solution::{Inner, Solution};
@@ -46,7 +46,7 @@ impl Solution {
         let inner = &self.inner;
         let nlp = Transcription::with(problem, inner.model.structure.clone())?;
         let mut sets: BTreeMap<(Key, usize), Set> = BTreeMap::new();
-        Plan::new(&nlp, samples.max(1))?.evaluate(&nlp, &inner.x, |checked| {
+        Plan::new(&nlp, samples.max(1))?.evaluate(&nlp, (&inner.x, Wanted::All), |checked| {
             let key = key(checked.constraint, checked.point, checked.indices);
             let set = sets.entry((key, checked.group)).or_insert(Set { bounds: checked.bounds, values: vec![] });
             set.values.push((checked.point, checked.value));
