@@ -23,12 +23,11 @@ impl<N: Nlp> Core<'_, N> {
 
     /// Lowers the barrier as long as its problem is solved well enough, equation (11.6).
     pub(super) fn lower_barrier(&mut self) -> Option<Status> {
-        let relax = self.relaxation();
-        let dual = self.dual() / relax;
+        let dual = self.record.residuals.scaled.dual;
         let (before, last) = (self.mu, self.last_barrier());
         while self.mu > last {
             let enough = ENOUGH * self.mu;
-            if dual > enough || self.off_path(relax) > enough {
+            if dual > enough || self.off_path() > enough {
                 break;
             }
             if let Some(status) = self.reconsider_price() {
@@ -52,7 +51,7 @@ impl<N: Nlp> Core<'_, N> {
         }
         while self.mu > last {
             let promised = -self.slope();
-            if promised > PROMISE * self.mu * sides || self.off_path(self.relaxation()) > ENOUGH * self.mu {
+            if promised > PROMISE * self.mu * sides || self.off_path() > ENOUGH * self.mu {
                 break;
             }
             self.fall(last);
@@ -65,12 +64,12 @@ impl<N: Nlp> Core<'_, N> {
     }
 
     /// How far the present point is from the central path, but for the gradient.
-    fn off_path(&self, relax: f64) -> f64 {
+    fn off_path(&self) -> f64 {
         let apart = match &self.elastic {
-            Some(elastic) => elastic.deviation(&self.sides, self.mu) / relax,
+            Some(elastic) => elastic.deviation(&self.sides, self.mu) / self.relax,
             None => self.sides.residual(&self.quantities),
         };
-        apart.max(self.sides.deviation(self.mu) / relax)
+        apart.max(self.sides.deviation(self.mu) / self.relax)
     }
 
     fn fall(&mut self, last: f64) {

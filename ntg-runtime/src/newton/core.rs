@@ -2,6 +2,7 @@
 //! hold (docs/maths.md, section 11).
 
 use super::filter::{Filter, LARGEST_THETA};
+use super::several::{largest, sum};
 use super::sides::{Sides, log_sum};
 use super::system::System;
 use crate::method::Start;
@@ -42,6 +43,8 @@ pub(super) struct Core<'a, N: Nlp> {
     /// Multipliers of all quantities.
     pub(super) multipliers: Vec<f64>,
     pub(super) mu: f64,
+    /// What residuals are relative to, equation (6.5).
+    pub(super) relax: f64,
     /// What barrier parameters are relative to.
     pub(super) unit: f64,
     pub(super) filter: Filter,
@@ -80,6 +83,8 @@ pub(super) struct Trial {
     pub(super) x: Vec<f64>,
     pub(super) quantities: Vec<f64>,
     pub(super) w: Vec<f64>,
+    /// Distances in truth.
+    pub(super) d: Vec<f64>,
     /// The multipliers with which derivatives were computed there.
     pub(super) multipliers: Vec<f64>,
     /// Whether the last trial has derivatives.
@@ -93,8 +98,8 @@ pub(super) struct Trial {
 impl Trial {
     fn new(x: &[f64], quantities: usize, w: Vec<f64>) -> Self {
         let quantities = vec![0.0; quantities];
-        let multipliers = quantities.clone();
-        Self { x: x.to_vec(), quantities, w, multipliers, is_ahead: false, was_good: true, failure: None }
+        let (d, multipliers) = (w.clone(), quantities.clone());
+        Self { x: x.to_vec(), quantities, w, d, multipliers, is_ahead: false, was_good: true, failure: None }
     }
 }
 
@@ -133,6 +138,7 @@ impl<'a, N: Nlp> Core<'a, N> {
             descent: vec![0.0; n + 1],
             multipliers: vec![0.0; count],
             mu: FIRST_BARRIER * unit,
+            relax: 1.0,
             unit,
             filter: Filter::for_iterations(settings.max_iterations.min(HISTORY)),
             best: super::polish::Best::new(&x, &sides),
@@ -156,6 +162,7 @@ impl<'a, N: Nlp> Core<'a, N> {
     fn start(&mut self, from: Start<'_>) -> Result<(), NotFinite> {
         // The scales were chosen by derivatives at this point.
         self.system.quantities_here(&self.x, &mut self.quantities);
+        self.sides.look(&self.quantities);
         match (from, from.multipliers(self.nlp)) {
             (_, Some(from)) => self.start_warm(from),
             (Start::Cold, None) => self.start_at(FIRST_BARRIER, INSIDE),
@@ -169,7 +176,7 @@ impl<'a, N: Nlp> Core<'a, N> {
     /// Distances and multipliers of a point about which nothing is known but how near it is.
     fn start_at(&mut self, barrier: f64, inside: f64) {
         self.mu = barrier * self.unit;
-        self.sides.place(&self.quantities, inside);
+        self.sides.place(inside);
         for (z, w) in self.sides.z.iter_mut().zip(&self.sides.w) {
             *z = self.mu / w;
         }
@@ -181,10 +188,13 @@ impl<'a, N: Nlp> Core<'a, N> {
         self.sides.multipliers(self.system.objective(), &mut self.multipliers);
         if std::mem::take(&mut self.trial.is_ahead) && self.multipliers == self.trial.multipliers {
             std::mem::swap(&mut self.quantities, &mut self.trial.quantities);
+            std::mem::swap(&mut self.sides.d, &mut self.trial.d);
             self.system.move_ahead();
             return Ok(());
         }
-        self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.quantities)
+        self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.quantities)?;
+        self.sides.look(&self.quantities);
+        Ok(())
     }
 
     /// Starts a filter at the present point.
@@ -196,7 +206,7 @@ impl<'a, N: Nlp> Core<'a, N> {
 
     /// Infeasibility of the present point.
     pub(super) fn theta(&self) -> f64 {
-        self.sides.infeasibility(&self.quantities, &self.sides.w)
+        self.sides.infeasibility(&self.quantities, (&self.sides.d, &self.sides.w))
     }
 
     /// The barrier objective of a point.
@@ -207,11 +217,12 @@ impl<'a, N: Nlp> Core<'a, N> {
     /// Computes the gradient of the Lagrangian and the residuals of the present point.
     pub(super) fn measure(&mut self) {
         self.system.gradient(&self.multipliers, &mut self.descent);
-        let relax = self.relaxation();
+        self.relax = self.relaxation();
+        let relax = self.relax;
         let mut residuals = crate::status::Residuals::default();
         residuals.scaled.primal = self.sides.violation(&self.quantities);
         residuals.scaled.dual = self.dual() / relax;
-        residuals.scaled.complementarity = self.sides.complementarity(&self.quantities) / relax;
+        residuals.scaled.complementarity = self.sides.complementarity() / relax;
         self.record = IterationRecord {
             objective: self.quantities[self.system.objective()] / self.system.scales.objective,
             residuals,
@@ -221,13 +232,13 @@ impl<'a, N: Nlp> Core<'a, N> {
         };
     }
 
-    pub(super) fn dual(&self) -> f64 {
-        let finite = self.descent.iter().sum::<f64>().is_finite();
-        if finite { self.descent.iter().fold(0.0, |most: f64, g| most.max(g.abs())) } else { f64::INFINITY }
+    fn dual(&self) -> f64 {
+        let finite = sum([&self.descent], |[g]| g).is_finite();
+        if finite { largest([&self.descent], |[g]| g.abs()) } else { f64::INFINITY }
     }
 
     /// Equation (6.5).
-    pub(super) fn relaxation(&self) -> f64 {
+    fn relaxation(&self) -> f64 {
         let (sum, count) = self.sides.multiplier_sum();
         if count > 0.0 { (sum / count / LARGE).max(1.0) } else { 1.0 }
     }

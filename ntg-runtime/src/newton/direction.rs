@@ -6,11 +6,12 @@
 //! equalities:  Sigma = 1 / d,   q = -c / d                        (d: proximal term)
 //! ```
 //!
-//! The distances move by `J dx + (c - w)`, in this association: it keeps what is left of small
+//! With `b = mu / z - w` and the stiffness `s = z / w` the second line is `q = sign (b - r) s`. The distances move by `J dx + (c - w)`, in this association: it keeps what is left of small
 //! distances. Equalities are then refined until the proximal term no longer shows.
 
 use super::core::Core;
 use super::elements::{Curvature, Weights};
+use super::several::{largest, sum};
 use super::sides::Sides;
 use super::system::System;
 use crate::nlp::Nlp;
@@ -44,8 +45,12 @@ pub(super) struct Direction {
     pub(super) r: Vec<f64>,
     /// Residuals of equalities that the direction removes.
     pub(super) c: Vec<f64>,
-    /// How much a side gives way for one unit of its multiplier.
-    compliance: Vec<f64>,
+    /// How much a side's multiplier grows for one unit that it gives way.
+    stiffness: Vec<f64>,
+    /// How far each side's distance is from the one that its multiplier asks for.
+    apart: Vec<f64>,
+    /// How distances shrink along the direction.
+    pub(super) shrink: Shrink,
     /// How much an equality gives way; 0 unless it is elastic.
     softness: Vec<f64>,
     /// Weight of each quantity in the matrix.
@@ -59,6 +64,22 @@ pub(super) struct Direction {
     border: Vec<f64>,
 }
 
+/// How positive numbers shrink along a direction.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shrink {
+    /// The sum of all relative changes.
+    pub(super) sum: f64,
+    /// The largest relative decrease; 0 if there is none.
+    pub(super) most: f64,
+}
+
+impl Shrink {
+    pub(super) fn of(numbers: &[f64], change: &[f64]) -> Self {
+        let vectors = [numbers, change];
+        Self { sum: sum(vectors, |[v, d]| d / v), most: largest(vectors, |[v, d]| -d / v) }
+    }
+}
+
 impl Direction {
     pub(super) fn new<W>(n: usize, quantities: usize, sides: &Sides, system: &System<W>) -> Self {
         let (bounds, equalities) = (sides.side.len(), sides.equality.len());
@@ -70,7 +91,9 @@ impl Direction {
             y: vec![0.0; equalities],
             r: vec![0.0; bounds],
             c: vec![0.0; equalities],
-            compliance: vec![0.0; bounds],
+            stiffness: vec![0.0; bounds],
+            apart: vec![0.0; bounds],
+            shrink: Shrink::default(),
             softness: vec![0.0; equalities],
             sigma: vec![0.0; quantities],
             right: vec![0.0; quantities],
@@ -92,11 +115,12 @@ impl Direction {
             (&mut self.y, &from.y),
             (&mut self.r, &from.r),
             (&mut self.c, &from.c),
-            (&mut self.compliance, &from.compliance),
+            (&mut self.stiffness, &from.stiffness),
             (&mut self.softness, &from.softness),
             (&mut self.sigma, &from.sigma),
         ];
         pairs.into_iter().for_each(|(to, from)| to.copy_from_slice(from));
+        self.shrink = from.shrink;
     }
 }
 
@@ -104,16 +128,16 @@ impl<N: Nlp> Core<'_, N> {
     /// The direction from the present point; false where the matrix cannot be made that of a minimum.
     pub(super) fn direction(&mut self) -> bool {
         match &self.elastic {
-            Some(elastic) => elastic.compliances(&self.sides, &mut self.step.compliance, &mut self.step.softness),
+            Some(elastic) => elastic.stiffness(&self.sides, &mut self.step.stiffness, &mut self.step.softness),
             None => {
                 let both = self.sides.w.iter().zip(&self.sides.z);
-                self.step.compliance.iter_mut().zip(both).for_each(|(compliance, (w, z))| *compliance = w / z);
+                self.step.stiffness.iter_mut().zip(both).for_each(|(stiffness, (w, z))| *stiffness = z / w);
             }
         }
         let sigma = &mut self.step.sigma;
         sigma.fill(0.0);
-        for (side, compliance) in self.sides.side.iter().zip(&self.step.compliance) {
-            sigma[side.of] += 1.0 / compliance;
+        for (side, stiffness) in self.sides.side.iter().zip(&self.step.stiffness) {
+            sigma[side.of] += stiffness;
         }
         for ((of, _), softness) in self.sides.equality.iter().zip(&self.step.softness) {
             sigma[*of] = 1.0 / (softness + PROXIMAL);
@@ -121,8 +145,8 @@ impl<N: Nlp> Core<'_, N> {
         if !self.factorise() {
             return false;
         }
-        for (r, (side, w)) in self.step.r.iter_mut().zip(self.sides.side.iter().zip(&self.sides.w)) {
-            *r = side.distance(&self.quantities) - w;
+        for ((r, d), w) in self.step.r.iter_mut().zip(&self.sides.d).zip(&self.sides.w) {
+            *r = d - w;
         }
         for (c, (of, value)) in self.step.c.iter_mut().zip(&self.sides.equality) {
             *c = self.quantities[*of] - value;
@@ -169,9 +193,12 @@ impl<N: Nlp> Core<'_, N> {
     /// false if it is not finite.
     pub(super) fn solve_direction(&mut self) -> bool {
         let (sides, step, mu) = (&self.sides, &mut self.step, self.mu);
+        for ((apart, w), z) in step.apart.iter_mut().zip(&sides.w).zip(&sides.z) {
+            *apart = mu / z - w;
+        }
         step.right.fill(0.0);
-        for (k, side) in sides.side.iter().enumerate() {
-            step.right[side.of] += side.sign * (mu / sides.z[k] - sides.w[k] - step.r[k]) / step.compliance[k];
+        for (((side, apart), r), stiffness) in sides.side.iter().zip(&step.apart).zip(&step.r).zip(&step.stiffness) {
+            step.right[side.of] += side.sign * (apart - r) * stiffness;
         }
         for (k, (of, _)) in sides.equality.iter().enumerate() {
             step.right[*of] = -step.c[k] / (step.softness[k] + PROXIMAL);
@@ -186,12 +213,15 @@ impl<N: Nlp> Core<'_, N> {
         self.refine_equalities();
         self.system.along(&self.step.x, &mut self.step.along);
         let (sides, step) = (&self.sides, &mut self.step);
-        for (k, side) in sides.side.iter().enumerate() {
-            step.w[k] = side.sign * step.along[side.of] + step.r[k];
-            step.z[k] = (mu / sides.z[k] - sides.w[k] - step.w[k]) / step.compliance[k];
+        for ((w, side), r) in step.w.iter_mut().zip(&sides.side).zip(&step.r) {
+            *w = side.sign * step.along[side.of] + r;
         }
-        let sum: f64 = step.x.iter().chain(&step.z).chain(&step.y).sum();
-        sum.is_finite()
+        for (((z, apart), w), stiffness) in step.z.iter_mut().zip(&step.apart).zip(&step.w).zip(&step.stiffness) {
+            *z = (apart - w) * stiffness;
+        }
+        step.shrink = Shrink::of(&sides.w, &step.w);
+        let all = |of: &[f64]| sum([of], |[entry]| entry);
+        (all(&step.x) + all(&step.z) + all(&step.y)).is_finite()
     }
 
     /// Moves the right-hand sides of the border's rows to where they belong, equation (11.5).

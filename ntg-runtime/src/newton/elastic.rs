@@ -10,7 +10,7 @@
 //! search needs no filter and no restoration. Multipliers stay below `rho`; where the constraints
 //! cannot be met at any price, the sum of violations is least.
 
-use super::core::Core;
+use super::core::{Core, Trial};
 use super::search::Searched;
 use super::sides::{Sides, log_sum};
 use crate::nlp::Nlp;
@@ -75,10 +75,9 @@ impl Elastic {
     }
 
     /// The best slacks at a point, and the distances that belong to them; the penalty and barrier.
-    fn place(&mut self, sides: &Sides, quantities: &[f64], mu: f64, w: &mut [f64]) -> f64 {
+    fn place(&mut self, sides: &Sides, (quantities, d): (&[f64], &[f64]), mu: f64, w: &mut [f64]) -> f64 {
         let mut penalty = 0.0;
-        for (k, side) in sides.side.iter().enumerate() {
-            let d = side.distance(quantities);
+        for (k, (side, &d)) in sides.side.iter().zip(d).enumerate() {
             if side.of >= sides.first_variable {
                 (self.n[k], w[k]) = (0.0, d);
             } else {
@@ -93,10 +92,11 @@ impl Elastic {
         penalty - mu * log_sum(w)
     }
 
-    /// How much sides and equalities give way for one unit of their multipliers.
-    pub(super) fn compliances(&self, sides: &Sides, compliance: &mut [f64], softness: &mut [f64]) {
-        for (k, compliance) in compliance.iter_mut().enumerate() {
-            *compliance = sides.w[k] / sides.z[k] + self.n[k] / (self.price - sides.z[k]);
+    /// How much the multipliers of sides grow for one unit that they give way, and how much equalities give way for
+    /// one unit of theirs.
+    pub(super) fn stiffness(&self, sides: &Sides, stiffness: &mut [f64], softness: &mut [f64]) {
+        for (k, stiffness) in stiffness.iter_mut().enumerate() {
+            *stiffness = 1.0 / (sides.w[k] / sides.z[k] + self.n[k] / (self.price - sides.z[k]));
         }
         for (k, softness) in softness.iter_mut().enumerate() {
             let y = sides.y[k];
@@ -131,7 +131,7 @@ impl<N: Nlp> Core<'_, N> {
         let most = 0.5 * elastic.price;
         self.sides.z.iter_mut().for_each(|z| *z = z.min(most));
         self.sides.y.iter_mut().for_each(|y| *y = y.clamp(-most, most));
-        elastic.place(&self.sides, &self.quantities, self.mu, &mut self.sides.w.clone());
+        elastic.place(&self.sides, (&self.quantities, &self.sides.d), self.mu, &mut self.sides.w.clone());
         self.elastic = Some(elastic);
     }
 
@@ -139,8 +139,9 @@ impl<N: Nlp> Core<'_, N> {
     /// are left in `elastic` and `trial.w`.
     fn penalty(&mut self, of_trial: bool) -> f64 {
         let Some(elastic) = &mut self.elastic else { return 0.0 };
-        let quantities = if of_trial { &self.trial.quantities } else { &self.quantities };
-        elastic.place(&self.sides, quantities, self.mu, &mut self.trial.w)
+        let Trial { quantities, d, w, .. } = &mut self.trial;
+        let at = if of_trial { (&**quantities, &**d) } else { (&*self.quantities, &*self.sides.d) };
+        elastic.place(&self.sides, at, self.mu, w)
     }
 
     /// Brings slacks and distances to the present point and barrier.

@@ -27,6 +27,7 @@ mod pack;
 mod pattern;
 mod polish;
 mod search;
+mod several;
 mod shape;
 mod sides;
 mod system;

@@ -5,7 +5,9 @@
 //! constants these are.
 
 use super::core::{Core, Trial};
+use super::direction::Shrink;
 use super::filter::{Filter, LARGEST_THETA};
+use super::sides::Sides;
 use crate::nlp::Nlp;
 
 /// The least fraction of the way to a bound that a step may go.
@@ -50,7 +52,7 @@ impl<N: Nlp> Core<'_, N> {
     /// Tries points along the direction; on acceptance moves there.
     pub(super) fn search(&mut self) -> Searched {
         let here = self.here();
-        let longest = self.to_boundary(&self.sides.w, &self.step.w);
+        let longest = self.to_boundary(self.step.shrink);
         if self.is_tiny() {
             return if self.try_step(longest) { self.move_on(longest, Searched::Tiny) } else { Searched::Stuck };
         }
@@ -82,15 +84,17 @@ impl<N: Nlp> Core<'_, N> {
 
     /// Derivative of the barrier objective along the direction.
     pub(super) fn slope(&self) -> f64 {
-        let decrease: f64 = self.step.w.iter().zip(&self.sides.w).map(|(dw, w)| dw / w).sum();
-        self.step.along[self.system.objective()] - self.mu * decrease
+        self.step.along[self.system.objective()] - self.mu * self.step.shrink.sum
     }
 
     /// The longest step that keeps positive numbers positive.
-    pub(super) fn to_boundary(&self, numbers: &[f64], step: &[f64]) -> f64 {
-        let fraction = BOUNDARY.max(1.0 - self.mu);
-        let limits = numbers.iter().zip(step).filter(|(_, d)| **d < 0.0).map(|(v, d)| -fraction * v / d);
-        limits.fold(1.0, f64::min)
+    fn to_boundary(&self, shrink: Shrink) -> f64 {
+        (BOUNDARY.max(1.0 - self.mu) / shrink.most).min(1.0)
+    }
+
+    /// The longest step that keeps the multipliers of sides positive.
+    fn to_dual_boundary(&self) -> f64 {
+        self.to_boundary(Shrink::of(&self.sides.z, &self.step.z))
     }
 
     pub(super) fn is_tiny(&self) -> bool {
@@ -101,13 +105,13 @@ impl<N: Nlp> Core<'_, N> {
     /// it has no value.
     fn try_ahead(&mut self, alpha: f64) -> bool {
         self.place_trial(alpha);
-        let dual = self.to_boundary(&self.sides.z, &self.step.z);
+        let dual = self.to_dual_boundary();
         let (y, z) = ((alpha, &*self.step.y), (dual, &*self.step.z));
         self.sides.multipliers_after(self.system.objective(), y, z, &mut self.trial.multipliers);
         let Trial { x, quantities, multipliers, .. } = &mut self.trial;
         match self.system.derivatives_ahead(self.nlp, x, multipliers, quantities) {
             Ok(()) => {
-                (self.trial.is_ahead, self.trial.failure) = (true, None);
+                self.has_value(true);
                 true
             }
             Err(_) => self.try_step(alpha),
@@ -123,13 +127,19 @@ impl<N: Nlp> Core<'_, N> {
         }
     }
 
+    /// Notes that there are values at the trial point, and what they mean.
+    fn has_value(&mut self, is_ahead: bool) {
+        Sides::distances(&self.sides.side, &self.trial.quantities, &mut self.trial.d);
+        (self.trial.is_ahead, self.trial.failure) = (is_ahead, None);
+    }
+
     /// Evaluates the trial point; false where it has no value.
     pub(super) fn try_step(&mut self, alpha: f64) -> bool {
         self.place_trial(alpha);
         self.trial.is_ahead = false;
         match self.system.values(self.nlp, &self.trial.x, &mut self.trial.quantities) {
             Ok(()) => {
-                self.trial.failure = None;
+                self.has_value(false);
                 true
             }
             Err(what) => {
@@ -140,8 +150,8 @@ impl<N: Nlp> Core<'_, N> {
     }
 
     fn trial_pair(&self) -> (f64, f64) {
-        let theta = self.sides.infeasibility(&self.trial.quantities, &self.trial.w);
-        (theta, self.phi(&self.trial.quantities, &self.trial.w))
+        let Trial { quantities, d, w, .. } = &self.trial;
+        (self.sides.infeasibility(quantities, (d, w)), self.phi(quantities, w))
     }
 
     /// Whether the objective is to decide about a step (19).
@@ -178,8 +188,8 @@ impl<N: Nlp> Core<'_, N> {
         }
         self.kept.copy(&self.step);
         for _ in 0..CORRECTIONS {
-            for (r, (side, w)) in self.step.r.iter_mut().zip(self.sides.side.iter().zip(&self.trial.w)) {
-                *r = alpha * *r + side.distance(&self.trial.quantities) - w;
+            for (r, (d, w)) in self.step.r.iter_mut().zip(self.trial.d.iter().zip(&self.trial.w)) {
+                *r = alpha * *r + d - w;
             }
             for (c, (of, value)) in self.step.c.iter_mut().zip(&self.sides.equality) {
                 *c = alpha * *c + self.trial.quantities[*of] - value;
@@ -187,7 +197,7 @@ impl<N: Nlp> Core<'_, N> {
             if !self.solve_direction() {
                 break;
             }
-            let longest = self.to_boundary(&self.sides.w, &self.step.w);
+            let longest = self.to_boundary(self.step.shrink);
             if !self.try_step(longest) {
                 break;
             }
@@ -220,12 +230,12 @@ impl<N: Nlp> Core<'_, N> {
 
     /// Makes the trial point the present one, with multipliers.
     pub(super) fn move_on(&mut self, alpha: f64, how: Searched) -> Searched {
-        let dual = self.to_boundary(&self.sides.z, &self.step.z);
+        let dual = self.to_dual_boundary();
         std::mem::swap(&mut self.x, &mut self.trial.x);
         std::mem::swap(&mut self.sides.w, &mut self.trial.w);
         self.sides.z.iter_mut().zip(&self.step.z).for_each(|(z, d)| *z += dual * d);
         self.sides.y.iter_mut().zip(&self.step.y).for_each(|(y, d)| *y += alpha * d);
-        self.sides.raise(&self.trial.quantities);
+        self.sides.raise(&self.trial.d);
         self.sides.tame(self.mu);
         self.record.step = alpha;
         how

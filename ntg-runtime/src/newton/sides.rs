@@ -5,6 +5,7 @@
 //! how far it is from the truth. A bound pair without room between is an *equality* with a multiplier
 //! of either sign.
 
+use super::several::{largest, sum};
 use crate::nlp::Limits;
 
 /// Bounds closer together than this are one equality (scaled).
@@ -34,6 +35,8 @@ pub(super) struct Sides {
     pub(super) equality: Vec<(usize, f64)>,
     /// Distances.
     pub(super) w: Vec<f64>,
+    /// Distances in truth, at the present point.
+    pub(super) d: Vec<f64>,
     /// Multipliers of sides.
     pub(super) z: Vec<f64>,
     /// Multipliers of equalities.
@@ -49,6 +52,7 @@ impl Sides {
         all.add(&scaled.row_lower, &scaled.row_upper, 0);
         all.add(&scaled.lower, &scaled.upper, first_variable);
         all.w = vec![1.0; all.side.len()];
+        all.d = all.w.clone();
         all.z = vec![0.0; all.side.len()];
         all.y = vec![0.0; all.equality.len()];
         all
@@ -69,24 +73,35 @@ impl Sides {
         }
     }
 
+    /// Computes the distances in truth at some quantities.
+    pub(super) fn distances(side: &[Side], quantities: &[f64], d: &mut [f64]) {
+        d.iter_mut().zip(side).for_each(|(d, side)| *d = side.sign * (quantities[side.of] - side.bound));
+    }
+
+    /// Computes the distances in truth at the present point.
+    pub(super) fn look(&mut self, quantities: &[f64]) {
+        Self::distances(&self.side, quantities, &mut self.d);
+    }
+
     /// Distances that are true where that is inside, and a little inside elsewhere.
-    pub(super) fn place(&mut self, quantities: &[f64], inside: f64) {
-        for (w, side) in self.w.iter_mut().zip(&self.side) {
-            *w = side.distance(quantities).max(inside * side.bound.abs().max(1.0));
+    pub(super) fn place(&mut self, inside: f64) {
+        for ((w, side), d) in self.w.iter_mut().zip(&self.side).zip(&self.d) {
+            *w = d.max(inside * side.bound.abs().max(1.0));
         }
     }
 
     /// Distances that are larger in truth become true: that helps every measure.
-    pub(super) fn raise(&mut self, quantities: &[f64]) {
-        for (w, side) in self.w.iter_mut().zip(&self.side) {
-            *w = w.max(side.distance(quantities));
-        }
+    pub(super) fn raise(&mut self, d: &[f64]) {
+        self.w.iter_mut().zip(d).for_each(|(w, d)| *w = if *d > *w { *d } else { *w });
     }
 
     /// Brings multipliers near to the central path, `w z = mu`, as far as convergence asks for it.
     pub(super) fn tame(&mut self, mu: f64) {
         for (w, z) in self.w.iter().zip(&mut self.z) {
-            *z = z.min(WANDER * mu / w).max(mu / (WANDER * w));
+            let central = mu / w;
+            let (most, least) = (WANDER * central, central / WANDER);
+            let below = if *z < most { *z } else { most };
+            *z = if below > least { below } else { least };
         }
     }
 
@@ -121,49 +136,44 @@ impl Sides {
         }
     }
 
-    /// The sum of all residuals: how infeasible a point is for the barrier problem.
-    pub(super) fn infeasibility(&self, quantities: &[f64], w: &[f64]) -> f64 {
-        let sides = self.side.iter().zip(w).map(|(side, w)| (side.distance(quantities) - w).abs()).sum::<f64>();
-        sides + self.equality.iter().map(|(of, value)| (quantities[*of] - value).abs()).sum::<f64>()
+    /// The sum of all residuals: how infeasible a point with these distances in truth is for the barrier problem.
+    pub(super) fn infeasibility(&self, quantities: &[f64], (d, w): (&[f64], &[f64])) -> f64 {
+        sum([d, w], |[d, w]| (d - w).abs()) + self.misses(quantities).sum::<f64>()
+    }
+
+    /// By how much each equality is missed.
+    fn misses(&self, quantities: &[f64]) -> impl Iterator<Item = f64> {
+        self.equality.iter().map(|(of, value)| (quantities[*of] - value).abs())
     }
 
     /// The largest residual of a side or equality.
     pub(super) fn residual(&self, quantities: &[f64]) -> f64 {
-        let sides = self.side.iter().zip(&self.w).map(|(side, w)| (side.distance(quantities) - w).abs());
-        let equalities = self.equality.iter().map(|(of, value)| (quantities[*of] - value).abs());
-        sides.chain(equalities).fold(0.0, f64::max)
+        self.misses(quantities).fold(largest([&self.d, &self.w], |[d, w]| (d - w).abs()), f64::max)
     }
 
     /// The largest violation of a bound or equality.
     pub(super) fn violation(&self, quantities: &[f64]) -> f64 {
-        let sides = self.side.iter().map(|side| -side.distance(quantities));
-        let equalities = self.equality.iter().map(|(of, value)| (quantities[*of] - value).abs());
-        sides.chain(equalities).fold(0.0, f64::max)
+        self.misses(quantities).fold(largest([&self.d], |[d]| -d), f64::max)
     }
 
     /// The largest product of a multiplier and the true distance.
-    pub(super) fn complementarity(&self, quantities: &[f64]) -> f64 {
-        let products = self.side.iter().zip(&self.z).map(|(side, z)| (z * side.distance(quantities)).abs());
-        products.fold(0.0, f64::max)
+    pub(super) fn complementarity(&self) -> f64 {
+        largest([&self.d, &self.z], |[d, z]| (z * d).abs())
     }
 
     /// The largest deviation from the central path.
     pub(super) fn deviation(&self, mu: f64) -> f64 {
-        self.w.iter().zip(&self.z).map(|(w, z)| (w * z - mu).abs()).fold(0.0, f64::max)
+        largest([&self.w, &self.z], |[w, z]| (w * z - mu).abs())
     }
 
     /// Sum and number of multipliers that are not 0, by size.
     pub(super) fn multiplier_sum(&self) -> (f64, f64) {
-        let all = self.z.iter().chain(&self.y).map(|z| z.abs()).filter(|z| *z > 0.0);
-        all.fold((0.0, 0.0), |(sum, count), z| (sum + z, count + 1.0))
-    }
-}
-
-impl Side {
-    /// How far inside the bound the quantity is.
-    #[inline]
-    pub(super) fn distance(&self, quantities: &[f64]) -> f64 {
-        self.sign * (quantities[self.of] - self.bound)
+        let of = |multipliers: &[f64]| {
+            let count = sum([multipliers], |[z]| if z == 0.0 { 0.0 } else { 1.0 });
+            (sum([multipliers], |[z]| z.abs()), count)
+        };
+        let (z, y) = (of(&self.z), of(&self.y));
+        (z.0 + y.0, z.1 + y.1)
     }
 }
 

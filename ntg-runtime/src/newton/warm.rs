@@ -16,7 +16,7 @@ impl<N: Nlp> Core<'_, N> {
     /// Distances and multipliers from those of a solution nearby.
     pub(super) fn start_warm(&mut self, from: Multipliers<'_>) {
         let w = self.system.scales.objective;
-        self.sides.place(&self.quantities, INSIDE);
+        self.sides.place(INSIDE);
         self.mu = BARRIER * self.unit;
         let first = self.system.first_variable();
         let scales = &self.system.scales;
