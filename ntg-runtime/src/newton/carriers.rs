@@ -3,7 +3,8 @@
 //! Slots that share a variable in any element form a *carrier* (an output with its derivatives, as
 //! a rule): within one, every slot is a dense combination of the same few *locals*. Different
 //! carriers share no variable. All elements of the block have equally many locals; where one has
-//! fewer, its last locals stand for nothing.
+//! fewer, its last locals stand for nothing. An element at a breakpoint depends on some of the variables of the
+//! interval beside it; it takes all of that interval's, so that both are worked on together.
 
 use crate::nlp::Block;
 
@@ -26,9 +27,16 @@ pub(super) struct Carriers {
     pub(super) of: Vec<Option<usize>>,
     /// Locals of each element.
     pub(super) locals: usize,
-    /// For each element and carrier, the element's variables that belong to it, as positions in
-    /// `Block::variables`.
-    lists: Vec<Vec<Vec<usize>>>,
+    /// For each element and carrier, the variables that are its locals.
+    lists: Vec<Vec<Vec<Local>>>,
+}
+
+/// What a local of an element stands for.
+#[derive(Clone, Copy, Debug)]
+struct Local {
+    variable: u32,
+    /// Where it stands in `Block::variables`; none where the element does not depend on it.
+    position: Option<usize>,
 }
 
 impl Carriers {
@@ -51,12 +59,18 @@ impl Carriers {
             let (width, map) = (block.variables(e).len(), block.map(e));
             for c in &all {
                 let touches = |local: &usize| c.slots.iter().any(|slot| map[slot * width + local] != 0.0);
-                lists.push((0..width).filter(touches).collect::<Vec<usize>>());
+                let local = |position| Local { variable: block.variables(e)[position], position: Some(position) };
+                lists.push((0..width).filter(touches).map(local).collect::<Vec<Local>>());
+            }
+        }
+        for e in 0..block.elements {
+            if let Some(wide) = [e + 1, e.wrapping_sub(1)].iter().find_map(|&beside| widened(&lists[e], lists.get(beside)?)) {
+                lists[e] = wide;
             }
         }
         let mut locals = 0;
         for (c, carrier) in all.iter_mut().enumerate() {
-            let width = lists.iter().map(|lists: &Vec<Vec<usize>>| lists[c].len()).max().unwrap_or(0);
+            let width = lists.iter().map(|lists: &Vec<Vec<Local>>| lists[c].len()).max().unwrap_or(0);
             (carrier.first, carrier.last) = (locals, locals + width);
             locals += width;
         }
@@ -68,24 +82,34 @@ impl Carriers {
         self.of[slot].map_or(0..0, |c| self.all[c].first..self.all[c].last)
     }
 
-    /// The locals of an element that stand for something, each with its position in `Block::variables` and its
-    /// carrier.
-    pub(super) fn locals_of(&self, e: usize) -> impl Iterator<Item = (usize, usize, &Carrier)> {
+    /// The locals of an element that stand for something, each with its variable, its position in
+    /// `Block::variables` if the element depends on it, and its carrier.
+    pub(super) fn locals_of(&self, e: usize) -> impl Iterator<Item = (usize, u32, Option<usize>, &Carrier)> {
         self.all.iter().zip(&self.lists[e]).flat_map(|(carrier, list)| {
-            list.iter().enumerate().map(move |(i, &position)| (carrier.first + i, position, carrier))
+            let all = list.iter().enumerate();
+            all.map(move |(i, local)| (carrier.first + i, local.variable, local.position, carrier))
         })
     }
 
     /// The variables of some locals of an element.
-    pub(super) fn variables<'a>(
-        &'a self,
-        block: &'a Block,
-        e: usize,
-        locals: std::ops::Range<usize>,
-    ) -> impl Iterator<Item = u32> + 'a {
+    pub(super) fn variables(&self, e: usize, locals: std::ops::Range<usize>) -> impl Iterator<Item = u32> {
         let inside = self.locals_of(e).filter(move |(local, ..)| locals.contains(local));
-        inside.map(move |(_, position, _)| block.variables(e)[position])
+        inside.map(|(_, variable, ..)| variable)
     }
+}
+
+/// The locals of an element, a list for each carrier, among all of another one's; none unless that one has all of
+/// them and more.
+fn widened(own: &[Vec<Local>], other: &[Vec<Local>]) -> Option<Vec<Vec<Local>>> {
+    let find = |list: &[Local], variable| list.iter().find(|local| local.variable == variable).copied();
+    let mut pairs = own.iter().zip(other);
+    let within = pairs.all(|(own, other)| own.iter().all(|local| find(other, local.variable).is_some()));
+    let count = |lists: &[Vec<Local>]| lists.iter().map(Vec::len).sum::<usize>();
+    (within && count(own) < count(other)).then(|| {
+        let local = |own: &[Local], variable| find(own, variable).unwrap_or(Local { variable, position: None });
+        let list = |(own, other): (&Vec<Local>, &Vec<Local>)| other.iter().map(|o| local(own, o.variable)).collect();
+        own.iter().zip(other).map(list).collect()
+    })
 }
 
 /// For each slot the first slot of its carrier; none for a slot that depends on nothing.
@@ -108,4 +132,43 @@ fn leaders(block: &Block) -> Vec<Option<usize>> {
         }
     }
     leader.into_iter().zip(used).map(|(leader, used)| used.then_some(leader)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_element_beside_one_that_depends_on_more_takes_its_locals() {
+        // Two slots with variables of their own; the outer elements depend on some of those of the one between.
+        let of: [&[u32]; 4] = [&[4, 9], &[4, 5, 8, 9], &[5, 9], &[6, 9]];
+        let second = |variable: &u32| f64::from(u8::from(*variable >= 8));
+        let map = |variables: &&[u32]| -> Vec<f64> {
+            variables.iter().map(|v| 1.0 - second(v)).chain(variables.iter().map(second)).collect()
+        };
+        let starts = |lens: &mut dyn Iterator<Item = usize>| -> Vec<usize> {
+            let sum = |sum: &mut usize, len| {
+                *sum += len;
+                Some(*sum)
+            };
+            std::iter::once(0).chain(lens.scan(0, sum)).collect()
+        };
+        let block = Block {
+            elements: 4,
+            slots: 2,
+            variable_start: starts(&mut of.iter().map(|v| v.len())),
+            variables: of.concat(),
+            map_start: starts(&mut of.iter().map(|v| 2 * v.len())),
+            map: of.iter().flat_map(map).collect(),
+            ..Block::default()
+        };
+        let carriers = Carriers::new(&block);
+        let locals = |e: usize| -> Vec<(usize, u32, bool)> {
+            carriers.locals_of(e).map(|(local, variable, position, _)| (local, variable, position.is_some())).collect()
+        };
+        assert_eq!(locals(0), [(0, 4, true), (1, 5, false), (2, 8, false), (3, 9, true)]);
+        assert_eq!(locals(1), [(0, 4, true), (1, 5, true), (2, 8, true), (3, 9, true)]);
+        assert_eq!(locals(2), [(0, 4, false), (1, 5, true), (2, 8, false), (3, 9, true)]);
+        assert_eq!(locals(3), [(0, 6, true), (2, 9, true)], "nobody beside it has all of its variables");
+    }
 }

@@ -87,7 +87,7 @@ fn far_variables(block: &Block, carriers: &Carriers, limit: usize, in_border: &m
             if a.is_empty() || b.is_empty() {
                 continue;
             }
-            let variables = || carriers.variables(block, e, a.clone()).chain(carriers.variables(block, e, b.clone()));
+            let variables = || carriers.variables(e, a.clone()).chain(carriers.variables(e, b.clone()));
             if reach(variables(), in_border) <= limit {
                 continue;
             }

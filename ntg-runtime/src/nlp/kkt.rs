@@ -32,12 +32,15 @@ pub struct Point<'a> {
     pub bound_multipliers: &'a [f64],
 }
 
-/// Writes `f' - J^T lambda`, element by element, from their derivatives at a point.
+/// Slots of an element whose slopes are added up before they go to its variables; others go there one by one.
+const SLOTS: usize = 32;
+
+/// Writes `f' - J^T lambda`, element by element, from their derivatives at a point. Allocates nothing.
 pub fn lagrangian(blocks: &[Block], at: &Evaluation, multipliers: &[f64], out: &mut [f64]) {
     out.fill(0.0);
     for (block, values) in blocks.iter().zip(&at.blocks) {
         for element in 0..block.elements {
-            let (variables, map) = (block.variables(element), block.map(element));
+            let mut slopes = [0.0; SLOTS];
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 let target = row * block.elements + element;
                 let factor = block.weight[target]
@@ -46,11 +49,22 @@ pub fn lagrangian(blocks: &[Block], at: &Evaluation, multipliers: &[f64], out: &
                         Target::Row(row) => -multipliers[row as usize],
                     };
                 let slope = factor * values.jacobian[entry * block.elements + element];
-                for (&variable, coefficient) in variables.iter().zip(&map[slot * variables.len()..]) {
-                    out[variable as usize] += slope * coefficient;
+                match slopes.get_mut(slot) {
+                    Some(sum) => *sum += slope,
+                    None => add_slope(block, element, (slot, slope), out),
                 }
             }
+            let added = slopes.iter().enumerate().take(block.slots);
+            added.for_each(|(slot, slope)| add_slope(block, element, (slot, *slope), out));
         }
+    }
+}
+
+/// Adds a slope by a slot to those by the variables of its element.
+fn add_slope(block: &Block, element: usize, (slot, slope): (usize, f64), out: &mut [f64]) {
+    let (variables, map) = (block.variables(element), block.map(element));
+    for (&variable, coefficient) in variables.iter().zip(&map[slot * variables.len()..]) {
+        out[variable as usize] += slope * coefficient;
     }
 }
 

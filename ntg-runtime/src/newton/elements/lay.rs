@@ -37,7 +37,7 @@ fn same_variables(block: &Block, carriers: &Carriers) -> Vec<Vec<u32>> {
     let mut known: BTreeMap<Vec<(usize, u32)>, usize> = BTreeMap::new();
     let mut same: Vec<Vec<u32>> = vec![];
     for e in 0..block.elements {
-        let locals = carriers.locals_of(e).map(|(local, position, _)| (local, block.variables(e)[position]));
+        let locals = carriers.locals_of(e).map(|(local, variable, ..)| (local, variable));
         let at = *known.entry(locals.collect()).or_insert_with(|| {
             same.push(vec![]);
             same.len() - 1

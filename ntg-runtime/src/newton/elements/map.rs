@@ -32,8 +32,8 @@ impl<const L: usize> Map<L> {
         let mut variable = vec![[nobody; L]; lay.groups() * locals];
         for group in 0..lay.groups() {
             for (lane, &e) in lay.first(group).iter().enumerate().filter(|(_, e)| (**e as usize) < block.elements) {
-                for (local, position, _) in carriers.locals_of(e as usize) {
-                    variable[group * locals + local][lane] = block.variables(e as usize)[position];
+                for (local, of, ..) in carriers.locals_of(e as usize) {
+                    variable[group * locals + local][lane] = of;
                 }
             }
         }
@@ -47,7 +47,8 @@ impl<const L: usize> Map<L> {
     pub(super) fn fill(&mut self, block: &Block, carriers: &Carriers, lay: &Lay<L>, sizes: &[f64]) {
         for (pack, lane, e) in lay.elements() {
             let (variables, map) = (block.variables(e), block.map(e));
-            for (local, position, carrier) in carriers.locals_of(e) {
+            for (local, _, position, carrier) in carriers.locals_of(e) {
+                let Some(position) = position else { continue };
                 let size = sizes[variables[position] as usize];
                 for &slot in &carrier.slots {
                     let at = pack * self.stride + self.coefficient_of[slot] + local - carrier.first;
