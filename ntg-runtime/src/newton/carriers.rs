@@ -64,7 +64,9 @@ impl Carriers {
             }
         }
         for e in 0..block.elements {
-            if let Some(wide) = [e + 1, e.wrapping_sub(1)].iter().find_map(|&beside| widened(&lists[e], lists.get(beside)?)) {
+            if let Some(wide) =
+                [e + 1, e.wrapping_sub(1)].iter().find_map(|&beside| widened(&lists[e], lists.get(beside)?))
+            {
                 lists[e] = wide;
             }
         }

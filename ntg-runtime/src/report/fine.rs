@@ -202,10 +202,12 @@ impl Part {
                 let (constraint, bounds) = (*constraint, bounds[row]);
                 let values = &self.work.node.values[row * sites.len()..][*first..end];
                 // Nearly all constraints hold nearly everywhere.
-                let one = wanted == Wanted::Violated && all_within(values, bounds) && sites[*first].point.phase.is_some();
+                let one =
+                    wanted == Wanted::Violated && all_within(values, bounds) && sites[*first].point.phase.is_some();
                 let values = if one { &values[..1] } else { values };
                 for (Site { indices, point }, &value) in sites[*first..end].iter().zip(values) {
-                    let elsewhere = if point.phase.is_none() { parts.get(&(constraint, indices.clone())) } else { None };
+                    let elsewhere =
+                        if point.phase.is_none() { parts.get(&(constraint, indices.clone())) } else { None };
                     let value = value + elsewhere.copied().unwrap_or(0.0);
                     visit(&Checked { constraint, point: *point, value, bounds, group: self.group, indices });
                 }

@@ -85,8 +85,7 @@ pub(crate) fn fine_set(points: &Points, breakpoints: &[f64], phase: usize, sampl
     for pair in breakpoints.windows(2) {
         let width = pair[1] - pair[0];
         for (i, (node, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
-            let (tau, side) =
-                if i == last { (pair[1], Side::Left) } else { (pair[0] + width * node, Side::Right) };
+            let (tau, side) = if i == last { (pair[1], Side::Left) } else { (pair[0] + width * node, Side::Right) };
             let weight = if has_weights { width * weight } else { f64::NAN };
             fine.push(Point { phase: Some(phase), tau, side, weight });
         }

@@ -1,4 +1,4 @@
-//! What takes the negative curvature of one element away (docs/maths.md, section 11.2).
+//! What takes the negative curvature of elements away, several side by side (docs/maths.md, section 11.2).
 //!
 //! ```text
 //! P K P^T = L D L^T,   what is added: 2 |d| u u^T for every negative eigenvalue d of the blocks of D,
@@ -6,261 +6,199 @@
 //! ```
 //!
 //! `K` plus all that is added is `P^T L |D| L^T P`: positive semidefinite, and `K` itself where that is
-//! so already. Pivoting is complete, so that `L` stays small and no eigenvalues of `K` are needed.
+//! so already. Pivoting is complete, so that `L` stays small and no eigenvalues of `K` are needed. Every lane has its
+//! own pivots: they are not moved, but picked by comparing numbers of slots, so that all lanes do the same operations.
 //!
 //! References: J. R. Bunch and B. N. Parlett, *SIAM J. Numer. Anal.* 8 (1971), for the factors; S. H. Cheng
 //! and N. J. Higham, *SIAM J. Matrix Anal. Appl.* 19 (1998), for the change of `D`.
+
+use ntg_math::{MOST_LANES, Pack, Simd, abs, sqrt};
 
 /// A diagonal pivot is taken when it is at least this fraction of the largest entry: `(1 + sqrt 17) / 8`.
 const GROWTH: f64 = 0.640_388_203_202_208;
 /// Entries below this fraction of the largest one of the matrix count as zero.
 const NEGLIGIBLE: f64 = 1e-14;
 
-/// Entries of a row that are worked on together.
-const TOGETHER: usize = 4;
-type Chunk = [f64; TOGETHER];
+/// Numbers side by side in memory.
+type Several = [f64; MOST_LANES];
 
-/// Room for one element, whose slots are filled up to whole chunks by some that meet nobody.
+/// Room for elements side by side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bend {
-    /// Elements side by side.
-    lanes: Vec<f64>,
-    /// The matrix of one of them, scaled, row by row: full and symmetric, with zeros on the diagonal and in rows
-    /// and columns that are eliminated.
-    rows: Vec<Chunk>,
-    /// What belongs on its diagonal.
-    diagonal: Vec<Chunk>,
-    /// The largest entry of each column.
-    largest: Vec<Chunk>,
-    /// Columns of the matrix that are eliminated, and of `P^T L`.
-    raw: [Vec<Chunk>; 2],
-    columns: [Vec<Chunk>; 2],
+    /// The matrices, row by row, of which the lower triangles count.
+    matrix: Vec<Several>,
+    /// 1 for a slot that is not eliminated, else 0.
+    left: Vec<Several>,
+    /// The columns of the matrix at the pivots, and of `P^T L`.
+    raw: [Vec<Several>; 2],
+    columns: [Vec<Several>; 2],
     /// All that is to be added.
-    change: Vec<Chunk>,
+    change: Vec<Several>,
 }
 
-/// The number of chunks in a row of `n` slots.
-#[inline(always)]
-fn width(n: usize) -> usize {
-    n.div_ceil(TOGETHER)
-}
-
-/// The largest number by size, and where it stands.
-#[inline(always)]
-fn largest(numbers: &[f64]) -> (usize, f64) {
-    let (mut at, mut most) = (0, 0.0);
-    for (i, number) in numbers.iter().enumerate() {
-        if number.abs() > most {
-            (at, most) = (i, number.abs());
-        }
-    }
-    (at, most)
-}
-
-/// `to += factor from`.
-#[inline(always)]
-fn add(to: &mut [Chunk], factor: f64, from: &[Chunk]) {
-    for (to, from) in to.iter_mut().zip(from) {
-        // All is read before anything is written: so the compiler makes vector instructions of it.
-        let (mut sum, from) = (*to, *from);
-        for lane in 0..TOGETHER {
-            sum[lane] += factor * from[lane];
-        }
-        *to = sum;
-    }
+/// The slots that are eliminated next; -1 for none.
+struct Pivots<S: Simd> {
+    /// The first, and the second where the block is of order two.
+    slots: [Pack<S>; 2],
+    /// Whether any block is of order two.
+    any_two: bool,
 }
 
 impl Bend {
-    /// Makes room for elements of `n` slots, `lanes` side by side.
-    pub(super) fn fit(&mut self, n: usize, lanes: usize) {
-        let w = width(n);
-        let grow = |buffer: &mut Vec<Chunk>, len: usize| buffer.resize(buffer.len().max(len), [0.0; TOGETHER]);
-        self.lanes.resize(self.lanes.len().max(n * n * lanes), 0.0);
-        grow(&mut self.rows, TOGETHER * w * w);
-        grow(&mut self.change, TOGETHER * w * w);
-        grow(&mut self.diagonal, w);
-        grow(&mut self.largest, w);
-        self.raw.iter_mut().for_each(|column| grow(column, w));
-        self.columns.iter_mut().for_each(|column| grow(column, w));
+    /// Makes room for elements of `n` slots.
+    pub(super) fn fit(&mut self, n: usize) {
+        let grow = |buffer: &mut Vec<Several>, len: usize| buffer.resize(buffer.len().max(len), [0.0; MOST_LANES]);
+        grow(&mut self.matrix, n * n);
+        grow(&mut self.change, n * n);
+        grow(&mut self.left, n);
+        self.raw.iter_mut().for_each(|column| grow(column, n));
+        self.columns.iter_mut().for_each(|column| grow(column, n));
     }
 
-    /// What is to be added to the symmetric matrix, by [`Bend::at`].
+    /// Takes in the lower triangles of full matrices of order `n`: of the elements from this one on.
     #[inline(always)]
-    pub(super) fn change(&self) -> &[f64] {
-        self.change.as_flattened()
-    }
-
-    /// Where what is to be added to the matrix of `n` slots at `(i, j)` stands.
-    pub(super) fn at(n: usize, (i, j): (usize, usize)) -> u32 {
-        (i * width(n) * TOGETHER + j) as u32
-    }
-
-    /// Takes in elements side by side, the lower triangles of full matrices.
-    #[inline(always)]
-    pub(super) fn keep<const L: usize>(&mut self, elements: &[[f64; L]], n: usize) {
-        self.lanes[..n * n * L].copy_from_slice(elements.as_flattened());
-    }
-
-    /// Turns to the element in one of the lanes.
-    #[inline(always)]
-    pub(super) fn take(&mut self, lane: usize, lanes: usize, n: usize) {
-        let w = width(n);
-        self.rows[..TOGETHER * w * w].fill([0.0; TOGETHER]);
-        self.change[..TOGETHER * w * w].fill([0.0; TOGETHER]);
-        self.diagonal[..w].fill([0.0; TOGETHER]);
-        let (rows, diagonal) = (self.rows.as_flattened_mut(), self.diagonal.as_flattened_mut());
-        for i in 0..n {
-            let own = &self.lanes[i * n * lanes..][..n * lanes];
-            for j in 0..i {
-                rows[i * w * TOGETHER + j] = own[j * lanes + lane];
-                rows[j * w * TOGETHER + i] = own[j * lanes + lane];
-            }
-            diagonal[i] = own[i * lanes + lane];
+    pub(super) fn keep<S: Simd, const L: usize>(&mut self, simd: S, elements: &[[f64; L]], (n, from): (usize, usize)) {
+        for (to, entry) in self.matrix[..n * n].iter_mut().zip(elements) {
+            Pack::load(simd, &entry[from..]).store(to);
         }
     }
 
-    /// Computes what is to be added; whether it is anything.
+    /// What is to be added at `(i, j)`, `i >= j`.
     #[inline(always)]
-    pub(super) fn compute(&mut self, n: usize) -> bool {
-        // With a known width the compiler writes the loops over a row out.
-        match width(n) {
-            1 => self.compute_rows(1),
-            2 => self.compute_rows(2),
-            3 => self.compute_rows(3),
-            w => self.compute_rows(w),
+    pub(super) fn change<S: Simd>(&self, simd: S, n: usize, (i, j): (usize, usize)) -> Pack<S> {
+        Pack::load(simd, &self.change[i * n + j])
+    }
+
+    /// Computes what is to be added in the lanes whose matrix is not `convex`; whether it is anything.
+    #[inline(always)]
+    pub(super) fn compute<S: Simd>(&mut self, simd: S, n: usize, convex: &[bool]) -> bool {
+        // With a known order the compiler writes the loops out.
+        match n {
+            3 => self.compute_order(simd, 3, convex),
+            4 => self.compute_order(simd, 4, convex),
+            5 => self.compute_order(simd, 5, convex),
+            6 => self.compute_order(simd, 6, convex),
+            7 => self.compute_order(simd, 7, convex),
+            8 => self.compute_order(simd, 8, convex),
+            n => self.compute_order(simd, n, convex),
         }
     }
 
     #[inline(always)]
-    fn compute_rows(&mut self, w: usize) -> bool {
-        let (mut bent, mut negligible) = (false, -1.0);
-        for _ in 0..TOGETHER * w {
-            let (p, d) = largest(self.diagonal[..w].as_flattened());
-            let (q, m) = self.largest_beside(w);
-            let most = if d > m { d } else { m };
-            if negligible < 0.0 {
-                negligible = NEGLIGIBLE * most;
-            }
-            if most <= negligible || !most.is_finite() {
-                break;
-            }
-            if d >= GROWTH * m {
-                bent |= self.one(w, p);
-            } else {
-                let (p, _) = largest(self.rows[q * w..][..w].as_flattened());
-                self.two(w, (p, q));
-                bent = true;
-            }
+    fn compute_order<S: Simd>(&mut self, simd: S, n: usize, convex: &[bool]) -> bool {
+        let mut left = [0.0; MOST_LANES];
+        left.iter_mut().zip(convex).for_each(|(left, convex)| *left = if *convex { 0.0 } else { 1.0 });
+        self.left[..n].fill(left);
+        self.change[..n * n].fill([0.0; MOST_LANES]);
+        let (mut bent, mut negligible) = (false, Pack::splat(simd, -1.0));
+        while let Some(pivots) = self.pivots(n, &mut negligible) {
+            bent |= self.eliminate(n, &pivots);
         }
         bent
     }
 
-    /// The largest entry off the diagonal, and its column.
+    /// The pivots of all lanes by complete pivoting; none where nothing is left.
     #[inline(always)]
-    fn largest_beside(&mut self, w: usize) -> (usize, f64) {
-        let most = &mut self.largest[..w];
-        most.fill([0.0; TOGETHER]);
-        for row in self.rows[..TOGETHER * w * w].chunks_exact(w) {
-            for (most, entry) in most.iter_mut().zip(row) {
-                let (mut larger, entry) = (*most, *entry);
-                for lane in 0..TOGETHER {
-                    let size = entry[lane].abs();
-                    larger[lane] = if size > larger[lane] { size } else { larger[lane] };
+    fn pivots<S: Simd>(&self, n: usize, negligible: &mut Pack<S>) -> Option<Pivots<S>> {
+        let simd = negligible.simd();
+        let (matrix, left) = (&self.matrix[..n * n], &self.left[..n]);
+        let (zero, none) = (Pack::splat(simd, 0.0), Pack::splat(simd, -1.0));
+        let (mut diagonal, mut on) = (zero, none);
+        let (mut beside, mut row, mut column) = (zero, none, none);
+        for i in 0..n {
+            let (left_i, number) = (Pack::load(simd, &left[i]), Pack::splat(simd, i as f64));
+            let own = &matrix[i * n..][..=i];
+            let size = abs(Pack::load(simd, &own[i])) * left_i;
+            let larger = diagonal.less(size);
+            (diagonal, on) = (larger.select(size, diagonal), larger.select(number, on));
+            for (j, (entry, left_j)) in own[..i].iter().zip(left).enumerate() {
+                let size = abs(Pack::load(simd, entry)) * (left_i * Pack::load(simd, left_j));
+                let larger = beside.less(size);
+                beside = larger.select(size, beside);
+                (row, column) = (larger.select(number, row), larger.select(Pack::splat(simd, j as f64), column));
+            }
+        }
+        let most = diagonal.less(beside).select(beside, diagonal);
+        *negligible = negligible.less(zero).select(most * NEGLIGIBLE, *negligible);
+        let some = negligible.less(most).both(most.less(Pack::splat(simd, f64::INFINITY)));
+        let one = (beside * GROWTH).less_eq(diagonal);
+        let second = some.select(one.select(none, row), none);
+        let slots = [some.select(one.select(on, column), none), second];
+        some.any().then_some(Pivots { slots, any_two: zero.less_eq(second).any() })
+    }
+
+    /// Eliminates one or two slots in every lane; whether a block has a negative eigenvalue (one of order two has one).
+    #[inline(always)]
+    fn eliminate<S: Simd>(&mut self, n: usize, pivots: &Pivots<S>) -> bool {
+        let Self { matrix, left, raw: [x, y], columns: [first, second], change, .. } = self;
+        let (matrix, left, change) = (&mut matrix[..n * n], &mut left[..n], &mut change[..n * n]);
+        let (x, y, first, second) = (&mut x[..n], &mut y[..n], &mut first[..n], &mut second[..n]);
+        let [p, q] = pivots.slots;
+        let simd = p.simd();
+        let splat = |number: f64| Pack::splat(simd, number);
+        let load = |from: &Several| Pack::load(simd, from);
+        let (zero, unit) = (splat(0.0), splat(1.0));
+        // Of the block [a b; b c]; that of order one has c = 1.
+        let (mut a, mut b, mut c) = (unit, zero, unit);
+        for i in 0..n {
+            let (is_p, is_q) = (p.equal(splat(i as f64)), q.equal(splat(i as f64)));
+            let (mut own_x, mut own_y) = (zero, zero);
+            for j in 0..n {
+                let (entry, number) = (load(&matrix[i.max(j) * n + i.min(j)]), splat(j as f64));
+                own_x = p.equal(number).select(entry, own_x);
+                if pivots.any_two {
+                    own_y = q.equal(number).select(entry, own_y);
                 }
-                *most = larger;
+            }
+            (a, b, c) = (is_p.select(own_x, a), is_q.select(own_x, b), is_q.select(own_y, c));
+            let stays = is_p.either(is_q).select(zero, load(&left[i]));
+            stays.store(&mut left[i]);
+            (own_x * stays).store(&mut x[i]);
+            (own_y * stays).store(&mut y[i]);
+        }
+        let two = zero.less_eq(q);
+        let inverse = unit / (a * c - b * b);
+        for i in 0..n {
+            let (x, y) = (load(&x[i]), load(&y[i]));
+            ((c * x - b * y) * inverse).store(&mut first[i]);
+            ((a * y - b * x) * inverse).store(&mut second[i]);
+        }
+        for i in 0..n {
+            let (by_x, by_y) = (load(&first[i]), load(&second[i]));
+            for (j, entry) in matrix[i * n..][..=i].iter_mut().enumerate() {
+                let mut value = load(entry) - by_x * load(&x[j]);
+                if pivots.any_two {
+                    value = value - by_y * load(&y[j]);
+                }
+                value.store(entry);
             }
         }
-        largest(most.as_flattened())
-    }
-
-    /// Eliminates one unknown; whether its pivot is negative.
-    #[inline(always)]
-    fn one(&mut self, w: usize, p: usize) -> bool {
-        let ([raw, _], [column, _]) = (&mut self.raw, &mut self.columns);
-        let (raw, column) = (&mut raw[..w], &mut column[..w]);
-        let diagonal = &mut self.diagonal[..w];
-        let d = diagonal[p / TOGETHER][p % TOGETHER];
-        let inverse = 1.0 / d;
-        raw.copy_from_slice(&self.rows[p * w..][..w]);
-        for k in 0..w {
-            for lane in 0..TOGETHER {
-                column[k][lane] = raw[k][lane] * inverse;
-                diagonal[k][lane] -= raw[k][lane] * column[k][lane];
+        // The eigenvector (u, v) of the lower eigenvalue of a block.
+        let half = (a - c) * 0.5;
+        let lower = two.select((a + c) * 0.5 - sqrt(half * half + b * b), a);
+        let bends = lower.less(zero).both(zero.less_eq(p));
+        if !bends.any() {
+            return false;
+        }
+        // Of the two expressions for it the one that does not cancel.
+        let upper = zero.less(half);
+        let (u, v) = (upper.select(b, lower - c), upper.select(lower - a, b));
+        let shorter = unit / sqrt(u * u + v * v);
+        let (u, v) = (two.select(u * shorter, unit), two.select(v * shorter, zero));
+        let twice = bends.select(lower * -2.0, zero);
+        for i in 0..n {
+            let number = splat(i as f64);
+            let own = p.equal(number).select(unit, load(&first[i]));
+            let other = q.equal(number).select(unit, load(&second[i]));
+            (u * own + v * other).store(&mut first[i]);
+        }
+        for i in 0..n {
+            let factor = twice * load(&first[i]);
+            for (j, entry) in change[i * n..][..=i].iter_mut().enumerate() {
+                (load(entry) + factor * load(&first[j])).store(entry);
             }
         }
-        diagonal[p / TOGETHER][p % TOGETHER] = 0.0;
-        for (i, row) in self.rows[..TOGETHER * w * w].chunks_exact_mut(w).enumerate() {
-            let factor = raw[i / TOGETHER][i % TOGETHER];
-            if factor != 0.0 {
-                add(row, -factor, column);
-                row[i / TOGETHER][i % TOGETHER] = 0.0;
-                row[p / TOGETHER][p % TOGETHER] = 0.0;
-            }
-        }
-        self.rows[p * w..][..w].fill([0.0; TOGETHER]);
-        if d < 0.0 {
-            column[p / TOGETHER][p % TOGETHER] = 1.0;
-            self.add_change(w, -d);
-        }
-        d < 0.0
-    }
-
-    /// Eliminates two unknowns, whose block has one negative eigenvalue.
-    #[inline(always)]
-    fn two(&mut self, w: usize, (p, q): (usize, usize)) {
-        let ([x, y], [first, second]) = (&mut self.raw, &mut self.columns);
-        let (x, y) = (&mut x[..w], &mut y[..w]);
-        let (first, second) = (&mut first[..w], &mut second[..w]);
-        let diagonal = &mut self.diagonal[..w];
-        x.copy_from_slice(&self.rows[p * w..][..w]);
-        y.copy_from_slice(&self.rows[q * w..][..w]);
-        let (a, c) = (diagonal[p / TOGETHER][p % TOGETHER], diagonal[q / TOGETHER][q % TOGETHER]);
-        let b = std::mem::take(&mut x[q / TOGETHER][q % TOGETHER]);
-        y[p / TOGETHER][p % TOGETHER] = 0.0;
-        let inverse = 1.0 / (a * c - b * b);
-        for k in 0..w {
-            for lane in 0..TOGETHER {
-                let (x, y) = (x[k][lane], y[k][lane]);
-                (first[k][lane], second[k][lane]) = ((c * x - b * y) * inverse, (a * y - b * x) * inverse);
-                diagonal[k][lane] -= first[k][lane] * x + second[k][lane] * y;
-            }
-        }
-        for (i, row) in self.rows[..TOGETHER * w * w].chunks_exact_mut(w).enumerate() {
-            let (u, v) = (x[i / TOGETHER][i % TOGETHER], y[i / TOGETHER][i % TOGETHER]);
-            if u != 0.0 || v != 0.0 {
-                add(row, -u, first);
-                add(row, -v, second);
-                row[i / TOGETHER][i % TOGETHER] = 0.0;
-                row[p / TOGETHER][p % TOGETHER] = 0.0;
-                row[q / TOGETHER][q % TOGETHER] = 0.0;
-            }
-        }
-        for (at, own) in [(p, &mut *first), (q, &mut *second)] {
-            self.rows[at * w..][..w].fill([0.0; TOGETHER]);
-            diagonal[at / TOGETHER][at % TOGETHER] = 0.0;
-            own[at / TOGETHER][at % TOGETHER] = 1.0;
-        }
-        let half = 0.5 * (a - c);
-        let lower = 0.5 * (a + c) - (half * half + b * b).sqrt();
-        // Of the two expressions for the eigenvector the one that does not cancel.
-        let (u, v) = if half > 0.0 { (b, lower - a) } else { (lower - c, b) };
-        let shorter = 1.0 / (u * u + v * v).sqrt();
-        for (first, second) in first.iter_mut().zip(&*second) {
-            *first = std::array::from_fn(|lane| (u * first[lane] + v * second[lane]) * shorter);
-        }
-        self.add_change(w, -lower);
-    }
-
-    /// Adds `2 |d| u u^T`, `u` the first column.
-    #[inline(always)]
-    fn add_change(&mut self, w: usize, size: f64) {
-        let column = &self.columns[0][..w];
-        for (i, row) in self.change[..TOGETHER * w * w].chunks_exact_mut(w).enumerate() {
-            let factor = 2.0 * size * column[i / TOGETHER][i % TOGETHER];
-            if factor != 0.0 {
-                add(row, factor, column);
-            }
-        }
+        true
     }
 }
 
@@ -268,6 +206,7 @@ impl Bend {
 mod tests {
     use super::*;
     use nalgebra::DMatrix;
+    use ntg_math::{Scalar, Task, dispatch};
 
     /// A reproducible number in -1 .. 1.
     fn noise(seed: &mut u64) -> f64 {
@@ -279,12 +218,11 @@ mod tests {
     fn bend(k: &DMatrix<f64>) -> (bool, DMatrix<f64>) {
         let n = k.nrows();
         let mut bend = Bend::default();
-        bend.fit(n, 1);
+        bend.fit(n);
         let elements: Vec<[f64; 1]> = (0..n * n).map(|at| [k[(at / n, at % n)]]).collect();
-        bend.keep(&elements, n);
-        bend.take(0, 1, n);
-        let bent = bend.compute(n);
-        (bent, DMatrix::from_fn(n, n, |i, j| bend.change()[Bend::at(n, (i.max(j), i.min(j))) as usize]))
+        bend.keep(Scalar, &elements, (n, 0));
+        let bent = bend.compute(Scalar, n, &[false]);
+        (bent, DMatrix::from_fn(n, n, |i, j| bend.change(Scalar, n, (i.max(j), i.min(j))).to_array()[0]))
     }
 
     fn random(n: usize, rank: usize, seed: &mut u64, sign: impl Fn(usize) -> f64) -> DMatrix<f64> {
@@ -333,6 +271,47 @@ mod tests {
         assert!(bent);
         for (found, wanted) in change.iter().zip([0.5, -0.5, -0.5, 0.5]) {
             assert!((found - wanted).abs() < 1e-15);
+        }
+    }
+
+    /// Bends the elements from the fifth on, as many as there are lanes.
+    struct Side<'a> {
+        n: usize,
+        elements: &'a [[f64; 8]],
+        convex: &'a [bool; 8],
+        out: &'a mut Vec<[f64; MOST_LANES]>,
+    }
+
+    impl Task for Side<'_> {
+        fn run<S: Simd>(self, simd: S) {
+            let Self { n, elements, convex, out } = self;
+            let mut bend = Bend::default();
+            bend.fit(n);
+            bend.keep(simd, elements, (n, 4));
+            assert!(bend.compute(simd, n, &convex[4..][..S::LANES]));
+            out.extend((0..n * n).map(|at| bend.change(simd, n, (at / n, at % n)).to_array()));
+            // Lanes that the processor does not have.
+            out.push(std::array::from_fn(|lane| f64::from(u8::from(lane < S::LANES))));
+        }
+    }
+
+    #[test]
+    fn lanes_do_not_see_each_other_and_convex_ones_stay() {
+        let (n, mut seed) = (6, 11);
+        let all: [DMatrix<f64>; 8] =
+            std::array::from_fn(|lane| random(n, 5, &mut seed, |r| if r % (lane % 4 + 2) == 0 { -2.0 } else { 1.0 }));
+        let elements: Vec<[f64; 8]> =
+            (0..n * n).map(|at| std::array::from_fn(|lane| all[lane][(at / n, at % n)])).collect();
+        let convex = std::array::from_fn(|lane| lane == 6);
+        let mut found = vec![];
+        dispatch(Side { n, elements: &elements, convex: &convex, out: &mut found });
+        let lanes = found.pop().unwrap();
+        for lane in (0..MOST_LANES).filter(|&lane| lanes[lane] == 1.0) {
+            let (_, wanted) = bend(&all[4 + lane]);
+            for (i, j) in (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+                let wanted = if convex[4 + lane] { 0.0 } else { wanted[(i, j)] };
+                assert_eq!(found[i * n + j][lane], wanted, "lane {lane} at {i}, {j}");
+            }
         }
     }
 }

@@ -22,7 +22,6 @@ use super::order::Order;
 use super::pack::WIDE;
 use super::shape::Shape;
 use crate::nlp::{Block, Scales, slot_sizes};
-use bend::Bend;
 use lay::Lay;
 use plan::{Plan, Program};
 use work::Room;
@@ -35,7 +34,6 @@ pub(super) struct Elements {
     odd: Part<1>,
     /// A typical size of each slot of each block.
     sizes: Vec<Vec<f64>>,
-    bend: Bend,
 }
 
 /// Elements that are worked on in packs of the same width.
@@ -77,14 +75,12 @@ impl Elements {
     pub(super) fn new(blocks: &[Block], carriers: &[Carriers], order: &Order, sizes: &[f64]) -> Self {
         let program = Program { order, sizes };
         let (mut wide, mut odd) = (Part::default(), Part::default());
-        let mut bend = Bend::default();
         for (number, (block, carriers)) in blocks.iter().zip(carriers).enumerate() {
             let (many, few) = lay::lay(block, carriers);
             wide.add((number, block), carriers, many, &program);
             odd.add((number, block), carriers, few, &program);
-            bend.fit(block.slots, WIDE);
         }
-        Self { wide, odd, sizes: slot_sizes(blocks, sizes), bend }
+        Self { wide, odd, sizes: slot_sizes(blocks, sizes) }
     }
 
     /// Takes in the numbers of blocks of the same patterns.

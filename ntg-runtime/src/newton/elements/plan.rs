@@ -6,7 +6,6 @@ use super::super::order::Order;
 use super::super::pack::{Pack, Term};
 use super::super::shape::Shape;
 use super::Rows;
-use super::bend::Bend;
 use super::lay::Lay;
 use super::map::Map;
 use super::products::{Entries, Products, closure};
@@ -36,8 +35,6 @@ pub(super) struct Plan<const L: usize> {
     pub(super) exact: Products,
     /// Products for what makes elements convex.
     pub(super) bent: Products,
-    /// Where each of its pairs stands in a [`Bend`].
-    pub(super) change_at: Vec<u32>,
     /// Entries of the products.
     pub(super) entries: usize,
     /// Where each of them goes, group by group.
@@ -116,7 +113,6 @@ impl<const L: usize> Plan<L> {
             elements: block.elements,
             slots: block.slots,
             exact: Products::new(pairs, carriers, &map.coefficient_of, &entries),
-            change_at: all.iter().map(|&pair| Bend::at(block.slots, pair)).collect(),
             bent: Products::new(all, carriers, &map.coefficient_of, &entries),
             entries: entries.len,
             weight: vec![[0.0; L]; lay.packs() * block.rows],

@@ -130,13 +130,13 @@ struct MakeConvex<'a> {
 
 impl Task for MakeConvex<'_> {
     #[inline(always)]
-    fn run<S: Simd>(self, _: S) {
-        let Elements { wide, odd, sizes, bend } = self.elements;
+    fn run<S: Simd>(self, simd: S) {
+        let Elements { wide, odd, sizes } = self.elements;
         for plan in &wide.plans {
-            plan.make_convex(self.sigma, &sizes[plan.block], (&mut wide.room, bend), self.matrix);
+            plan.make_convex(simd, (self.sigma, &sizes[plan.block]), &mut wide.room, self.matrix);
         }
         for plan in &odd.plans {
-            plan.make_convex(self.sigma, &sizes[plan.block], (&mut odd.room, bend), self.matrix);
+            plan.make_convex(simd, (self.sigma, &sizes[plan.block]), &mut odd.room, self.matrix);
         }
     }
 }

@@ -2,6 +2,7 @@
 //! the condensed matrix (docs/maths.md, section 11.2).
 
 use super::super::pack::{Pack, add_product, combine, product, row_product};
+use super::bend::Bend;
 use super::plan::{BorderRow, Plan};
 use super::{Curvature, Weights};
 
@@ -22,6 +23,8 @@ pub(super) struct Room<const L: usize> {
     pub(super) element: Vec<Pack<L>>,
     /// What turns second derivatives between scaled slots back, pair by pair of those that make elements convex.
     pub(super) back: Vec<f64>,
+    /// What makes elements convex.
+    pub(super) bend: Bend,
 }
 
 impl<const L: usize> Room<L> {
@@ -34,6 +37,7 @@ impl<const L: usize> Room<L> {
         grow(&mut self.half, plan.slots * plan.carriers.locals);
         grow(&mut self.entry, plan.entries);
         grow(&mut self.element, plan.slots * plan.slots);
+        self.bend.fit(plan.slots);
         self.back.resize(self.back.len().max(plan.bent.pairs.len()), 0.0);
     }
 }
