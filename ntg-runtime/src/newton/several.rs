@@ -24,11 +24,11 @@ fn fold<const N: usize>(vectors: [&[f64]; N], step: impl Fn(f64, [f64; N]) -> f6
     let parts = vectors.map(|vector| vector.as_chunks::<TOGETHER>());
     let count = parts.iter().map(|(chunks, _)| chunks.len()).min().unwrap_or(0);
     let chunks = parts.map(|(chunks, _)| &chunks[..count]);
-    for at in 0..count {
+    (0..count).for_each(|at| {
         for (lane, so_far) in lanes.iter_mut().enumerate() {
             *so_far = step(*so_far, std::array::from_fn(|vector| chunks[vector][at][lane]));
         }
-    }
+    });
     let rest = parts.iter().map(|(_, rest)| rest.len()).min().unwrap_or(0);
     for (lane, so_far) in lanes.iter_mut().enumerate().take(rest) {
         *so_far = step(*so_far, std::array::from_fn(|vector| parts[vector].1[lane]));
