@@ -81,8 +81,7 @@ impl Plan {
         let frame = nlp.frame();
         for part in &mut self.parts {
             let call = &nlp.model.structure.groups[part.group].call;
-            part.batch.take_data(&frame, call)?;
-            part.work = part.batch.work();
+            part.batch.take_data_into(&frame, call, &mut part.work)?;
         }
         self.set_bounds(nlp)
     }

@@ -12,12 +12,12 @@ mod traces;
 
 pub use traces::Trace;
 
-use crate::nlp::Nlp;
+use crate::nlp::{Evaluation, Nlp};
 use crate::refine::Refined;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};
 use crate::sqp::Outcome;
 use crate::status::{Residuals, Status};
-use crate::transcribe::{SetupError, Singular, Transcription};
+use crate::transcribe::{SetupError, Singular, Transcription, Workspace};
 use fine::{Plan, Wanted};
 use ntg_structure::{Block, Place, Unit};
 use std::sync::Arc;
@@ -195,15 +195,15 @@ impl Report {
     pub(crate) fn new(
         nlp: &Transcription,
         outcome: Outcome,
-        fine: &mut Plan,
+        (fine, (work, at)): (&mut Plan, &mut (Workspace, Evaluation)),
         history: Vec<StepReport>,
     ) -> Result<Self, SetupError> {
         let structure = &nlp.model.structure;
-        let (mut work, mut at) = nlp.workspace();
-        // Where a value is not finite, the status says so; sums then show what there is.
-        _ = nlp.values(&outcome.x, &mut work, &mut at);
-        let (constraints, fine_terms) = constraints::constraints(nlp, (&outcome, &at), fine)?;
-        let terms = cost::terms(nlp, &at, &fine_terms);
+        // Where a value is not finite, the status says so; sums then show what there is, of this point alone.
+        at.rows.fill(0.0);
+        _ = nlp.values(&outcome.x, work, at);
+        let (constraints, fine_terms) = constraints::constraints(nlp, (&outcome, at), fine)?;
+        let terms = cost::terms(nlp, at, &fine_terms);
         let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };

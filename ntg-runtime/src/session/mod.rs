@@ -16,6 +16,7 @@ use crate::guess::continuation::{Setting, set, steps};
 use crate::guess::{Guess, start};
 use crate::method::{self, Start};
 use crate::newton::Memory;
+use crate::nlp::{Evaluation, Nlp};
 use crate::outcome::Outcome;
 use crate::problem::Problem;
 use crate::refine::refine;
@@ -50,10 +51,13 @@ struct First {
     singular: Vec<Singular>,
 }
 
-/// The plan of the finer grid.
+/// What a report is made with.
 struct Fine {
+    /// The plan of the finer grid.
     plan: Plan,
     samples: usize,
+    /// Room for values at the points.
+    room: (Workspace, Evaluation),
     /// Whether parameters have changed since.
     stale: bool,
 }
@@ -169,8 +173,9 @@ impl Session {
         nlp: &Transcription,
         guess: Option<&Guess>,
     ) -> Result<(Vec<f64>, Vec<Singular>), SetupError> {
-        let known = self.first.as_ref().filter(|first| guess.is_none() && Arc::ptr_eq(&first.model, &nlp.model));
-        if let Some(first) = known {
+        let is_of =
+            |first: &&First| Arc::ptr_eq(&first.model, &nlp.model) || first.model.structure == nlp.model.structure;
+        if let Some(first) = self.first.as_ref().filter(|_| guess.is_none()).filter(is_of) {
             return Ok((first.x.clone(), first.singular.clone()));
         }
         let x = start(nlp, guess)?;
@@ -233,12 +238,18 @@ impl Session {
     ) -> Result<Report, SetupError> {
         let mut fine = match self.fine.take().filter(|fine| fine.samples == settings.samples) {
             Some(fine) => fine,
-            None => Fine { plan: Plan::new(&nlp, settings.samples)?, samples: settings.samples, stale: false },
+            None => Fine {
+                plan: Plan::new(&nlp, settings.samples)?,
+                samples: settings.samples,
+                room: nlp.workspace(),
+                stale: false,
+            },
         };
         if std::mem::take(&mut fine.stale) {
             fine.plan.take_data(&nlp)?;
+            fine.room = nlp.workspace();
         }
-        let report = Report::new(&nlp, outcome, &mut fine.plan, history)?;
+        let report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.room), history)?;
         self.fine = Some(fine);
         self.program = Some(nlp.keep());
         Ok(report)

@@ -110,7 +110,23 @@ impl Batch {
 
     /// Takes in other values of parameters. Layout and clock are those with which the batch was built.
     pub(crate) fn take_data(&mut self, frame: &Frame, call: &Call) -> Result<(), SetupError> {
-        self.node = Node::build(frame, call, &self.sites, &self.sources)?;
+        if !self.node.take_data(frame, call, &self.sites, None)? {
+            self.node = Node::build(frame, call, &self.sites, &self.sources)?;
+        }
+        Ok(())
+    }
+
+    /// As [`Batch::take_data`], also in buffers of this batch.
+    pub(crate) fn take_data_into(
+        &mut self,
+        frame: &Frame,
+        call: &Call,
+        work: &mut BatchWork,
+    ) -> Result<(), SetupError> {
+        if !self.node.take_data(frame, call, &self.sites, Some(&mut work.node))? {
+            self.node = Node::build(frame, call, &self.sites, &self.sources)?;
+            *work = self.work();
+        }
         Ok(())
     }
 

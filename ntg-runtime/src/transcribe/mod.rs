@@ -55,7 +55,8 @@ use times::Clock;
 #[derive(Clone, Debug)]
 pub(crate) struct Model {
     pub(crate) structure: Structure,
-    pub(crate) tables: Vec<Table>,
+    /// Shared with the models before, as long as no table changes.
+    pub(crate) tables: Arc<[Table]>,
     pub(crate) layout: Layout,
     pub(crate) clock: Clock,
 }
@@ -108,7 +109,8 @@ impl<'p> Transcription<'p> {
 
     /// Transcribes a problem with parameters as in `structure` (one step of a continuation).
     pub(crate) fn with(problem: &'p dyn Problem, structure: Structure) -> Result<Self, SetupError> {
-        let model = Model::new(problem, structure)?;
+        let tables = interpolants(&structure.tables)?.into();
+        let model = Model::new(problem, structure, tables)?;
         let frame = model.frame(problem);
         let bounds = rows::variable_bounds(&frame)?;
         let elements = elements::elements(&frame)?;
@@ -130,7 +132,11 @@ impl<'p> Transcription<'p> {
             *self = Self::with(self.problem, structure)?;
             return Ok(Change::All);
         }
-        let model = Model::new(self.problem, structure)?;
+        let tables = match own.tables == structure.tables {
+            true => Arc::clone(&self.model.tables),
+            false => interpolants(&structure.tables)?.into(),
+        };
+        let model = Model::new(self.problem, structure, tables)?;
         if !model.clock.is_same(&self.model.clock) {
             *self = Self::with(self.problem, model.structure)?;
             return Ok(Change::All);
@@ -233,7 +239,7 @@ fn limits(elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
 }
 
 impl Model {
-    fn new(problem: &dyn Problem, structure: Structure) -> Result<Self, SetupError> {
+    fn new(problem: &dyn Problem, structure: Structure, tables: Arc<[Table]>) -> Result<Self, SetupError> {
         for parameter in &structure.parameters {
             for (i, value) in parameter.value.iter().enumerate() {
                 if !value.is_finite() {
@@ -243,7 +249,6 @@ impl Model {
                 }
             }
         }
-        let tables = interpolants(&structure.tables)?;
         let mut layout = Layout::new(&structure)?;
         times::fix(problem, &structure, &tables, &mut layout)?;
         let clock = Clock::fixed(&layout);

@@ -120,19 +120,8 @@ impl Node {
                 slot_of.push(narrow(position.ok_or_else(|| SetupError::malformed("elements of different shapes"))?));
             }
         }
-        let mut inputs = vec![0.0; (slots + reductions) * lanes];
-        for data in &call.data {
-            match (data, sites.first()) {
-                (Data::Parameter { index: None, .. }, Some(any)) => {
-                    inputs.resize(inputs.len() + lanes, frame.data(data, any)?);
-                }
-                _ => {
-                    for site in sites {
-                        inputs.push(frame.data(data, site)?);
-                    }
-                }
-            }
-        }
+        let mut inputs = vec![0.0; (slots + reductions + call.data.len()) * lanes];
+        fill_data(frame, call, sites, &mut inputs[(slots + reductions) * lanes..])?;
         let edges = call.reductions.iter();
         let edges = edges.map(|reduction| Edge::build(frame, reduction, sites, elements, sources));
         Ok(Self {
@@ -147,6 +136,26 @@ impl Node {
             inputs,
             edges: edges.collect::<Result<_, _>>()?,
         })
+    }
+
+    /// Takes in other data, which differ in nothing but their values, also in buffers; false where that takes
+    /// building anew, as below reductions.
+    pub(crate) fn take_data(
+        &mut self,
+        frame: &Frame,
+        call: &Call,
+        sites: &[Site],
+        work: Option<&mut NodeWork>,
+    ) -> Result<bool, SetupError> {
+        if !self.edges.is_empty() {
+            return Ok(false);
+        }
+        let first = self.slots * self.lanes();
+        fill_data(frame, call, sites, &mut self.inputs[first..])?;
+        if let Some(work) = work {
+            work.inputs[first..].copy_from_slice(&self.inputs[first..]);
+        }
+        Ok(true)
     }
 
     /// How many lanes the kernel has.
@@ -200,6 +209,21 @@ impl Node {
             reduce::values(edge, elements, &below.child.values, results);
         }
     }
+}
+
+/// The data of a call in every lane.
+fn fill_data(frame: &Frame, call: &Call, sites: &[Site], out: &mut [f64]) -> Result<(), SetupError> {
+    for (data, out) in call.data.iter().zip(out.chunks_exact_mut(sites.len().max(1))) {
+        match (data, sites.first()) {
+            (Data::Parameter { index: None, .. }, Some(any)) => out.fill(frame.data(data, any)?),
+            _ => {
+                for (out, site) in out.iter_mut().zip(sites) {
+                    *out = frame.data(data, site)?;
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 impl Edge {
