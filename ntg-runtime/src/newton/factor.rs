@@ -16,6 +16,10 @@ use ntg_math::{Simd, Task, dispatch};
 
 /// A pivot smaller than this fraction of the column's largest entry counts as zero.
 const SINGULAR: f64 = 1e-14;
+/// A pivot of the band within this fraction of the entry that it is left of is nothing but rounding: where bounds are
+/// tight, they leave directions whose curvature is lost beside theirs. It counts as positive and of this size, a change
+/// of the matrix no larger than that by its own rounding.
+const NOISE: f64 = 1e-14;
 
 /// Numbers of as many unknowns as a block has.
 type Chunk = [f64; BLOCK];
@@ -128,7 +132,7 @@ impl Factor {
         let mut negative = 0;
         for component in &shape.components {
             for j in component.blocks.clone() {
-                negative += self.eliminate(shape, component, j)?;
+                negative += self.eliminate(shape, component, (j, matrix))?;
             }
             self.subtract_from_corner(shape, component);
         }
@@ -138,11 +142,13 @@ impl Factor {
     /// Eliminates the unknowns of column `j` of blocks from the band and the border's rows; how many pivots are
     /// negative, or none if one vanishes.
     #[inline(always)]
-    fn eliminate(&mut self, shape: &Shape, component: &Component, j: usize) -> Option<usize> {
+    fn eliminate(&mut self, shape: &Shape, component: &Component, (j, matrix): (usize, &[f64])) -> Option<usize> {
         let (band, rows) = self.value.split_at_mut(BLOCK * BLOCK * shape.column[shape.column.len() - 1]);
         let (head, tail) = squares(band).split_at_mut(shape.column[j + 1]);
         let (diagonal, below) = head[shape.column[j]..].split_first_mut()?;
-        let (pivots, inverse, mut largest) = factors_of(diagonal);
+        let before = &matrix[BLOCK * BLOCK * shape.column[j]..];
+        let noise = std::array::from_fn(|c| NOISE * before[c * BLOCK + c]);
+        let (pivots, inverse, mut largest) = factors_of(diagonal, &noise);
         let panel = &mut self.panel[..below.len()];
         for (block, panel) in below.iter_mut().zip(&mut *panel) {
             let mut columns = *block;
@@ -289,13 +295,15 @@ impl Factor {
     }
 }
 
-/// Replaces a block on the diagonal by `L`; its pivots, their reciprocals, and the largest entry below each.
+/// Replaces a block on the diagonal by `L`; its pivots, their reciprocals, and the largest entry below each. Pivots
+/// smaller than `noise` are raised to it.
 #[inline(always)]
-fn factors_of(diagonal: &mut Square) -> (Chunk, Chunk, Chunk) {
+fn factors_of(diagonal: &mut Square, noise: &Chunk) -> (Chunk, Chunk, Chunk) {
     let mut d = *diagonal;
     let (mut pivots, mut inverse, mut largest) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
     for c in 0..BLOCK {
-        (pivots[c], inverse[c]) = (d[c][c], 1.0 / d[c][c]);
+        let pivot = if d[c][c].abs() < noise[c] { noise[c] } else { d[c][c] };
+        (pivots[c], inverse[c]) = (pivot, 1.0 / pivot);
         for k in c + 1..BLOCK {
             largest[c] = larger(d[c][k], largest[c]);
             // Above the diagonal stands what nobody reads.
