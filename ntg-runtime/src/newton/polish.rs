@@ -14,7 +14,7 @@ const ITERATIONS: usize = 8;
 /// What they aim for, as a fraction of the tolerances and of the last barrier parameter.
 const FINE: f64 = 1e-3;
 /// This many times that is close to it.
-const CLOSE: f64 = 100.0;
+const CLOSE: f64 = 10.0;
 
 /// Room for a point that meets all tolerances.
 #[derive(Clone, Debug, Default)]
