@@ -427,6 +427,21 @@ mod tests {
     }
 
     #[test]
+    fn a_pivot_that_is_rounding_counts_as_positive_and_a_negative_one_as_negative() {
+        let shape = Shape::new(3, [0, 0], [&[0, 1, 2][..]].into_iter());
+        // [a a 0; a a+d 0; 0 0 1], whose second pivot is d.
+        let negative = |d: f64| {
+            let mut value = vec![0.0; shape.len];
+            shape.clear(&mut value);
+            for (i, j, entry) in [(0, 0, 1e16), (1, 0, 1e16), (1, 1, 1e16 + d), (2, 2, 1.0)] {
+                value[shape.position(i, j)] = entry;
+            }
+            Factor::new(&shape).factorise(&shape, &value, 0.0)
+        };
+        assert_eq!([-1e4, -2.0, 0.0, 2.0, 1e4].map(negative), [Some(1), Some(0), Some(0), Some(0), Some(0)]);
+    }
+
+    #[test]
     fn the_solution_solves_the_dense_system() {
         let (shape, value, dense) = example();
         let mut factor = Factor::new(&shape);
