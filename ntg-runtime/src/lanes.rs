@@ -18,6 +18,9 @@ pub trait Kernels: Sync {
     /// As [`Problem::structure`].
     fn structure(&self) -> Structure;
 
+    /// As [`Problem::update`]: writes the values of parameters and tables.
+    fn update(&self, structure: &mut Structure);
+
     /// As [`Problem::values`]; there are no weights.
     fn values<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], values: &mut [f64]);
 
@@ -31,6 +34,10 @@ pub trait Kernels: Sync {
 impl<T: Kernels> Problem for T {
     fn structure(&self) -> Structure {
         Kernels::structure(self)
+    }
+
+    fn update(&self, structure: &mut Structure) {
+        Kernels::update(self, structure);
     }
 
     fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
@@ -320,6 +327,8 @@ mod tests {
         fn structure(&self) -> Structure {
             Structure::default()
         }
+
+        fn update(&self, _: &mut Structure) {}
 
         fn values<S: Simd>(&self, simd: S, _: usize, point: Lanes<'_>, tables: &[Table], out: &mut [f64]) {
             values(simd, SumAndProduct, point, tables, out);

@@ -16,6 +16,14 @@ pub trait Problem: Sync {
     /// Called once a transcription; it may allocate.
     fn structure(&self) -> Structure;
 
+    /// Brings a structure that this problem has given up to date, after its parameters have been set.
+    ///
+    /// A problem of which nothing else can change has only their values to write: a solver that is kept asks for
+    /// them in every solve. By default, everything is made anew.
+    fn update(&self, structure: &mut Structure) {
+        *structure = self.structure();
+    }
+
     /// Writes the `rows` results of a kernel for every lane to `values`.
     fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]);
 

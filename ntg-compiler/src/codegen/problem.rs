@@ -48,13 +48,16 @@ pub(super) fn problem(program: &Program, kernels: &Kernels, place_of: &dyn Fn(&s
 fn contract(program: &Program, kernels: &Kernels, name: &proc_macro2::Ident) -> TokenStream {
     let fields = parameters::fields(&program.structure, &|_| Span::call_site());
     let hand_over: Vec<_> = fields.iter().map(|field| &field.hand_over).collect();
-    let structure = match hand_over.is_empty() {
-        true => quote! { structure::structure() },
-        false => quote! {
-            let mut structure = structure::structure();
-            #(#hand_over)*
-            structure
-        },
+    let (structure, update) = match hand_over.is_empty() {
+        true => (quote! { structure::structure() }, quote! { fn update(&self, _: &mut Structure) {} }),
+        false => (
+            quote! {
+                let mut structure = structure::structure();
+                self.update(&mut structure);
+                structure
+            },
+            quote! { fn update(&self, structure: &mut Structure) { #(#hand_over)* } },
+        ),
     };
     let Kernels { values, derivatives, probes, .. } = kernels;
     quote! {
@@ -70,6 +73,8 @@ fn contract(program: &Program, kernels: &Kernels, name: &proc_macro2::Ident) -> 
                 fn structure(&self) -> Structure {
                     #structure
                 }
+
+                #update
 
                 fn values<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], values: &mut [f64]) {
                     match kernel {

@@ -34,14 +34,13 @@ pub(crate) fn steps(structure: &Structure) -> Vec<Vec<Setting>> {
     (0..count).map(setting).collect()
 }
 
-/// The structure of one step.
-pub(crate) fn set(mut structure: Structure, settings: &[Setting]) -> Structure {
+/// Makes a structure that of one step.
+pub(crate) fn set(structure: &mut Structure, settings: &[Setting]) {
     for (parameter, value) in settings {
         if let Some(parameter) = structure.parameters.get_mut(*parameter) {
             parameter.value.fill(*value);
         }
     }
-    structure
 }
 
 #[cfg(test)]
@@ -60,7 +59,9 @@ mod tests {
     fn the_program_decides_the_last_step() {
         assert_eq!(steps(&structure(1.0)), [[(0, 20.0)], [(0, 5.0)], [(0, 1.0)]]);
         assert_eq!(steps(&structure(2.0))[2], [(0, 2.0)]);
-        assert_eq!(set(structure(1.0), &[(0, 20.0)]).parameters[0].value, [20.0]);
+        let mut first = structure(1.0);
+        set(&mut first, &[(0, 20.0)]);
+        assert_eq!(first.parameters[0].value, [20.0]);
     }
 
     #[test]

@@ -34,6 +34,8 @@ use std::time::Instant;
 /// What is kept of a problem between its solves.
 #[derive(Default)]
 pub(crate) struct Session {
+    /// The problem's own structure, brought up to date in every solve.
+    structure: Option<Structure>,
     program: Option<Kept>,
     /// Plans of the method for this program.
     memory: Memory<Workspace>,
@@ -81,7 +83,7 @@ impl Session {
     fn solve_on_own_mesh(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
         let began = Instant::now();
         let (problem, guess) = task;
-        let mut structure = problem.structure();
+        let mut structure = self.structure_of(problem);
         let steps = steps(&structure);
         let mut history: Vec<StepReport> = vec![];
         let mut last: Option<Outcome> = None;
@@ -89,8 +91,8 @@ impl Session {
         for (i, step) in steps.iter().enumerate() {
             let step_began = Instant::now();
             let is_last = i + 1 == steps.len();
-            let own = if is_last { std::mem::take(&mut structure) } else { structure.clone() };
-            let mut nlp = self.program(problem, set(own, step))?;
+            set(&mut structure, step);
+            let mut nlp = self.program(problem, &structure)?;
             // The layout is the same in every step: only parameters change.
             let (mut first, mut spent, mut from) = match &last {
                 Some(last) => (start(&nlp, Some(&Guess::raw(last.x.clone())))?, 0, Start::Cold),
@@ -124,6 +126,7 @@ impl Session {
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
                 let mut report = self.report(nlp, outcome, history, settings)?;
                 report.singular = at_guess;
+                self.structure = Some(structure);
                 report.seconds = began.elapsed().as_secs_f64();
                 return Ok(report);
             }
@@ -145,8 +148,9 @@ impl Session {
     ) -> Result<Option<Report>, Error> {
         settings.validate()?;
         let began = Instant::now();
-        let structure = problem.structure();
-        let mut nlp = self.program(problem, structure)?;
+        let structure = self.structure_of(problem);
+        let mut nlp = self.program(problem, &structure)?;
+        self.structure = Some(structure);
         let first = start(&nlp, Some(&Guess::from(last)))?;
         nlp.set_scales(&first, settings)?;
         let from = match last.inner.x.len() == first.len() {
@@ -194,7 +198,7 @@ impl Session {
         settings: &Settings,
     ) -> Result<(Option<Solution>, usize), SetupError> {
         let (earlier, spent) = start_from_coarser(&mut self.coarser, (problem, guess), (&structure, levels), settings)?;
-        let mut nlp = self.program(problem, structure)?;
+        let mut nlp = self.program(problem, &structure)?;
         let (first, from) = match &earlier {
             Some(solution) => (start(&nlp, Some(&Guess::from(solution)))?, Start::Near),
             None => (start(&nlp, guess)?, Start::Cold),
@@ -210,11 +214,18 @@ impl Session {
         Ok((found, iterations))
     }
 
+    /// The problem's own structure with its present parameters. It is to be kept again.
+    fn structure_of(&mut self, problem: &dyn Problem) -> Structure {
+        let Some(mut structure) = self.structure.take() else { return problem.structure() };
+        problem.update(&mut structure);
+        structure
+    }
+
     /// The program of a structure. It is to be kept again.
-    fn program<'p>(&mut self, problem: &'p dyn Problem, structure: Structure) -> Result<Transcription<'p>, SetupError> {
+    fn program<'p>(&mut self, problem: &'p dyn Problem, structure: &Structure) -> Result<Transcription<'p>, SetupError> {
         let Some(kept) = self.program.take() else {
             self.memory.is_same_program = false;
-            return Transcription::with(problem, structure);
+            return Transcription::with(problem, structure.clone());
         };
         let mut nlp = kept.of(problem);
         let change = nlp.take(structure)?;

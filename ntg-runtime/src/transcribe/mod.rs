@@ -123,20 +123,20 @@ impl<'p> Transcription<'p> {
     ///
     /// # Errors
     /// As [`Transcription::new`]. The transcription is then that of neither.
-    pub(crate) fn take(&mut self, structure: Structure) -> Result<Change, SetupError> {
+    pub(crate) fn take(&mut self, structure: &Structure) -> Result<Change, SetupError> {
         let own = &self.model.structure;
-        if *own == structure {
+        if own == structure {
             return Ok(Change::Nothing);
         }
-        if !differs_in_data_only(own, &structure) {
-            *self = Self::with(self.problem, structure)?;
+        if !differs_in_data_only(own, structure) {
+            *self = Self::with(self.problem, structure.clone())?;
             return Ok(Change::All);
         }
         let tables = match own.tables == structure.tables {
             true => Arc::clone(&self.model.tables),
             false => interpolants(&structure.tables)?.into(),
         };
-        let model = Model::new(self.problem, structure, tables)?;
+        let model = Model::new(self.problem, structure.clone(), tables)?;
         if !model.clock.is_same(&self.model.clock) {
             *self = Self::with(self.problem, model.structure)?;
             return Ok(Change::All);
