@@ -11,7 +11,7 @@
 
 use super::core::Core;
 use super::elements::{Curvature, Weights};
-use super::several::{largest, sum};
+use super::several::sum;
 use super::sides::Sides;
 use super::system::System;
 use crate::nlp::Nlp;
@@ -45,18 +45,21 @@ pub(super) struct Direction {
     pub(super) r: Vec<f64>,
     /// Residuals of equalities that the direction removes.
     pub(super) c: Vec<f64>,
+    /// Reciprocal distances and multipliers of sides.
+    pub(super) inverse_w: Vec<f64>,
+    pub(super) inverse_z: Vec<f64>,
     /// How much a side's multiplier grows for one unit that it gives way.
-    stiffness: Vec<f64>,
+    pub(super) stiffness: Vec<f64>,
     /// How far each side's distance is from the one that its multiplier asks for.
-    apart: Vec<f64>,
-    /// How distances shrink along the direction.
+    pub(super) apart: Vec<f64>,
+    /// How distances and multipliers of sides shrink along the direction.
     pub(super) shrink: Shrink,
     /// How much an equality gives way; 0 unless it is elastic.
     softness: Vec<f64>,
     /// Weight of each quantity in the matrix.
-    sigma: Vec<f64>,
+    pub(super) sigma: Vec<f64>,
     /// Weights on the right.
-    right: Vec<f64>,
+    pub(super) right: Vec<f64>,
     /// A correction of `x`, and of `along`.
     more_x: Vec<f64>,
     more_along: Vec<f64>,
@@ -64,20 +67,15 @@ pub(super) struct Direction {
     border: Vec<f64>,
 }
 
-/// How positive numbers shrink along a direction.
+/// How distances and multipliers, which are positive, shrink along a direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shrink {
-    /// The sum of all relative changes.
+    /// The sum of all relative changes of distances.
     pub(super) sum: f64,
-    /// The largest relative decrease; 0 if there is none.
+    /// The largest relative decrease of a distance; 0 if there is none.
     pub(super) most: f64,
-}
-
-impl Shrink {
-    pub(super) fn of(numbers: &[f64], change: &[f64]) -> Self {
-        let vectors = [numbers, change];
-        Self { sum: sum(vectors, |[v, d]| d / v), most: largest(vectors, |[v, d]| -d / v) }
-    }
+    /// The largest relative decrease of a multiplier; 0 if there is none. Not known where bounds are elastic.
+    pub(super) dual: f64,
 }
 
 impl Direction {
@@ -91,6 +89,8 @@ impl Direction {
             y: vec![0.0; equalities],
             r: vec![0.0; bounds],
             c: vec![0.0; equalities],
+            inverse_w: vec![0.0; bounds],
+            inverse_z: vec![0.0; bounds],
             stiffness: vec![0.0; bounds],
             apart: vec![0.0; bounds],
             shrink: Shrink::default(),
@@ -115,6 +115,8 @@ impl Direction {
             (&mut self.y, &from.y),
             (&mut self.r, &from.r),
             (&mut self.c, &from.c),
+            (&mut self.inverse_w, &from.inverse_w),
+            (&mut self.inverse_z, &from.inverse_z),
             (&mut self.stiffness, &from.stiffness),
             (&mut self.softness, &from.softness),
             (&mut self.sigma, &from.sigma),
@@ -127,26 +129,17 @@ impl Direction {
 impl<N: Nlp> Core<'_, N> {
     /// The direction from the present point; false where the matrix cannot be made that of a minimum.
     pub(super) fn direction(&mut self) -> bool {
-        match &self.elastic {
-            Some(elastic) => elastic.stiffness(&self.sides, &mut self.step.stiffness, &mut self.step.softness),
-            None => {
-                let both = self.sides.w.iter().zip(&self.sides.z);
-                self.step.stiffness.iter_mut().zip(both).for_each(|(stiffness, (w, z))| *stiffness = z / w);
-            }
+        self.step.prepare(&self.sides);
+        if let Some(elastic) = &self.elastic {
+            elastic.stiffness(&self.sides, &mut self.step.stiffness, &mut self.step.softness);
         }
+        self.step.weigh(&self.sides);
         let sigma = &mut self.step.sigma;
-        sigma.fill(0.0);
-        for (side, stiffness) in self.sides.side.iter().zip(&self.step.stiffness) {
-            sigma[side.of] += stiffness;
-        }
         for ((of, _), softness) in self.sides.equality.iter().zip(&self.step.softness) {
             sigma[*of] = 1.0 / (softness + PROXIMAL);
         }
         if !self.factorise() {
             return false;
-        }
-        for ((r, d), w) in self.step.r.iter_mut().zip(&self.sides.d).zip(&self.sides.w) {
-            *r = d - w;
         }
         for (c, (of, value)) in self.step.c.iter_mut().zip(&self.sides.equality) {
             *c = self.quantities[*of] - value;
@@ -192,14 +185,8 @@ impl<N: Nlp> Core<'_, N> {
     /// The direction that removes the residuals `step.r` and `step.c`, with the present factors;
     /// false if it is not finite.
     pub(super) fn solve_direction(&mut self) -> bool {
-        let (sides, step, mu) = (&self.sides, &mut self.step, self.mu);
-        for ((apart, w), z) in step.apart.iter_mut().zip(&sides.w).zip(&sides.z) {
-            *apart = mu / z - w;
-        }
-        step.right.fill(0.0);
-        for (((side, apart), r), stiffness) in sides.side.iter().zip(&step.apart).zip(&step.r).zip(&step.stiffness) {
-            step.right[side.of] += side.sign * (apart - r) * stiffness;
-        }
+        self.step.aim(&self.sides, self.mu);
+        let (sides, step) = (&self.sides, &mut self.step);
         for (k, (of, _)) in sides.equality.iter().enumerate() {
             step.right[*of] = -step.c[k] / (step.softness[k] + PROXIMAL);
         }
@@ -212,14 +199,8 @@ impl<N: Nlp> Core<'_, N> {
         self.step.y.fill(0.0);
         self.refine_equalities();
         self.system.along(&self.step.x, &mut self.step.along);
-        let (sides, step) = (&self.sides, &mut self.step);
-        for ((w, side), r) in step.w.iter_mut().zip(&sides.side).zip(&step.r) {
-            *w = side.sign * step.along[side.of] + r;
-        }
-        for (((z, apart), w), stiffness) in step.z.iter_mut().zip(&step.apart).zip(&step.w).zip(&step.stiffness) {
-            *z = (apart - w) * stiffness;
-        }
-        step.shrink = Shrink::of(&sides.w, &step.w);
+        self.step.follow(&self.sides);
+        let step = &self.step;
         let all = |of: &[f64]| sum([of], |[entry]| entry);
         (all(&step.x) + all(&step.z) + all(&step.y)).is_finite()
     }

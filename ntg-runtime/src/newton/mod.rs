@@ -30,6 +30,7 @@ mod search;
 mod several;
 mod shape;
 mod sides;
+mod sweep;
 mod system;
 mod warm;
 

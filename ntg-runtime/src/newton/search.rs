@@ -5,7 +5,6 @@
 //! constants these are.
 
 use super::core::{Core, Trial};
-use super::direction::Shrink;
 use super::filter::{Filter, LARGEST_THETA};
 use super::sides::Sides;
 use crate::nlp::Nlp;
@@ -52,7 +51,7 @@ impl<N: Nlp> Core<'_, N> {
     /// Tries points along the direction; on acceptance moves there.
     pub(super) fn search(&mut self) -> Searched {
         let here = self.here();
-        let longest = self.to_boundary(self.step.shrink);
+        let longest = self.to_boundary(self.step.shrink.most);
         if self.is_tiny() {
             return if self.try_step(longest) { self.move_on(longest, Searched::Tiny) } else { Searched::Stuck };
         }
@@ -87,14 +86,14 @@ impl<N: Nlp> Core<'_, N> {
         self.step.along[self.system.objective()] - self.mu * self.step.shrink.sum
     }
 
-    /// The longest step that keeps positive numbers positive.
-    fn to_boundary(&self, shrink: Shrink) -> f64 {
-        (BOUNDARY.max(1.0 - self.mu) / shrink.most).min(1.0)
+    /// The longest step that keeps positive numbers positive, of which none shrinks by more than this.
+    fn to_boundary(&self, most: f64) -> f64 {
+        (BOUNDARY.max(1.0 - self.mu) / most).min(1.0)
     }
 
     /// The longest step that keeps the multipliers of sides positive.
     fn to_dual_boundary(&self) -> f64 {
-        self.to_boundary(Shrink::of(&self.sides.z, &self.step.z))
+        self.to_boundary(self.step.shrink.dual)
     }
 
     pub(super) fn is_tiny(&self) -> bool {
@@ -197,7 +196,7 @@ impl<N: Nlp> Core<'_, N> {
             if !self.solve_direction() {
                 break;
             }
-            let longest = self.to_boundary(self.step.shrink);
+            let longest = self.to_boundary(self.step.shrink.most);
             if !self.try_step(longest) {
                 break;
             }

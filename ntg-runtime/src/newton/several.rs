@@ -1,6 +1,8 @@
 //! Sums and maxima over long vectors, several entries side by side: so the compiler makes vector instructions of
 //! them, which it may not do where the order of a sum is to be kept.
 
+use ntg_math::{Simd, Task, dispatch};
+
 /// Entries side by side.
 const TOGETHER: usize = 8;
 
@@ -21,19 +23,36 @@ pub(super) fn largest<const N: usize>(vectors: [&[f64]; N], size: impl Fn([f64; 
 #[inline(always)]
 fn fold<const N: usize>(vectors: [&[f64]; N], step: impl Fn(f64, [f64; N]) -> f64) -> [f64; TOGETHER] {
     let mut lanes = [0.0; TOGETHER];
-    let parts = vectors.map(|vector| vector.as_chunks::<TOGETHER>());
-    let count = parts.iter().map(|(chunks, _)| chunks.len()).min().unwrap_or(0);
-    let chunks = parts.map(|(chunks, _)| &chunks[..count]);
-    (0..count).for_each(|at| {
-        for (lane, so_far) in lanes.iter_mut().enumerate() {
-            *so_far = step(*so_far, std::array::from_fn(|vector| chunks[vector][at][lane]));
-        }
-    });
-    let rest = parts.iter().map(|(_, rest)| rest.len()).min().unwrap_or(0);
-    for (lane, so_far) in lanes.iter_mut().enumerate().take(rest) {
-        *so_far = step(*so_far, std::array::from_fn(|vector| parts[vector].1[lane]));
-    }
+    dispatch(Fold { vectors, step, lanes: &mut lanes });
     lanes
+}
+
+/// A fold, to be compiled for the widest instructions of the processor.
+struct Fold<'a, const N: usize, F> {
+    vectors: [&'a [f64]; N],
+    step: F,
+    lanes: &'a mut [f64; TOGETHER],
+}
+
+impl<const N: usize, F: Fn(f64, [f64; N]) -> f64> Task for Fold<'_, N, F> {
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let Self { vectors, step, lanes } = self;
+        let mut sums = *lanes;
+        let parts = vectors.map(|vector| vector.as_chunks::<TOGETHER>());
+        let count = parts.iter().map(|(chunks, _)| chunks.len()).min().unwrap_or(0);
+        let chunks = parts.map(|(chunks, _)| &chunks[..count]);
+        for at in 0..count {
+            for lane in 0..TOGETHER {
+                sums[lane] = step(sums[lane], std::array::from_fn(|vector| chunks[vector][at][lane]));
+            }
+        }
+        let rest = parts.iter().map(|(_, rest)| rest.len()).min().unwrap_or(0);
+        for (lane, sum) in sums.iter_mut().enumerate().take(rest) {
+            *sum = step(*sum, std::array::from_fn(|vector| parts[vector].1[lane]));
+        }
+        *lanes = sums;
+    }
 }
 
 #[cfg(test)]

@@ -97,11 +97,14 @@ impl Sides {
 
     /// Brings multipliers near to the central path, `w z = mu`, as far as convergence asks for it.
     pub(super) fn tame(&mut self, mu: f64) {
+        let (most, least) = (WANDER * mu, mu / WANDER);
+        let pairs: [&[f64]; 2] = [&self.w, &self.z];
+        if largest(pairs, |[w, z]| w * z) <= most && largest(pairs, |[w, z]| least - w * z) == 0.0 {
+            return;
+        }
         for (w, z) in self.w.iter().zip(&mut self.z) {
-            let central = mu / w;
-            let (most, least) = (WANDER * central, central / WANDER);
-            let below = if *z < most { *z } else { most };
-            *z = if below > least { below } else { least };
+            let below = if *z * w < most { *z } else { most / w };
+            *z = if below * w > least { below } else { least / w };
         }
     }
 

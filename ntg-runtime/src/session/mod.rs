@@ -222,7 +222,11 @@ impl Session {
     }
 
     /// The program of a structure. It is to be kept again.
-    fn program<'p>(&mut self, problem: &'p dyn Problem, structure: &Structure) -> Result<Transcription<'p>, SetupError> {
+    fn program<'p>(
+        &mut self,
+        problem: &'p dyn Problem,
+        structure: &Structure,
+    ) -> Result<Transcription<'p>, SetupError> {
         let Some(kept) = self.program.take() else {
             self.memory.is_same_program = false;
             return Transcription::with(problem, structure.clone());
