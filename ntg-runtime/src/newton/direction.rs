@@ -20,8 +20,9 @@ use crate::nlp::Nlp;
 const PROXIMAL: f64 = 1e-6;
 /// Refinements of the equalities at most.
 const REFINEMENTS: usize = 6;
-/// The share of the equalities' residuals that may remain.
+/// The share of the equalities' residuals that may remain, and what may remain anyway (scaled).
 const REFINED: f64 = 1e-10;
+const ROUNDING: f64 = 1e-13;
 /// The weight of a quantity without bounds: none, written so that it may divide.
 const WEIGHTLESS: f64 = 1e-30;
 /// Shifts of the diagonal, where the convex matrix is singular: the first, their factor, the largest.
@@ -235,7 +236,7 @@ impl<N: Nlp> Core<'_, N> {
                 self.step.right[*of] = rest / (softness + PROXIMAL);
                 left = left.max(rest.abs());
             }
-            if round == REFINEMENTS || left <= REFINED * size || left > 0.5 * before || left < f64::EPSILON {
+            if round == REFINEMENTS || left <= REFINED * size || left > 0.5 * before || left <= ROUNDING {
                 return;
             }
             before = left;

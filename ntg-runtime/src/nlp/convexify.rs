@@ -122,7 +122,7 @@ fn sizes_of(block: &Block, variables: &[f64]) -> Vec<f64> {
 /// Whether Cholesky factorisations succeed, where a zero pivot needs a zero column: of matrices of order `n`, side
 /// by side, of which the lower triangles are read. Overwrites them.
 #[inline(always)]
-pub(crate) fn semidefinite<const L: usize>(a: &mut [Lanes<L>], n: usize) -> [bool; L] {
+fn semidefinite<const L: usize>(a: &mut [Lanes<L>], n: usize) -> [bool; L] {
     let mut good = [true; L];
     for p in 0..n {
         let pivot = a[p * n + p];

@@ -32,32 +32,54 @@ pub struct Point<'a> {
     pub bound_multipliers: &'a [f64],
 }
 
-/// Slots of an element whose slopes are added up before they go to its variables; others go there one by one.
+/// Elements that are worked on side by side.
+const LANES: usize = 8;
+/// Up to so many slots and variables of an element, slopes are added up before they go further.
 const SLOTS: usize = 32;
+const VARIABLES: usize = 64;
 
 /// Writes `f' - J^T lambda`, element by element, from their derivatives at a point. Allocates nothing.
 pub fn lagrangian(blocks: &[Block], at: &Evaluation, multipliers: &[f64], out: &mut [f64]) {
     out.fill(0.0);
     for (block, values) in blocks.iter().zip(&at.blocks) {
-        for element in 0..block.elements {
-            let mut slopes = [0.0; SLOTS];
+        for first in (0..block.elements).step_by(LANES) {
+            let count = LANES.min(block.elements - first);
+            let mut slopes = [[0.0; LANES]; SLOTS];
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
-                let target = row * block.elements + element;
-                let factor = block.weight[target]
-                    * match block.target[target] {
+                let from = row * block.elements + first;
+                let numbers = &values.jacobian[entry * block.elements + first..][..count];
+                let targets = block.weight[from..].iter().zip(&block.target[from..]);
+                for (lane, ((weight, target), number)) in targets.zip(numbers).enumerate() {
+                    let factor = match target {
                         Target::Objective => 1.0,
-                        Target::Row(row) => -multipliers[row as usize],
+                        Target::Row(row) => -multipliers[*row as usize],
                     };
-                let slope = factor * values.jacobian[entry * block.elements + element];
-                match slopes.get_mut(slot) {
-                    Some(sum) => *sum += slope,
-                    None => add_slope(block, element, (slot, slope), out),
+                    let slope = weight * factor * number;
+                    match slopes.get_mut(slot) {
+                        Some(sums) => sums[lane] += slope,
+                        None => add_slope(block, first + lane, (slot, slope), out),
+                    }
                 }
             }
-            let added = slopes.iter().enumerate().take(block.slots);
-            added.for_each(|(slot, slope)| add_slope(block, element, (slot, *slope), out));
+            for lane in 0..count {
+                add_slopes(block, first + lane, slopes.iter().map(|sums| sums[lane]), out);
+            }
         }
     }
+}
+
+/// Adds the slopes by the slots of an element to those by its variables.
+fn add_slopes(block: &Block, element: usize, slopes: impl Iterator<Item = f64>, out: &mut [f64]) {
+    let (variables, map) = (block.variables(element), block.map(element));
+    if variables.len() > VARIABLES {
+        let slopes = slopes.enumerate().take(block.slots);
+        return slopes.for_each(|slope| add_slope(block, element, slope, out));
+    }
+    let mut sums = [0.0; VARIABLES];
+    for (slope, coefficients) in slopes.zip(map.chunks_exact(variables.len().max(1))) {
+        sums.iter_mut().zip(coefficients).for_each(|(sum, coefficient)| *sum += slope * coefficient);
+    }
+    variables.iter().zip(sums).for_each(|(&variable, sum)| out[variable as usize] += sum);
 }
 
 /// Adds a slope by a slot to those by the variables of its element.

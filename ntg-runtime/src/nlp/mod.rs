@@ -20,7 +20,7 @@ mod scales;
 mod structure;
 
 pub use assemble::Assembly;
-pub(crate) use convexify::{Convexifier, semidefinite, slot_sizes};
+pub(crate) use convexify::{Convexifier, slot_sizes};
 pub use csc::Csc;
 pub use scales::{Scales, Slopes};
 pub use structure::Pattern;

@@ -6,6 +6,7 @@ use super::Transcription;
 use super::batch::BatchWork;
 use super::fault;
 use crate::nlp::{Block, BlockValues, Evaluation, Limits, Nlp, NotFinite, Target};
+use ntg_math::{Simd, Task, dispatch};
 
 /// Buffers for the evaluations of a [`Transcription`].
 #[derive(Clone, Debug, Default)]
@@ -137,9 +138,33 @@ impl Transcription<'_> {
     }
 }
 
-/// Whether all are finite, without a branch for each.
+/// Whether all are finite.
 fn all_finite(values: &[f64]) -> bool {
-    values.iter().fold(true, |finite, value| finite & value.is_finite())
+    let mut finite = true;
+    dispatch(AllFinite { values, finite: &mut finite });
+    finite
+}
+
+/// The test of many numbers, without a branch for each, to be compiled for the widest instructions of the processor.
+struct AllFinite<'a> {
+    values: &'a [f64],
+    finite: &'a mut bool,
+}
+
+impl Task for AllFinite<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        const TOGETHER: usize = 8;
+        // Zero times what is not finite is no number.
+        let mut zeros = [0.0; TOGETHER];
+        let (chunks, rest) = self.values.as_chunks::<TOGETHER>();
+        for chunk in chunks {
+            for lane in 0..TOGETHER {
+                zeros[lane] += 0.0 * chunk[lane];
+            }
+        }
+        *self.finite = zeros.iter().all(|zero| *zero == 0.0) && rest.iter().all(|value| value.is_finite());
+    }
 }
 
 fn first_fault(values: &[f64]) -> usize {

@@ -55,46 +55,90 @@ impl Bend {
         self.columns.iter_mut().for_each(|column| grow(column, n));
     }
 
-    /// Takes in the lower triangles of full matrices of order `n`: of the elements from this one on.
+    /// Takes in second derivatives, pair by pair of slots of these sizes: of the elements from this one on.
     #[inline(always)]
-    pub(super) fn keep<S: Simd, const L: usize>(&mut self, simd: S, elements: &[[f64; L]], (n, from): (usize, usize)) {
-        for (to, entry) in self.matrix[..n * n].iter_mut().zip(elements) {
-            Pack::load(simd, &entry[from..]).store(to);
+    pub(super) fn keep<S: Simd, const L: usize>(
+        &mut self,
+        simd: S,
+        (second, pairs): (&[[f64; L]], &[(usize, usize)]),
+        sizes: &[f64],
+        from: usize,
+    ) {
+        let n = sizes.len();
+        let matrix = &mut self.matrix[..n * n];
+        matrix.fill([0.0; MOST_LANES]);
+        for (entry, &(i, j)) in second.iter().zip(pairs) {
+            (Pack::load(simd, &entry[from..]) * (sizes[i] * sizes[j])).store(&mut matrix[i * n + j]);
         }
     }
 
-    /// What is to be added at `(i, j)`, `i >= j`.
+    /// What is to be added at `(i, j)`, `i >= j`, where that is anything.
     #[inline(always)]
     pub(super) fn change<S: Simd>(&self, simd: S, n: usize, (i, j): (usize, usize)) -> Pack<S> {
         Pack::load(simd, &self.change[i * n + j])
     }
 
-    /// Computes what is to be added in the lanes whose matrix is not `convex`; whether it is anything.
+    /// Computes what is to be added to matrices of order `n`; whether it is anything.
     #[inline(always)]
-    pub(super) fn compute<S: Simd>(&mut self, simd: S, n: usize, convex: &[bool]) -> bool {
+    pub(super) fn compute<S: Simd>(&mut self, simd: S, n: usize) -> bool {
         // With a known order the compiler writes the loops out.
         match n {
-            3 => self.compute_order(simd, 3, convex),
-            4 => self.compute_order(simd, 4, convex),
-            5 => self.compute_order(simd, 5, convex),
-            6 => self.compute_order(simd, 6, convex),
-            7 => self.compute_order(simd, 7, convex),
-            8 => self.compute_order(simd, 8, convex),
-            n => self.compute_order(simd, n, convex),
+            3 => self.compute_order(simd, 3),
+            4 => self.compute_order(simd, 4),
+            5 => self.compute_order(simd, 5),
+            6 => self.compute_order(simd, 6),
+            7 => self.compute_order(simd, 7),
+            8 => self.compute_order(simd, 8),
+            n => self.compute_order(simd, n),
         }
     }
 
     #[inline(always)]
-    fn compute_order<S: Simd>(&mut self, simd: S, n: usize, convex: &[bool]) -> bool {
-        let mut left = [0.0; MOST_LANES];
-        left.iter_mut().zip(convex).for_each(|(left, convex)| *left = if *convex { 0.0 } else { 1.0 });
-        self.left[..n].fill(left);
+    fn compute_order<S: Simd>(&mut self, simd: S, n: usize) -> bool {
+        if !self.mark(simd, n) {
+            return false;
+        }
         self.change[..n * n].fill([0.0; MOST_LANES]);
         let (mut bent, mut negligible) = (false, Pack::splat(simd, -1.0));
         while let Some(pivots) = self.pivots(n, &mut negligible) {
             bent |= self.eliminate(n, &pivots);
         }
         bent
+    }
+
+    /// Marks all slots of matrices that are not positive semidefinite as left; whether there are any. The test is
+    /// whether a Cholesky factorisation succeeds, where a zero pivot needs a zero column.
+    #[inline(always)]
+    fn mark<S: Simd>(&mut self, simd: S, n: usize) -> bool {
+        let (work, left) = (&mut self.change[..n * n], &mut self.left[..n]);
+        work.copy_from_slice(&self.matrix[..n * n]);
+        let (zero, one) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
+        let mut convex = zero.less(one);
+        for p in 0..n {
+            let pivot = Pack::load(simd, &work[p * n + p]);
+            let mut below = zero;
+            for i in p + 1..n {
+                let size = abs(Pack::load(simd, &work[i * n + p]));
+                below = below.less(size).select(size, below);
+            }
+            let positive = zero.less(pivot);
+            convex = convex.both(positive.either(pivot.equal(zero).both(below.equal(zero))));
+            if !convex.any() {
+                break;
+            }
+            let inverse = positive.select(one / pivot, zero);
+            for i in p + 1..n {
+                let factor = Pack::load(simd, &work[i * n + p]) * inverse;
+                for j in p + 1..=i {
+                    let entry = Pack::load(simd, &work[i * n + j]) - factor * Pack::load(simd, &work[j * n + p]);
+                    entry.store(&mut work[i * n + j]);
+                }
+            }
+        }
+        let mut marks = [0.0; MOST_LANES];
+        convex.select(zero, one).store(&mut marks);
+        left.fill(marks);
+        marks != [0.0; MOST_LANES]
     }
 
     /// The pivots of all lanes by complete pivoting; none where nothing is left.
@@ -111,12 +155,17 @@ impl Bend {
             let size = abs(Pack::load(simd, &own[i])) * left_i;
             let larger = diagonal.less(size);
             (diagonal, on) = (larger.select(size, diagonal), larger.select(number, on));
+            // Rows are searched on their own: what one waits for the others need not.
+            let (mut most, mut at) = (zero, none);
             for (j, (entry, left_j)) in own[..i].iter().zip(left).enumerate() {
-                let size = abs(Pack::load(simd, entry)) * (left_i * Pack::load(simd, left_j));
-                let larger = beside.less(size);
-                beside = larger.select(size, beside);
-                (row, column) = (larger.select(number, row), larger.select(Pack::splat(simd, j as f64), column));
+                let size = abs(Pack::load(simd, entry)) * Pack::load(simd, left_j);
+                let larger = most.less(size);
+                (most, at) = (larger.select(size, most), larger.select(Pack::splat(simd, j as f64), at));
             }
+            let most = most * left_i;
+            let larger = beside.less(most);
+            beside = larger.select(most, beside);
+            (row, column) = (larger.select(number, row), larger.select(at, column));
         }
         let most = diagonal.less(beside).select(beside, diagonal);
         *negligible = negligible.less(zero).select(most * NEGLIGIBLE, *negligible);
@@ -214,15 +263,22 @@ mod tests {
         (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
+    /// The lower triangle.
+    fn pairs(n: usize) -> Vec<(usize, usize)> {
+        (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).collect()
+    }
+
     /// What is to be added to a symmetric matrix.
     fn bend(k: &DMatrix<f64>) -> (bool, DMatrix<f64>) {
         let n = k.nrows();
         let mut bend = Bend::default();
         bend.fit(n);
-        let elements: Vec<[f64; 1]> = (0..n * n).map(|at| [k[(at / n, at % n)]]).collect();
-        bend.keep(Scalar, &elements, (n, 0));
-        let bent = bend.compute(Scalar, n, &[false]);
-        (bent, DMatrix::from_fn(n, n, |i, j| bend.change(Scalar, n, (i.max(j), i.min(j))).to_array()[0]))
+        let pairs = pairs(n);
+        let second: Vec<[f64; 1]> = pairs.iter().map(|&pair| [k[pair]]).collect();
+        bend.keep(Scalar, (&second, &pairs), &vec![1.0; n], 0);
+        let bent = bend.compute(Scalar, n);
+        let change = |i: usize, j: usize| bend.change(Scalar, n, (i.max(j), i.min(j))).to_array()[0];
+        (bent, DMatrix::from_fn(n, n, |i, j| if bent { change(i, j) } else { 0.0 }))
     }
 
     fn random(n: usize, rank: usize, seed: &mut u64, sign: impl Fn(usize) -> f64) -> DMatrix<f64> {
@@ -277,18 +333,17 @@ mod tests {
     /// Bends the elements from the fifth on, as many as there are lanes.
     struct Side<'a> {
         n: usize,
-        elements: &'a [[f64; 8]],
-        convex: &'a [bool; 8],
+        second: &'a [[f64; 8]],
         out: &'a mut Vec<[f64; MOST_LANES]>,
     }
 
     impl Task for Side<'_> {
         fn run<S: Simd>(self, simd: S) {
-            let Self { n, elements, convex, out } = self;
+            let Self { n, second, out } = self;
             let mut bend = Bend::default();
             bend.fit(n);
-            bend.keep(simd, elements, (n, 4));
-            assert!(bend.compute(simd, n, &convex[4..][..S::LANES]));
+            bend.keep(simd, (second, &pairs(n)), &vec![1.0; n], 4);
+            assert!(bend.compute(simd, n));
             out.extend((0..n * n).map(|at| bend.change(simd, n, (at / n, at % n)).to_array()));
             // Lanes that the processor does not have.
             out.push(std::array::from_fn(|lane| f64::from(u8::from(lane < S::LANES))));
@@ -298,19 +353,19 @@ mod tests {
     #[test]
     fn lanes_do_not_see_each_other_and_convex_ones_stay() {
         let (n, mut seed) = (6, 11);
-        let all: [DMatrix<f64>; 8] =
-            std::array::from_fn(|lane| random(n, 5, &mut seed, |r| if r % (lane % 4 + 2) == 0 { -2.0 } else { 1.0 }));
-        let elements: Vec<[f64; 8]> =
-            (0..n * n).map(|at| std::array::from_fn(|lane| all[lane][(at / n, at % n)])).collect();
-        let convex = std::array::from_fn(|lane| lane == 6);
+        let sign = |lane: usize, r: usize| if lane != 6 && r % (lane % 4 + 2) == 0 { -2.0 } else { 1.0 };
+        let all: [DMatrix<f64>; 8] = std::array::from_fn(|lane| random(n, 6, &mut seed, |r| sign(lane, r)));
+        let second: Vec<[f64; 8]> =
+            pairs(n).into_iter().map(|pair| std::array::from_fn(|lane| all[lane][pair])).collect();
         let mut found = vec![];
-        dispatch(Side { n, elements: &elements, convex: &convex, out: &mut found });
+        dispatch(Side { n, second: &second, out: &mut found });
         let lanes = found.pop().unwrap();
         for lane in (0..MOST_LANES).filter(|&lane| lanes[lane] == 1.0) {
             let (_, wanted) = bend(&all[4 + lane]);
             for (i, j) in (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))) {
-                let wanted = if convex[4 + lane] { 0.0 } else { wanted[(i, j)] };
-                assert_eq!(found[i * n + j][lane], wanted, "lane {lane} at {i}, {j}");
+                let found = found[i * n + j][lane];
+                assert_eq!(found, wanted[(i, j)], "lane {lane} at {i}, {j}");
+                assert!(lane != 2 || found == 0.0);
             }
         }
     }

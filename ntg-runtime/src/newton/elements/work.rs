@@ -19,8 +19,8 @@ pub(super) struct Room<const L: usize> {
     pub(super) half: Vec<Pack<L>>,
     /// What a group adds to the matrix.
     pub(super) entry: Vec<Pack<L>>,
-    /// Second derivatives between scaled slots, lower triangle of a full matrix.
-    pub(super) element: Vec<Pack<L>>,
+    /// Second derivatives that are to be made convex.
+    pub(super) given: Vec<Pack<L>>,
     /// What turns second derivatives between scaled slots back, pair by pair of those that make elements convex.
     pub(super) back: Vec<f64>,
     /// What makes elements convex.
@@ -36,7 +36,7 @@ impl<const L: usize> Room<L> {
         grow(&mut self.second, plan.bent.pairs.len());
         grow(&mut self.half, plan.slots * plan.carriers.locals);
         grow(&mut self.entry, plan.entries);
-        grow(&mut self.element, plan.slots * plan.slots);
+        grow(&mut self.given, plan.exact.pairs.len());
         self.bend.fit(plan.slots);
         self.back.resize(self.back.len().max(plan.bent.pairs.len()), 0.0);
     }
