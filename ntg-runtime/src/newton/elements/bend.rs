@@ -101,7 +101,10 @@ impl Bend {
         self.change[..n * n].fill([0.0; MOST_LANES]);
         let (mut bent, mut negligible) = (false, Pack::splat(simd, -1.0));
         while let Some(pivots) = self.pivots(n, &mut negligible) {
-            bent |= self.eliminate(n, &pivots);
+            bent |= match pivots.any_two {
+                true => self.eliminate::<S, true>(n, &pivots),
+                false => self.eliminate::<S, false>(n, &pivots),
+            };
         }
         bent
     }
@@ -176,9 +179,10 @@ impl Bend {
         some.any().then_some(Pivots { slots, any_two: zero.less_eq(second).any() })
     }
 
-    /// Eliminates one or two slots in every lane; whether a block has a negative eigenvalue (one of order two has one).
+    /// Eliminates one or, where `TWO` says that this is so anywhere, two slots in every lane; whether a block has a
+    /// negative eigenvalue (one of order two has one).
     #[inline(always)]
-    fn eliminate<S: Simd>(&mut self, n: usize, pivots: &Pivots<S>) -> bool {
+    fn eliminate<S: Simd, const TWO: bool>(&mut self, n: usize, pivots: &Pivots<S>) -> bool {
         let Self { matrix, left, raw: [x, y], columns: [first, second], change, .. } = self;
         let (matrix, left, change) = (&mut matrix[..n * n], &mut left[..n], &mut change[..n * n]);
         let (x, y, first, second) = (&mut x[..n], &mut y[..n], &mut first[..n], &mut second[..n]);
@@ -195,36 +199,47 @@ impl Bend {
             for j in 0..n {
                 let (entry, number) = (load(&matrix[i.max(j) * n + i.min(j)]), splat(j as f64));
                 own_x = p.equal(number).select(entry, own_x);
-                if pivots.any_two {
+                if TWO {
                     own_y = q.equal(number).select(entry, own_y);
                 }
             }
-            (a, b, c) = (is_p.select(own_x, a), is_q.select(own_x, b), is_q.select(own_y, c));
-            let stays = is_p.either(is_q).select(zero, load(&left[i]));
+            a = is_p.select(own_x, a);
+            let mut goes = is_p;
+            if TWO {
+                (b, c, goes) = (is_q.select(own_x, b), is_q.select(own_y, c), is_p.either(is_q));
+            }
+            let stays = goes.select(zero, load(&left[i]));
             stays.store(&mut left[i]);
             (own_x * stays).store(&mut x[i]);
-            (own_y * stays).store(&mut y[i]);
+            if TWO {
+                (own_y * stays).store(&mut y[i]);
+            }
         }
         let two = zero.less_eq(q);
         let inverse = unit / (a * c - b * b);
         for i in 0..n {
-            let (x, y) = (load(&x[i]), load(&y[i]));
-            ((c * x - b * y) * inverse).store(&mut first[i]);
-            ((a * y - b * x) * inverse).store(&mut second[i]);
+            let own_x = load(&x[i]);
+            if TWO {
+                let own_y = load(&y[i]);
+                ((c * own_x - b * own_y) * inverse).store(&mut first[i]);
+                ((a * own_y - b * own_x) * inverse).store(&mut second[i]);
+            } else {
+                (own_x * inverse).store(&mut first[i]);
+            }
         }
         for i in 0..n {
-            let (by_x, by_y) = (load(&first[i]), load(&second[i]));
+            let by_x = load(&first[i]);
             for (j, entry) in matrix[i * n..][..=i].iter_mut().enumerate() {
                 let mut value = load(entry) - by_x * load(&x[j]);
-                if pivots.any_two {
-                    value = value - by_y * load(&y[j]);
+                if TWO {
+                    value = value - load(&second[i]) * load(&y[j]);
                 }
                 value.store(entry);
             }
         }
         // The eigenvector (u, v) of the lower eigenvalue of a block.
         let half = (a - c) * 0.5;
-        let lower = two.select((a + c) * 0.5 - sqrt(half * half + b * b), a);
+        let lower = if TWO { two.select((a + c) * 0.5 - sqrt(half * half + b * b), a) } else { a };
         let bends = lower.less(zero).both(zero.less_eq(p));
         if !bends.any() {
             return false;
@@ -238,8 +253,12 @@ impl Bend {
         for i in 0..n {
             let number = splat(i as f64);
             let own = p.equal(number).select(unit, load(&first[i]));
-            let other = q.equal(number).select(unit, load(&second[i]));
-            (u * own + v * other).store(&mut first[i]);
+            if TWO {
+                let other = q.equal(number).select(unit, load(&second[i]));
+                (u * own + v * other).store(&mut first[i]);
+            } else {
+                own.store(&mut first[i]);
+            }
         }
         for i in 0..n {
             let factor = twice * load(&first[i]);
