@@ -73,11 +73,11 @@ snapshots! {
         => ["fn phases()", "mod kernels"];
     a_parameter_is_a_field_and_an_input:
         "duration T = 1 [s]; param v = 0.25 [km/s]; output x [km]: spline(order = 4, intervals = 1); minimize integral((der(x) - v)^2);"
-        => ["pub struct P {", "impl ::core::default::Default", "fn structure(&self)", "mod kernels"];
+        => ["pub struct P {", "impl ::core::default::Default", "fn update(&self", "mod kernels"];
     an_array_of_parameters_is_indexed_from_one:
         "duration T = 1; param a[3] = (1, 2, 4); output x[1 .. 3]: spline(order = 3, intervals = 1); \
          minimize sum(i in 1 .. 3, integral((x[i] - a[i])^2));"
-        => ["pub struct P {", "fn structure(&self)", "fn groups()"];
+        => ["pub struct P {", "fn update(&self", "fn groups()"];
     a_variable_has_bounds_and_a_method:
         "duration T = 1 [s]; variable m in 1 .. 5 [kg]; output x: spline(order = 3, intervals = 1); minimize m / 1 [kg] + integral(x^2) / 1 [s];"
         => ["fn variables()", "pub fn m(&self)"];
@@ -108,7 +108,7 @@ snapshots! {
     a_replaceable_table_is_a_field:
         "duration T = 1 [s]; output x: spline(order = 3, intervals = 1); param table f(s [m]) [km] = linear { 0: 1; 1: 2; } \
          minimize integral((f(x * 1 [m]) / 1 [m])^2);"
-        => ["pub struct P {", "pub struct FTable", "fn structure(&self)"];
+        => ["pub struct P {", "pub struct FTable", "fn update(&self"];
     a_double_bound_is_one_row_with_two_bounds:
         "duration T = 1; param a = 2; output x: spline(order = 3, intervals = 1); minimize integral(x^2); \
          trajectory { band: -a <= x * a <= 3 * a; }"

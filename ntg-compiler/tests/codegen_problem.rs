@@ -65,7 +65,7 @@ fn parameters_are_fields_in_their_declared_units() {
     ];
     program.structure.parameters[0].doc = "Fastest flight.\nAt any height.".into();
     let text = expand(&program);
-    let parts = ["pub struct Rest {", "impl ::core::default::Default for Rest", "fn structure(&self)"];
+    let parts = ["pub struct Rest {", "impl ::core::default::Default for Rest", "fn update(&self"];
     insta::assert_snapshot!(parts.map(|part| item(&text, part)).join("\n"));
 }
 
@@ -89,7 +89,7 @@ fn a_replaceable_table_is_a_field_with_nodes_and_values() {
         replaceable: true,
     }];
     let text = expand(&program);
-    let parts = ["pub struct RefLineTable", "impl ::core::default::Default for Rest", "fn structure(&self)"];
+    let parts = ["pub struct RefLineTable", "impl ::core::default::Default for Rest", "fn update(&self"];
     insta::assert_snapshot!(parts.map(|part| item(&text, part)).join("\n"));
 }
 

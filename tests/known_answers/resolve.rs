@@ -54,6 +54,52 @@ fn a_solver_finds_to_the_bit_what_a_fresh_solve_finds_whatever_it_solved_before(
     }
 }
 
+/// Every kind of value that a program may change.
+mod delivery {
+    ntg::ntg! {
+        problem Delivery {
+            param long = 4 [s];
+            duration T = long;
+            output x [m]: spline(order = 5, intervals = 6, smoothness = 3);
+            collocation gauss(points = 5);
+            param far[2] = (1, 2) [m];
+            param table drag(v [m/s]) [mm/s^2] = monotone { 0: 0; 1: 100; 3: 400; }
+            continuation share = (0.5, 1);
+            initial { x == 0; der(x) == 0; }
+            final { x == far[1] + far[2]; der(x) == 0; }
+            minimize integral((der(x, 2) + share * drag(der(x)))^2);
+        }
+    }
+}
+
+#[test]
+fn a_compiled_solver_takes_in_every_kind_of_value_that_a_program_changes() {
+    use ntg::runtime::problem::Problem;
+
+    let mut solver = Solver::new(delivery::Delivery::default(), &Settings::default());
+    let changes: [fn(&mut delivery::Delivery); 6] = [
+        |_| {},
+        |problem| problem.far[1] = 3.0,
+        |problem| problem.drag.values[2] = 600.0,
+        |problem| problem.drag.nodes[1] = 1.5,
+        |problem| problem.share = 0.8,
+        |problem| problem.long = 5.0,
+    ];
+    let mut structure = Problem::structure(&solver.problem);
+    let mut before = vec![];
+    for change in changes {
+        change(&mut solver.problem);
+        Problem::update(&solver.problem, &mut structure);
+        assert_eq!(structure, Problem::structure(&solver.problem));
+        let kept = numbers(&solved(solver.solve()));
+        assert_eq!(kept, numbers(&solved(solve(&solver.problem, &solver.settings))));
+        assert!(!before.contains(&kept), "the change changed nothing");
+        let again = solved(solver.resolve());
+        assert!((again.objective - f64::from_bits(kept.1)).abs() < 1e-7 * again.objective);
+        before.push(kept);
+    }
+}
+
 #[test]
 fn another_method_or_an_error_in_between_leaves_nothing_stale() {
     // The parameter stands in the integrand alone: the scales cannot tell that it has changed.

@@ -42,7 +42,7 @@ impl<const N: usize, F: Fn(f64, [f64; N]) -> f64> Task for Fold<'_, N, F> {
         let parts = vectors.map(|vector| vector.as_chunks::<TOGETHER>());
         let count = parts.iter().map(|(chunks, _)| chunks.len()).min().unwrap_or(0);
         let chunks = parts.map(|(chunks, _)| &chunks[..count]);
-        for at in 0..count {
+        for (at, _) in chunks[0].iter().enumerate() {
             for lane in 0..TOGETHER {
                 sums[lane] = step(sums[lane], std::array::from_fn(|vector| chunks[vector][at][lane]));
             }

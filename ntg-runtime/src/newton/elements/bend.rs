@@ -372,7 +372,7 @@ mod tests {
     #[test]
     fn lanes_do_not_see_each_other_and_convex_ones_stay() {
         let (n, mut seed) = (6, 11);
-        let sign = |lane: usize, r: usize| if lane != 6 && r % (lane % 4 + 2) == 0 { -2.0 } else { 1.0 };
+        let sign = |lane: usize, r: usize| if lane != 6 && r.is_multiple_of(lane % 4 + 2) { -2.0 } else { 1.0 };
         let all: [DMatrix<f64>; 8] = std::array::from_fn(|lane| random(n, 6, &mut seed, |r| sign(lane, r)));
         let second: Vec<[f64; 8]> =
             pairs(n).into_iter().map(|pair| std::array::from_fn(|lane| all[lane][pair])).collect();
