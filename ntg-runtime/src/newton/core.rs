@@ -50,6 +50,8 @@ pub(super) struct Core<'a, N: Nlp> {
     pub(super) filter: Filter,
     /// A point that met all tolerances.
     pub(super) best: super::polish::Best,
+    /// The share of what makes elements convex that the last matrix needed.
+    pub(super) share: f64,
     /// Set once bounds are elastic.
     pub(super) elastic: Option<super::elastic::Elastic>,
     pub(super) step: super::direction::Direction,
@@ -144,6 +146,7 @@ impl<'a, N: Nlp> Core<'a, N> {
             best: super::polish::Best::new(&x, &sides),
             kept: step.clone(),
             elastic: None,
+            share: super::direction::FIRST_SHARE,
             step,
             trial: Trial::new(&x, count, rows),
             record: IterationRecord::default(),

@@ -25,6 +25,14 @@ const REFINED: f64 = 1e-10;
 const ROUNDING: f64 = 1e-13;
 /// The weight of a quantity without bounds: none, written so that it may divide.
 const WEIGHTLESS: f64 = 1e-30;
+/// From this barrier parameter on, relative to its unit, the solution that the guess leads to is settled, and a share
+/// of what makes elements convex is enough. Before, all of it keeps steps short: a share leaves the neighbourhood of a
+/// good guess.
+const SETTLED: f64 = 1e-3;
+/// The share that was taken last before any was, the least, and the factor from one to the next.
+pub(super) const FIRST_SHARE: f64 = 0.25;
+const LEAST_SHARE: f64 = 1e-4;
+const MORE: f64 = 4.0;
 /// Shifts of the diagonal, where the convex matrix is singular: the first, their factor, the largest.
 const FIRST_SHIFT: f64 = 1e-8;
 const SHIFT_FACTOR: f64 = 100.0;
@@ -162,19 +170,30 @@ impl<N: Nlp> Core<'_, N> {
         }
     }
 
-    /// Factorises the matrix with exact second derivatives where it is that of a minimum; else with
-    /// each element's made convex, and the smallest shift that helps.
+    /// Factorises the matrix with exact second derivatives where it is that of a minimum; else with what makes each
+    /// element's convex, of which a share may do, and the smallest shift that helps.
     fn factorise(&mut self) -> bool {
         self.assemble(Curvature::Exact);
         self.record.shift = 0.0;
-        if self.system.factorise(0.0) {
+        if self.system.factorise(0.0, 0.0) {
             return true;
         }
         self.system.make_convex(&self.step.sigma);
         self.record.mixed = true;
+        if self.mu <= SETTLED * self.unit {
+            let mut share = (self.share / MORE).max(LEAST_SHARE);
+            while share < 1.0 {
+                if self.system.factorise(share, 0.0) {
+                    self.share = share;
+                    return true;
+                }
+                share *= MORE;
+            }
+            self.share = 1.0;
+        }
         let mut shift = 0.0;
         while shift <= LARGEST_SHIFT {
-            if self.system.factorise(shift) {
+            if self.system.factorise(1.0, shift) {
                 self.record.shift = shift;
                 return true;
             }
@@ -263,7 +282,7 @@ impl<N: Nlp> Core<'_, N> {
             self.step.sigma[*of] = 1.0 / PROXIMAL;
         }
         self.assemble(Curvature::None);
-        if !self.system.factorise(1.0) {
+        if !self.system.factorise(0.0, 1.0) {
             return;
         }
         let n = self.x.len() - 1;

@@ -40,6 +40,24 @@ pub(super) struct Factor {
     run: Vec<Chunk>,
 }
 
+/// What is factorised: a matrix, a share of a change (none if that is empty), and a shift of the diagonal entries of
+/// variables.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sum<'a> {
+    pub(super) matrix: &'a [f64],
+    pub(super) change: &'a [f64],
+    pub(super) share: f64,
+    pub(super) shift: f64,
+}
+
+impl Sum<'_> {
+    /// An entry, without the shift.
+    #[inline(always)]
+    fn at(&self, position: usize) -> f64 {
+        self.matrix[position] + self.change.get(position).map_or(0.0, |change| self.share * change)
+    }
+}
+
 /// `a - factor b`.
 #[inline(always)]
 fn less(mut a: Chunk, factor: f64, b: Chunk) -> Chunk {
@@ -108,11 +126,10 @@ impl Factor {
         }
     }
 
-    /// Factorises `matrix` with `shift` added to the diagonal entries of variables; the number of
-    /// negative pivots, or none where a pivot vanishes.
-    pub(super) fn factorise(&mut self, shape: &Shape, matrix: &[f64], shift: f64) -> Option<usize> {
+    /// Factorises a matrix; the number of negative pivots, or none where a pivot vanishes.
+    pub(super) fn factorise(&mut self, shape: &Shape, sum: &Sum<'_>) -> Option<usize> {
         let mut negative = None;
-        dispatch(Factorise { factor: self, shape, matrix, shift, negative: &mut negative });
+        dispatch(Factorise { factor: self, shape, sum, negative: &mut negative });
         negative
     }
 
@@ -122,17 +139,20 @@ impl Factor {
     }
 
     #[inline(always)]
-    fn factorise_here(&mut self, shape: &Shape, matrix: &[f64], shift: f64) -> Option<usize> {
-        self.value.copy_from_slice(matrix);
-        if shift != 0.0 {
+    fn factorise_here(&mut self, shape: &Shape, sum: &Sum<'_>) -> Option<usize> {
+        self.value.copy_from_slice(sum.matrix);
+        for (value, change) in self.value.iter_mut().zip(sum.change) {
+            *value += sum.share * change;
+        }
+        if sum.shift != 0.0 {
             for j in 0..shape.band + shape.border_variables {
-                self.value[shape.position(j, j)] += shift;
+                self.value[shape.position(j, j)] += sum.shift;
             }
         }
         let mut negative = 0;
         for component in &shape.components {
             for j in component.blocks.clone() {
-                negative += self.eliminate(shape, component, (j, matrix))?;
+                negative += self.eliminate(shape, component, (j, sum))?;
             }
             self.subtract_from_corner(shape, component);
         }
@@ -142,12 +162,12 @@ impl Factor {
     /// Eliminates the unknowns of column `j` of blocks from the band and the border's rows; how many pivots are
     /// negative, or none if one vanishes.
     #[inline(always)]
-    fn eliminate(&mut self, shape: &Shape, component: &Component, (j, matrix): (usize, &[f64])) -> Option<usize> {
+    fn eliminate(&mut self, shape: &Shape, component: &Component, (j, sum): (usize, &Sum<'_>)) -> Option<usize> {
         let (band, rows) = self.value.split_at_mut(BLOCK * BLOCK * shape.column[shape.column.len() - 1]);
         let (head, tail) = squares(band).split_at_mut(shape.column[j + 1]);
         let (diagonal, below) = head[shape.column[j]..].split_first_mut()?;
-        let before = &matrix[BLOCK * BLOCK * shape.column[j]..];
-        let noise = std::array::from_fn(|c| NOISE * before[c * BLOCK + c]);
+        let first = BLOCK * BLOCK * shape.column[j];
+        let noise = std::array::from_fn(|c| NOISE * sum.at(first + c * BLOCK + c));
         let (pivots, inverse, mut largest) = factors_of(diagonal, &noise);
         let panel = &mut self.panel[..below.len()];
         for (block, panel) in below.iter_mut().zip(&mut *panel) {
@@ -351,15 +371,14 @@ fn backward(column: &[Square], x: &mut Chunk, after: &[Chunk]) {
 struct Factorise<'a> {
     factor: &'a mut Factor,
     shape: &'a Shape,
-    matrix: &'a [f64],
-    shift: f64,
+    sum: &'a Sum<'a>,
     negative: &'a mut Option<usize>,
 }
 
 impl Task for Factorise<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
-        *self.negative = self.factor.factorise_here(self.shape, self.matrix, self.shift);
+        *self.negative = self.factor.factorise_here(self.shape, self.sum);
     }
 }
 
@@ -385,6 +404,11 @@ mod tests {
     fn noise(seed: &mut u64) -> f64 {
         *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// A matrix as it is.
+    fn plain(matrix: &[f64]) -> Sum<'_> {
+        Sum { matrix, change: &[], share: 0.0, shift: 0.0 }
     }
 
     /// Two components of a band, two variables and one row in the border.
@@ -436,7 +460,7 @@ mod tests {
             for (i, j, entry) in [(0, 0, 1e16), (1, 0, 1e16), (1, 1, 1e16 + d), (2, 2, 1.0)] {
                 value[shape.position(i, j)] = entry;
             }
-            Factor::new(&shape).factorise(&shape, &value, 0.0)
+            Factor::new(&shape).factorise(&shape, &plain(&value))
         };
         assert_eq!([-1e4, -2.0, 0.0, 2.0, 1e4].map(negative), [Some(1), Some(0), Some(0), Some(0), Some(0)]);
     }
@@ -445,7 +469,7 @@ mod tests {
     fn the_solution_solves_the_dense_system() {
         let (shape, value, dense) = example();
         let mut factor = Factor::new(&shape);
-        assert_eq!(factor.factorise(&shape, &value, 0.0), Some(1));
+        assert_eq!(factor.factorise(&shape, &plain(&value)), Some(1));
         let mut seed = 3;
         let x: Vec<f64> = (0..12).map(|_| noise(&mut seed)).collect();
         let mut b: Vec<f64> = dense.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
@@ -485,7 +509,7 @@ mod tests {
                 }
                 let mut factor = Factor::new(&shape);
                 let negative = dense.clone().symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
-                assert_eq!(factor.factorise(&shape, &value, 0.0), Some(negative), "band {band} reach {reach}");
+                assert_eq!(factor.factorise(&shape, &plain(&value)), Some(negative), "band {band} reach {reach}");
                 let x = nalgebra::DVector::from_fn(n, |_, _| noise(&mut seed));
                 let mut b: Vec<f64> = (&dense * &x).iter().copied().collect();
                 factor.solve(&shape, &mut b);
@@ -500,13 +524,25 @@ mod tests {
     fn a_shift_moves_variables_and_no_rows() {
         let (shape, value, dense) = example();
         let mut factor = Factor::new(&shape);
-        factor.factorise(&shape, &value, 2.5);
+        factor.factorise(&shape, &Sum { shift: 2.5, ..plain(&value) });
         let mut b: Vec<f64> = dense.iter().map(|row| row[11]).collect();
         // Column 11 of the shifted matrix is that of the matrix, since 11 is a row.
         factor.solve(&shape, &mut b);
         for (i, entry) in b.iter().enumerate() {
             assert!((entry - f64::from(u8::from(i == 11))).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn a_share_of_a_change_is_as_if_the_matrix_had_it() {
+        let (shape, value, _) = example();
+        let mut seed = 13;
+        let change: Vec<f64> = value.iter().map(|_| 0.1 * noise(&mut seed)).collect();
+        let whole: Vec<f64> = value.iter().zip(&change).map(|(value, change)| value + 0.25 * change).collect();
+        let (mut at_once, mut in_parts) = (Factor::new(&shape), Factor::new(&shape));
+        assert_eq!(at_once.factorise(&shape, &plain(&whole)), Some(1));
+        assert_eq!(in_parts.factorise(&shape, &Sum { change: &change, share: 0.25, ..plain(&value) }), Some(1));
+        assert_eq!(at_once.value, in_parts.value);
     }
 
     #[test]
@@ -521,6 +557,6 @@ mod tests {
             matrix[(j, j)] -= 40.0;
         }
         let negative = matrix.symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
-        assert_eq!(factor.factorise(&shape, &value, 0.0), Some(negative));
+        assert_eq!(factor.factorise(&shape, &plain(&value)), Some(negative));
     }
 }

@@ -11,7 +11,7 @@
 
 use super::carriers::Carriers;
 use super::elements::{Curvature, Elements, Rows, Weights};
-use super::factor::Factor;
+use super::factor::{Factor, Sum};
 use super::order::Order;
 use super::pattern::Pattern;
 use super::shape::Shape;
@@ -27,7 +27,9 @@ pub(super) struct System<W> {
     pub(super) shape: Shape,
     pub(super) scales: Scales,
     /// The unfactorised matrix.
-    pub(super) matrix: Vec<f64>,
+    matrix: Vec<f64>,
+    /// What makes its elements convex.
+    change: Vec<f64>,
     pub(super) factor: Factor,
     work: W,
     /// Element derivatives at the latest point.
@@ -68,6 +70,7 @@ impl<W> System<W> {
             elements,
             scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0 },
             matrix: vec![0.0; shape.len],
+            change: vec![0.0; shape.len],
             factor: Factor::new(&shape),
             side: vec![0.0; shape.unknowns()],
             work,
@@ -306,9 +309,10 @@ impl<W> System<W> {
         }
     }
 
-    /// Makes each element of the matrix convex. Before: [`System::assemble`] with the same `sigma`.
+    /// Finds what makes each element of the matrix convex. Before: [`System::assemble`] with the same `sigma`.
     pub(super) fn make_convex(&mut self, sigma: &[f64]) {
-        self.elements.make_convex(sigma, &mut self.matrix);
+        self.change.fill(0.0);
+        self.elements.make_convex(sigma, &mut self.change);
     }
 
     /// Sets the diagonal of a row of the border to `-compliance`.
@@ -318,9 +322,12 @@ impl<W> System<W> {
         self.matrix[at] = -compliance;
     }
 
-    /// Factorises the matrix with a shift of the variables; whether it has the signs of a minimum.
-    pub(super) fn factorise(&mut self, shift: f64) -> bool {
-        self.factor.factorise(&self.shape, &self.matrix, shift) == Some(self.order.bordered.len())
+    /// Factorises the matrix with a share of what [`System::make_convex`] has found, and a shift of the variables;
+    /// whether it has the signs of a minimum.
+    pub(super) fn factorise(&mut self, share: f64, shift: f64) -> bool {
+        let change = if share == 0.0 { &[][..] } else { &self.change };
+        let sum = Sum { matrix: &self.matrix, change, share, shift };
+        self.factor.factorise(&self.shape, &sum) == Some(self.order.bordered.len())
     }
 
     /// Solves with the factors: `right` by variable and by row of the border; gives the solution the
