@@ -66,6 +66,12 @@ impl Problem for Interpreted {
         self.structure.clone()
     }
 
+    fn update(&self, structure: &mut Structure) {
+        if *structure != self.structure {
+            structure.clone_from(&self.structure);
+        }
+    }
+
     fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
         let input = Columns { lanes, first: inputs, second: &[] };
         self.with_registers(|registers| run(&self.kernels[kernel].values, input, tables, registers, &mut [values]));

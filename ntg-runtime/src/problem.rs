@@ -113,6 +113,12 @@ impl Problem for WithStructure<'_> {
         self.structure.clone()
     }
 
+    fn update(&self, structure: &mut Structure) {
+        if *structure != self.structure {
+            structure.clone_from(&self.structure);
+        }
+    }
+
     fn values(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], values: &mut [f64]) {
         self.problem.values(kernel, lanes, inputs, tables, values);
     }
