@@ -18,7 +18,7 @@ ntg::ntg_file!("specs/low_observable.ntg");
 const POINTS: usize = 5;
 
 fn main() -> Result<(), Error> {
-    println!("| l | points | coefficients | iterations | before and after, µs | an iteration, µs | evaluation, µs |");
+    println!("| l | points | variables | iterations | before and after, µs | an iteration, µs | evaluation, µs |");
     println!("|---|---|---|---|---|---|---|");
     let flight = LowObservable { signature_max: 7.0, ..LowObservable::default() };
     for l in [8, 16, 32, 64, 128, 256, 512] {

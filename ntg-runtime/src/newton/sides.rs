@@ -184,3 +184,22 @@ impl Sides {
 pub(super) fn log_sum(w: &[f64]) -> f64 {
     w.chunks(TOGETHER).map(|part| part.iter().product::<f64>().ln()).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_multiplier_far_from_the_central_path_comes_nearer_and_others_stay() {
+        let (mu, w, near) = (1e-3, 0.5, 2e-3);
+        let far = [(1e9, WANDER * mu / w), (1e-15, mu / (WANDER * w)), (near, near)];
+        for (z, wanted) in far {
+            // The other sides are where they should be, on either side of this one.
+            let z = vec![near, z, near];
+            let mut sides = Sides { w: vec![w; 3], z, ..Sides::default() };
+            sides.tame(mu);
+            assert_eq!((sides.z[0], sides.z[2]), (near, near));
+            assert!((sides.z[1] / wanted - 1.0).abs() < 1e-15, "{} {wanted}", sides.z[1]);
+        }
+    }
+}

@@ -175,3 +175,64 @@ impl Residual {
         self.primal.max(self.dual).max(self.complementarity)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nlp::BlockValues;
+
+    /// Eleven elements, more than are worked on side by side, with three rows of which the first is an objective.
+    fn block(slots: usize, variables: usize) -> (Block, BlockValues) {
+        let (elements, rows) = (11, 3);
+        let number = |i: usize| (i as f64 * 0.7).sin();
+        let jacobian: Vec<_> = (0..rows).flat_map(|row| (row..slots).step_by(2).map(move |slot| (row, slot))).collect();
+        let target = |i: usize| match i / elements {
+            0 => Target::Objective,
+            row => Target::Row(((row - 1) * elements + i % elements) as u32),
+        };
+        let block = Block {
+            elements,
+            slots,
+            rows,
+            variable_start: (0..=elements).map(|e| e * variables).collect(),
+            variables: (0..elements).flat_map(|e| (e as u32..).take(variables)).collect(),
+            map_start: (0..=elements).map(|e| e * slots * variables).collect(),
+            map: (0..elements * slots * variables).map(number).collect(),
+            target: (0..rows * elements).map(target).collect(),
+            weight: (0..rows * elements).map(|i| 1.0 + 0.1 * i as f64).collect(),
+            jacobian,
+            ..Block::default()
+        };
+        let jacobian = (0..block.jacobian.len() * elements).map(|i| number(3 * i + 1)).collect();
+        (block, BlockValues { jacobian, ..BlockValues::default() })
+    }
+
+    #[test]
+    fn the_lagrangian_is_the_sum_of_its_entries_however_large_the_elements() {
+        let sizes = [(3, 2), (SLOTS, VARIABLES), (SLOTS + 5, 4), (5, VARIABLES + 1), (SLOTS + 2, VARIABLES + 2)];
+        for (slots, variables) in sizes {
+            let (block, values) = block(slots, variables);
+            let multipliers: Vec<f64> = (0..22).map(|i| (f64::from(i) * 1.3).cos()).collect();
+            let mut wanted = vec![0.0; block.elements + variables];
+            for e in 0..block.elements {
+                for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                    let at = row * block.elements + e;
+                    let factor = match block.target[at] {
+                        Target::Objective => 1.0,
+                        Target::Row(row) => -multipliers[row as usize],
+                    };
+                    let slope = block.weight[at] * factor * values.jacobian[entry * block.elements + e];
+                    for (k, &variable) in block.variables(e).iter().enumerate() {
+                        wanted[variable as usize] += slope * block.map(e)[slot * variables + k];
+                    }
+                }
+            }
+            let mut found = vec![f64::NAN; wanted.len()];
+            let at = Evaluation { blocks: vec![values], ..Evaluation::default() };
+            lagrangian(&[block], &at, &multipliers, &mut found);
+            for (found, wanted) in found.iter().zip(&wanted) {
+                assert!((found - wanted).abs() < 1e-11, "{slots} slots, {variables} variables: {found} {wanted}");
+            }
+        }
+    }
+}

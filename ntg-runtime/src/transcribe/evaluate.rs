@@ -170,3 +170,23 @@ impl Task for AllFinite<'_> {
 fn first_fault(values: &[f64]) -> usize {
     values.iter().position(|value| !value.is_finite()).unwrap_or(0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_is_not_finite_is_found_wherever_it_stands() {
+        for len in 0..20 {
+            let mut values = vec![-f64::MAX; len];
+            assert!(all_finite(&values));
+            for at in 0..len {
+                for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                    values[at] = bad;
+                    assert!(!all_finite(&values), "{bad} at {at} of {len}");
+                }
+                values[at] = f64::MAX;
+            }
+        }
+    }
+}
