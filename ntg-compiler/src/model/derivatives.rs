@@ -29,6 +29,52 @@ pub(super) struct Lacking {
     highest: usize,
 }
 
+/// A derivative that jumps at the knots of its spline.
+#[derive(Clone, PartialEq)]
+pub(super) struct Jump {
+    /// The output and where it is declared.
+    name: String,
+    declared: Span,
+    /// Where the derivative stands.
+    span: Span,
+    order: usize,
+    /// The smoothness of the spline, and the order with which the derivative would be continuous.
+    smoothness: usize,
+    needs: usize,
+}
+
+/// How many outputs a note about several of them names.
+const NAMED: usize = 4;
+
+impl Jump {
+    fn is_like(&self, other: &Jump) -> bool {
+        (self.order, self.smoothness, self.needs) == (other.order, other.smoothness, other.needs)
+    }
+
+    /// The note at this place, about these outputs, of which this is one.
+    fn note(&self, outputs: &[&Jump]) -> Diagnostic {
+        let order = self.order;
+        let names: Vec<String> = outputs.iter().take(NAMED).map(|jump| format!("`{}`", jump.name)).collect();
+        let message = match (&names[..], outputs.len().saturating_sub(NAMED)) {
+            ([name], _) => format!("the derivative of order {order} of {name} jumps at the knots of its spline"),
+            (names, 0) => {
+                let (last, rest) = names.split_last().expect("two outputs at least");
+                format!("the derivatives of order {order} of {} and {last} jump at the knots of their splines", rest.join(", "))
+            }
+            (names, more) => {
+                format!("the derivatives of order {order} of {} and {more} more outputs jump at the knots of their splines", names.join(", "))
+            }
+        };
+        let continuous = match self.smoothness {
+            0 => "not even its values are continuous".to_owned(),
+            m => format!("derivatives up to {} are continuous", m - 1),
+        };
+        Diagnostic::new(Code::DerivativeJumps, self.span, message)
+            .label(self.declared, format!("`smoothness = {}`: {continuous}", self.smoothness))
+            .help(format!("for a continuous one, declare `order = {}, smoothness = {}` or more", self.needs, order + 1))
+    }
+}
+
 /// Second indices over the ranges of products.
 struct MoreIndices<'p> {
     leaves: &'p mut Leaves,
@@ -167,26 +213,37 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Notes a derivative that jumps at the knots.
+    /// Remembers a derivative that jumps at the knots.
     fn note_jump(&mut self, phase: &PhaseAt, output: usize, order: usize, span: Span) {
         let output = &self.problem.phases[phase.phase].outputs[output];
-        let (name, spline, declared) = (output.name.clone(), &output.spline, output.span);
-        let (k, m) = (spline.order, spline.smoothness);
-        if order < m || spline.breakpoints.len() <= 2 {
+        let (k, m) = (output.spline.order, output.spline.smoothness);
+        if order < m || output.spline.breakpoints.len() <= 2 {
             return;
         }
-        let message = format!("the derivative of order {order} of `{name}` jumps at the knots of its spline");
-        let continuous = match m {
-            0 => "not even its values are continuous".to_owned(),
-            _ => format!("derivatives up to {} are continuous", m - 1),
-        };
-        let finding = Diagnostic::new(Code::DerivativeJumps, span, message)
-            .label(declared, format!("`smoothness = {m}`: {continuous}"));
-        let order_needed = (order + 2).max(k);
-        self.report(finding.help(format!(
-            "for a continuous one, declare `order = {order_needed}, smoothness = {}` or more",
-            order + 1
-        )));
+        let jump = Jump { name: output.name.clone(), declared: output.span, span, order, smoothness: m, needs: (order + 2).max(k) };
+        if !self.jumps.contains(&jump) {
+            self.jumps.push(jump);
+        }
+    }
+
+    /// Notes the derivatives that jump at the knots. Where several outputs jump alike, as the states of a collocation do,
+    /// one note names them all, at the first place; one output is noted at each of its places.
+    pub(super) fn jumps_noted(&mut self) {
+        let mut left = std::mem::take(&mut self.jumps);
+        while let Some(first) = left.first().cloned() {
+            let alike: Vec<Jump>;
+            (alike, left) = left.into_iter().partition(|jump| jump.is_like(&first));
+            let mut outputs: Vec<&Jump> = vec![];
+            for jump in &alike {
+                if outputs.iter().all(|other| other.name != jump.name) {
+                    outputs.push(jump);
+                }
+            }
+            match outputs[..] {
+                [_] => alike.iter().for_each(|jump| self.report(jump.note(&[jump]))),
+                _ => self.report(first.note(&outputs)),
+            }
+        }
     }
 
     /// `partial(f(s, w), s)`.

@@ -12,7 +12,7 @@ use ntg_structure::Unit;
 
 use super::Loader;
 use super::definitions::{Memo, MemoKey};
-use super::derivatives::Lacking;
+use super::derivatives::{Jump, Lacking};
 use super::dimension::Dimension;
 use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
@@ -125,6 +125,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) found: Vec<Diagnostic>,
     /// Derivatives that splines do not have.
     pub(super) lacking: Vec<Lacking>,
+    /// The derivatives that jump at knots, until all are known.
+    pub(super) jumps: Vec<Jump>,
     /// How many times the expression at hand is going to be differentiated.
     pub(super) derivatives_around: usize,
     reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
@@ -168,6 +170,7 @@ impl<'a> Elaborator<'a> {
             kinds: Kinds::default(),
             found: Vec::new(),
             lacking: Vec::new(),
+            jumps: Vec::new(),
             derivatives_around: 0,
             reported: HashSet::new(),
             next_index: 0,

@@ -96,6 +96,7 @@ impl<'a> Elaborator<'a> {
         self.named();
         self.guesses();
         self.orders_needed();
+        self.jumps_noted();
         self.check();
     }
 }
