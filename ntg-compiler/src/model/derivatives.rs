@@ -59,10 +59,16 @@ impl Jump {
             ([name], _) => format!("the derivative of order {order} of {name} jumps at the knots of its spline"),
             (names, 0) => {
                 let (last, rest) = names.split_last().expect("two outputs at least");
-                format!("the derivatives of order {order} of {} and {last} jump at the knots of their splines", rest.join(", "))
+                format!(
+                    "the derivatives of order {order} of {} and {last} jump at the knots of their splines",
+                    rest.join(", ")
+                )
             }
             (names, more) => {
-                format!("the derivatives of order {order} of {} and {more} more outputs jump at the knots of their splines", names.join(", "))
+                format!(
+                    "the derivatives of order {order} of {} and {more} more outputs jump at the knots of their splines",
+                    names.join(", ")
+                )
             }
         };
         let continuous = match self.smoothness {
@@ -220,7 +226,14 @@ impl<'a> Elaborator<'a> {
         if order < m || output.spline.breakpoints.len() <= 2 {
             return;
         }
-        let jump = Jump { name: output.name.clone(), declared: output.span, span, order, smoothness: m, needs: (order + 2).max(k) };
+        let jump = Jump {
+            name: output.name.clone(),
+            declared: output.span,
+            span,
+            order,
+            smoothness: m,
+            needs: (order + 2).max(k),
+        };
         if !self.jumps.contains(&jump) {
             self.jumps.push(jump);
         }
