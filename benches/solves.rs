@@ -5,7 +5,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use ntg::prelude::*;
-use ntg::runtime::sqp;
+use ntg::runtime::nlp::sqp;
 use ntg::runtime::transcribe::Transcription;
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
@@ -73,7 +73,8 @@ fn solves(c: &mut Criterion) {
     let nlp = Transcription::new(&car).expect("a good problem");
     let start = vec![0.0; 14];
     group.bench_function("one quadratic program (lane change)", |b| {
-        b.iter(|| assert!(sqp::solve(&nlp, &start, &settings).status.is_solved()));
+        let options = settings.solver_options();
+        b.iter(|| assert!(sqp::solve(&nlp, &start, &options).status.is_solved()));
     });
     group.finish();
 }

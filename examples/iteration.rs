@@ -36,8 +36,8 @@ fn row(flight: &LowObservable, l: usize) -> Result<(), Error> {
             output.spline.breakpoints = (0..=l).map(|i| i as f64 / l as f64).collect();
         }
     });
-    // Near the solution nothing but the Newton method itself runs: no coarser knots, no other method.
-    let settings = Settings { method: Method::Newton, ..Settings::default() };
+    // Near the solution nothing but the interior-point method itself runs: no coarser knots, no other method.
+    let settings = Settings { method: Method::InteriorPoint, ..Settings::default() };
     let solution = solve(&problem, &Settings::default())?.solution;
     let near = Guess::from(&solution);
     let mut solver = Solver::new(problem.clone(), &settings);

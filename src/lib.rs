@@ -4,7 +4,7 @@
 //! [`ntg_file!`] takes in, or inline in [`ntg!`]; either way the compiler checks it,
 //! differentiates it exactly, and writes a Rust type with a `solve` method. The outputs are
 //! B-splines, so for flat systems there is nothing to integrate: a trajectory is a few dozen
-//! coefficients, and a sequential quadratic program finds them.
+//! coefficients, and a structured interior-point method finds them.
 //!
 //! ```
 //! use ntg::prelude::*;

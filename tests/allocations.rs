@@ -52,7 +52,7 @@ fn no_iteration_but_the_first_allocates() {
         &fleet::MultiVehicleSeparated::default(),
     ];
     for problem in problems {
-        let runs = counts(problem, Method::Newton);
+        let runs = counts(problem, Method::InteriorPoint);
         assert!(runs.iter().any(|run| run.len() > 10), "there is something to count");
         for run in &runs {
             let after_the_first: Vec<u64> = run.windows(2).skip(1).map(|pair| pair[1] - pair[0]).collect();

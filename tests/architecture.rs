@@ -1,5 +1,6 @@
 //! The floors of the house: what may not know what (ARCHITECTURE.md).
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -43,19 +44,126 @@ fn forbid(folder: &str, words: &[&str], except: Option<&str>) {
     }
 }
 
-const FLOORS: [&str; 6] = ["source", "diagnostic", "syntax", "model", "program", "codegen"];
+/// The modules of a crate from which a file takes anything: what follows `crate::`, or as many `super::` as lead to the
+/// root of the crate, groups in braces included. `depth` says how many that are.
+fn modules_used(text: &str, depth: usize) -> BTreeSet<String> {
+    let code: String =
+        shipped(text).lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+    let to_root = "super::".repeat(depth);
+    let mut found = BTreeSet::new();
+    for root in ["crate::", &to_root] {
+        for (at, _) in code.match_indices(root) {
+            // `super::` in the middle of a longer run of them leads elsewhere.
+            let before = code[..at].chars().next_back();
+            if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':') {
+                continue;
+            }
+            first_names(&code[at + root.len()..], &mut found);
+        }
+    }
+    found
+}
+
+/// The first name of a path, or the first names of all paths of a group in braces.
+fn first_names(path: &str, found: &mut BTreeSet<String>) {
+    let name = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let Some(group) = path.strip_prefix('{') else {
+        found.insert(name(path));
+        return;
+    };
+    let (mut depth, mut begins) = (1, true);
+    for (at, c) in group.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 1 => return,
+            '}' => depth -= 1,
+            ',' if depth == 1 => begins = true,
+            c if begins && (c.is_alphanumeric() || c == '_') => {
+                found.insert(name(&group[at..]));
+                begins = false;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Asserts that every module of a crate takes from modules on lower floors only. Modules of one floor do not know each
+/// other, and every module stands on a floor.
+#[track_caller]
+fn assert_floors(folder: &str, floors: &[&[&str]]) {
+    let floor_of = |module: &str| floors.iter().position(|floor| floor.contains(&module));
+    for (path, text) in files(folder) {
+        let inside = path.strip_prefix(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).expect("below");
+        let names: Vec<String> =
+            inside.components().map(|c| c.as_os_str().to_string_lossy().replace(".rs", "")).collect();
+        if names[0] == "lib" {
+            continue;
+        }
+        let own = floor_of(&names[0]).unwrap_or_else(|| panic!("`{}` stands on no floor of {folder}", names[0]));
+        let depth = names.iter().filter(|name| *name != "mod").count();
+        for used in modules_used(&text, depth).iter().filter(|used| **used != names[0]) {
+            let below = floor_of(used).is_none_or(|floor| floor < own);
+            assert!(below, "{} looks up to `{used}`", path.display());
+        }
+    }
+}
+
+#[test]
+fn modules_are_found_however_they_are_imported() {
+    let text = "use crate::one::A;\nuse crate::{two, three::{self, B}, four::C};\nfn f() { super::super::five::g() }\n\
+                // use crate::six;\nuse super::seven;\n#[cfg(test)]\nmod tests { use crate::eight; }";
+    let found: Vec<String> = modules_used(text, 2).into_iter().collect();
+    assert_eq!(found, ["five", "four", "one", "three", "two"]);
+    assert!(modules_used("use super::seven;", 1).contains("seven"));
+}
 
 #[test]
 fn no_floor_of_the_compiler_knows_a_floor_above_it() {
+    let floors = FLOORS.map(|floor| [floor]);
+    let known = |module: &str| FLOORS.contains(&module);
     for (path, text) in files("ntg-compiler/src") {
         let inside = path.strip_prefix(Path::new(env!("CARGO_MANIFEST_DIR")).join("ntg-compiler/src")).expect("below");
-        let room = inside.components().next().expect("a name").as_os_str().to_string_lossy().replace(".rs", "");
-        let Some(floor) = FLOORS.iter().position(|f| *f == room) else { continue };
-        for above in &FLOORS[floor + 1..] {
-            let word = format!("crate::{above}");
-            assert!(!shipped(&text).contains(&word), "{} looks up to `{above}`", path.display());
+        let names: Vec<String> =
+            inside.components().map(|c| c.as_os_str().to_string_lossy().replace(".rs", "")).collect();
+        let Some(floor) = floors.iter().position(|f| f[0] == names[0]) else { continue };
+        let depth = names.iter().filter(|name| *name != "mod").count();
+        for used in modules_used(&text, depth).iter().filter(|used| known(used)) {
+            let below = FLOORS.iter().position(|f| f == used).is_some_and(|used| used <= floor);
+            assert!(below, "{} looks up to `{used}`", path.display());
         }
     }
+}
+
+const FLOORS: [&str; 6] = ["source", "diagnostic", "syntax", "model", "program", "codegen"];
+
+#[test]
+fn no_floor_of_the_solver_knows_a_floor_above_it() {
+    let floors: &[&[&str]] = &[
+        &["contract", "options", "reductions"],
+        &["closures", "sparse", "status"],
+        &["check", "scaling"],
+        &["kkt", "residuals"],
+        &["outcome"],
+        &["stopping"],
+        &["ipm", "sqp"],
+        &["method"],
+    ];
+    assert_floors("ntg-nlp/src", floors);
+}
+
+#[test]
+fn no_floor_of_the_runtime_knows_a_floor_above_it() {
+    let floors: &[&[&str]] = &[
+        &["math", "problem", "settings", "status"],
+        &["lanes", "transcribe"],
+        &["error", "solution"],
+        &["guess", "report"],
+        &["explain", "strategy"],
+        &["refine"],
+        &["multistart", "solve"],
+        &["solver"],
+    ];
+    assert_floors("ntg-runtime/src", floors);
 }
 
 #[test]
@@ -94,13 +202,15 @@ fn code_generation_knows_no_calculus_and_the_algebra_no_rust() {
 
 #[test]
 fn only_one_file_names_clarabel() {
-    forbid("ntg-runtime/src", &["use clarabel", " clarabel::", "(clarabel::"], Some("sqp/clarabel.rs"));
+    forbid("ntg-nlp/src", &["use clarabel", " clarabel::", "(clarabel::"], Some("sqp/clarabel.rs"));
+    forbid("ntg-runtime/src", &["clarabel"], None);
 }
 
 #[test]
 fn compiler_and_runtime_do_not_know_each_other() {
     forbid("ntg-runtime/src", &["ntg_compiler", "ntg_interp", "ntg_macros"], None);
     forbid("ntg-compiler/src", &["ntg_runtime", "ntg_interp"], None);
+    forbid("ntg-nlp/src", &["ntg_structure", "ntg_splines", "ntg_runtime", "ntg_compiler"], None);
     forbid("ntg-sweep/src", &["ntg_compiler", "ntg_interp", "ntg_macros"], None);
     forbid("ntg-lsp/src", &["ntg_runtime", "ntg_interp", "ntg_macros"], None);
     forbid("ntg-report/src", &["ntg_interp", "ntg_macros", "std::fs", "std::net"], None);
@@ -116,6 +226,7 @@ fn there_are_no_globals_and_nothing_is_unfinished() {
         "ntg-math/src",
         "ntg-structure/src",
         "ntg-splines/src",
+        "ntg-nlp/src",
         "ntg-compiler/src",
         "ntg-macros/src",
         "ntg-runtime/src",
@@ -138,6 +249,7 @@ fn files_stay_small_enough_to_have_one_purpose() {
         "ntg-math/src",
         "ntg-structure/src",
         "ntg-splines/src",
+        "ntg-nlp/src",
         "ntg-compiler/src",
         "ntg-macros/src",
         "ntg-runtime/src",
@@ -165,10 +277,12 @@ fn every_code_is_documented_once() {
 }
 
 #[test]
-fn every_equation_that_code_cites_is_in_the_manual() {
+fn every_section_of_the_manual_that_code_cites_exists() {
     let manual =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/maths.md")).expect("docs/maths.md");
-    for folder in ["ntg-splines/src", "ntg-compiler/src", "ntg-runtime/src", "ntg-interp/src", "ntg-structure/src"] {
+    for folder in
+        ["ntg-splines/src", "ntg-nlp/src", "ntg-compiler/src", "ntg-runtime/src", "ntg-interp/src", "ntg-structure/src"]
+    {
         for (path, text) in files(folder) {
             for (at, _) in text.match_indices("maths.md, section ") {
                 let number: String = text[at + "maths.md, section ".len()..]

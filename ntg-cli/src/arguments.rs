@@ -208,10 +208,11 @@ pub(crate) enum Format {
 /// Which method solves the problem.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Method {
-    /// The Newton method, and what helps where it fails.
+    /// The structured interior-point method, and what helps where it fails.
     Auto,
     /// Sequential quadratic programming.
     Sqp,
-    /// The structured primal-dual Newton method alone.
-    Newton,
+    /// The structured interior-point method alone.
+    #[value(alias = "newton")]
+    InteriorPoint,
 }

@@ -137,7 +137,7 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
     settings.method = match arguments.method {
         arguments::Method::Auto => Method::Auto,
         arguments::Method::Sqp => Method::Sqp,
-        arguments::Method::Newton => Method::Newton,
+        arguments::Method::InteriorPoint => Method::InteriorPoint,
     };
     settings.validate().map_err(|invalid| invalid.to_string())?;
     Ok(settings)

@@ -1,36 +1,32 @@
 //! The runtime of ntg: what a compiled problem needs in order to be solved.
 //!
 //! ```text
-//! Problem -> transcribe -> Nlp -> sqp -> Solution, Report
+//! Problem -> transcribe -> Nlp -> strategy over ntg_nlp -> Solution, Report
 //! ```
 //!
-//! [`problem::Problem`] is the contract with every back end, [`nlp::Nlp`] the one with every
-//! method. [`solve()`] goes the whole way. The mathematics is in docs/maths.md, sections 3 to 9.
+//! [`problem::Problem`] is the contract with every back end, [`nlp::Nlp`] the one with the solver, the crate `ntg-nlp`:
+//! a structured interior-point method, and sequential quadratic programming where it fails. [`solve()`] goes the whole
+//! way. The mathematics is in docs/maths.md, sections 3 to 9 and 11 to 14.
 
 mod error;
 pub mod explain;
 pub mod guess;
 pub mod lanes;
 pub mod math;
-pub mod method;
 pub mod multistart;
-pub mod newton;
-pub mod nlp;
-pub mod outcome;
 pub mod problem;
 pub mod refine;
 pub mod report;
-mod session;
 pub mod settings;
 pub mod solution;
 mod solve;
 mod solver;
-pub mod sqp;
 pub mod status;
-mod stops;
+mod strategy;
 pub mod transcribe;
 
 pub use error::Error;
+pub use ntg_nlp as nlp;
 pub use ntg_splines as splines;
 pub use ntg_structure as structure;
 pub use solve::{solve, solve_from};

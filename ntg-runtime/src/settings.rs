@@ -3,63 +3,14 @@
 //! Settings are plain data with defaults that suit most problems; [`Settings::validate`] says in
 //! words which field is out of its range. They can be cloned and sent to other threads.
 
-use crate::refine::Refinement;
+pub use ntg_nlp::options::{Control, Method, OnIteration, Progress, Scaling};
+
+use ntg_nlp::Options;
+use ntg_nlp::options::ROUGH_TOLERANCE;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-
-/// What the callback answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Control {
-    /// Go on.
-    Continue,
-    /// Stop with [`Status::Cancelled`](crate::status::Status::Cancelled) and the present point.
-    Cancel,
-}
-
-/// What the callback learns, once an iteration, before its step is computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Iterations completed; 0 at the start.
-    pub iteration: usize,
-    /// The minimised objective, in the user's units.
-    pub objective: f64,
-    /// Largest scaled violation of a row or bound.
-    pub primal: f64,
-    /// Largest scaled component of the Lagrangian's gradient.
-    pub dual: f64,
-    /// Length of the last step, as a fraction of the one proposed; 0 at the start.
-    pub step: f64,
-    /// Seconds since the solve began.
-    pub seconds: f64,
-}
-
-/// A function that watches a solve and may cancel it.
-pub type OnIteration = Arc<dyn Fn(&Progress) -> Control + Send + Sync>;
-
-/// Whether variables and rows are brought to comparable size (docs/maths.md, section 5).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Scaling {
-    /// By units, bounds, the guess and the first derivatives at the start.
-    #[default]
-    Automatic,
-    /// Not at all: every scale is 1, apart from those given by name.
-    Off,
-}
-
-/// Which method solves a program (docs/maths.md, section 11.9).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Method {
-    /// The structured Newton method; where it fails, the same from a solution on fewer knots and with elastic
-    /// bounds; sequential quadratic programming last.
-    #[default]
-    Auto,
-    /// Sequential quadratic programming on Clarabel.
-    Sqp,
-    /// The structured primal-dual Newton method alone.
-    Newton,
-}
 
 /// How to solve. `Settings::default()` suits most problems.
 ///
@@ -124,8 +75,9 @@ pub struct Settings {
     /// Whether steps are corrected for the curvature of the constraints
     /// (docs/maths.md, section 6, second-order correction). Default true.
     pub second_order_correction: bool,
-    /// Whether the exact Hessian of the Lagrangian is tried once the set of active constraints
-    /// has settled; without it, the last digits come slowly. Default true.
+    /// Whether sequential quadratic programming ([`Method::Sqp`]) tries Newton's step with the exact Hessian once the
+    /// set of active constraints has settled; without it, the last digits come slowly. The interior-point method always
+    /// has the exact Hessian. Default true.
     pub exact_hessian: bool,
 }
 
@@ -184,20 +136,27 @@ impl fmt::Display for InvalidSetting {
 
 impl std::error::Error for InvalidSetting {}
 
-/// The tolerance of solutions that only serve as guesses.
-const ROUGH: f64 = 1e-3;
-
 impl Settings {
-    /// The same for a solution that only serves as a guess: of coarser knots, or of a step of a continuation.
-    pub(crate) fn rough(&self) -> Self {
-        let tolerance = self.tolerance.max(ROUGH);
-        let constraint_tolerance = self.constraint_tolerance.max(ROUGH);
-        Self { tolerance, constraint_tolerance, ..self.clone() }
+    /// What of these settings concerns the solver of nonlinear programs.
+    pub fn solver_options(&self) -> Options {
+        Options {
+            method: self.method,
+            tolerance: self.tolerance,
+            constraint_tolerance: self.constraint_tolerance,
+            max_iterations: self.max_iterations,
+            time_limit: self.time_limit,
+            on_iteration: self.on_iteration.clone(),
+            scaling: self.scaling,
+            second_order_correction: self.second_order_correction,
+            exact_hessian: self.exact_hessian,
+        }
     }
 
-    /// Whether no more is asked than a guess needs.
-    pub(crate) fn is_rough(&self) -> bool {
-        self.tolerance.min(self.constraint_tolerance) >= ROUGH
+    /// The same for a solution that only serves as a guess: of coarser knots, or of a step of a continuation.
+    pub(crate) fn rough(&self) -> Self {
+        let tolerance = self.tolerance.max(ROUGH_TOLERANCE);
+        let constraint_tolerance = self.constraint_tolerance.max(ROUGH_TOLERANCE);
+        Self { tolerance, constraint_tolerance, ..self.clone() }
     }
 
     /// The same with a callback that, once it has asked to stop, is not asked again: a problem may be
@@ -250,5 +209,36 @@ impl Settings {
             }
             None => Ok(()),
         }
+    }
+}
+
+/// How far meshes are refined (docs/maths.md, section 14).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refinement {
+    /// The relative error of the cost, and the relative violation between points, that are wanted;
+    /// between 1e-12 and 0.1.
+    pub tolerance: f64,
+    /// Rounds at most, the first solve included. Default 12.
+    pub rounds: usize,
+    /// A round that would have more variables is not begun. Default 20 000.
+    pub variables: usize,
+}
+
+impl Refinement {
+    /// As far as a tolerance asks, with the usual limits.
+    pub fn to(tolerance: f64) -> Self {
+        Self { tolerance, rounds: 12, variables: 20_000 }
+    }
+
+    /// Checks the tolerance and the limits.
+    pub(crate) fn validate(&self) -> Result<(), InvalidSetting> {
+        let invalid = |message| Err(InvalidSetting { field: "refine", message });
+        if !(1e-12..=0.1).contains(&self.tolerance) {
+            return invalid(format!("the tolerance {} is not between 1e-12 and 0.1", self.tolerance));
+        }
+        if self.rounds == 0 {
+            return invalid("0 rounds leave nothing to do; it must be at least 1".into());
+        }
+        Ok(())
     }
 }

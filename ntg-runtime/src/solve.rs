@@ -3,9 +3,10 @@
 use crate::error::Error;
 use crate::guess::Guess;
 use crate::problem::Problem;
+use crate::refine::refine;
 use crate::report::Report;
-use crate::session::Session;
 use crate::settings::Settings;
+use crate::strategy::{Session, Task};
 
 /// Solves a problem from the spec's own guess.
 ///
@@ -38,7 +39,7 @@ use crate::settings::Settings;
 /// # Errors
 /// [`Error`] if the problem cannot be set up; a solve that ends without solution is a report.
 pub fn solve(problem: &dyn Problem, settings: &Settings) -> Result<Report, Error> {
-    Session::default().solve((problem, None), settings)
+    solve_and_refine(&mut Session::default(), Task { problem, guess: None }, settings)
 }
 
 /// Solves a problem from a program's guess.
@@ -46,5 +47,21 @@ pub fn solve(problem: &dyn Problem, settings: &Settings) -> Result<Report, Error
 /// # Errors
 /// As [`solve`], and where the guess does not fit the problem.
 pub fn solve_from(problem: &dyn Problem, guess: &Guess, settings: &Settings) -> Result<Report, Error> {
-    Session::default().solve((problem, Some(guess)), settings)
+    solve_and_refine(&mut Session::default(), Task { problem, guess: Some(guess) }, settings)
+}
+
+/// Solves a problem on its own mesh, and on finer ones where the settings say so.
+pub(crate) fn solve_and_refine(session: &mut Session, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
+    settings.validate()?;
+    let settings = &settings.remembering();
+    let report = session.solve(task, settings)?;
+    refined(task.problem, report, settings)
+}
+
+/// A report on finer meshes where the settings say so.
+pub(crate) fn refined(problem: &dyn Problem, report: Report, settings: &Settings) -> Result<Report, Error> {
+    match &settings.refine {
+        Some(wanted) => refine(problem, report, wanted, settings),
+        None => Ok(report),
+    }
 }

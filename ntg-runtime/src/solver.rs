@@ -4,9 +4,10 @@ use crate::error::Error;
 use crate::guess::Guess;
 use crate::problem::Problem;
 use crate::report::Report;
-use crate::session::Session;
 use crate::settings::Settings;
 use crate::solution::Solution;
+use crate::solve::{refined, solve_and_refine};
+use crate::strategy::{Session, Task};
 
 /// Solves one problem many times and keeps everything that does not change between the solves: the
 /// transcription, the plans of the method and of the check on the finer grid, and the last solution.
@@ -55,7 +56,8 @@ impl<P: Problem, S> Solver<P, S> {
     /// # Errors
     /// The problem cannot be set up with its present parameters, or a setting is out of its range.
     pub fn solve(&mut self) -> Result<S, Error> {
-        let report = self.session.solve((&self.problem, None), &self.settings)?;
+        let task = Task { problem: &self.problem, guess: None };
+        let report = solve_and_refine(&mut self.session, task, &self.settings)?;
         Ok(self.keep(report))
     }
 
@@ -64,7 +66,8 @@ impl<P: Problem, S> Solver<P, S> {
     /// # Errors
     /// As [`Solver::solve`]; and the guess does not fit the problem.
     pub fn solve_from(&mut self, guess: &Guess) -> Result<S, Error> {
-        let report = self.session.solve((&self.problem, Some(guess)), &self.settings)?;
+        let task = Task { problem: &self.problem, guess: Some(guess) };
+        let report = solve_and_refine(&mut self.session, task, &self.settings)?;
         Ok(self.keep(report))
     }
 
@@ -77,6 +80,7 @@ impl<P: Problem, S> Solver<P, S> {
         if let Some(last) = self.last.clone()
             && let Some(report) = self.session.solve_again(&self.problem, &last, &self.settings)?
         {
+            let report = refined(&self.problem, report, &self.settings)?;
             return Ok(self.keep(report));
         }
         self.solve()

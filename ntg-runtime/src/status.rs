@@ -1,16 +1,10 @@
 //! Why a solve ended, in data and in words.
 
-use crate::nlp::NotFinite;
-use std::fmt;
+pub use ntg_nlp::residuals::{Residual, Residuals};
+pub use ntg_nlp::status::Bounded;
 
-/// What a bound belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bounded {
-    /// The constraint row with this index.
-    Row(usize),
-    /// The variable with this index.
-    Variable(usize),
-}
+use ntg_structure::Place;
+use std::fmt;
 
 /// A bound that is not met.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +32,17 @@ pub struct Crossing {
     pub lower: f64,
     /// The upper bound, which is smaller, or either is not a number.
     pub upper: f64,
+}
+
+/// A value that is not finite: what, where, and at which point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotFinite {
+    /// The constraint, cost term or subexpression that failed.
+    pub place: Place,
+    /// The value: `NaN` or `inf`.
+    pub value: f64,
+    /// Where along the trajectory, in words: "phase covert, t = 12.5 s (tau = 0.25)".
+    pub point: String,
 }
 
 /// Why a solve ended.
@@ -179,23 +184,13 @@ fn list<T>(
     }
 }
 
-/// How far a point is from a solution, one way of measuring.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Residual {
-    /// Largest violation of a row or of a bound on a variable.
-    pub primal: f64,
-    /// Largest component of the gradient of the Lagrangian.
-    pub dual: f64,
-    /// Largest product of a multiplier and the distance to the bound that it belongs to.
-    pub complementarity: f64,
-}
-
-/// How far a point is from a solution, by scale and in the program's own units
-/// (docs/maths.md, section 6, termination).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Residuals {
-    /// In scaled variables and rows: what the tolerances are compared with.
-    pub scaled: Residual,
-    /// In the program's own units.
-    pub unscaled: Residual,
+impl fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { place, value, point } = self;
+        write!(f, "`{}` is {value}", place.text)?;
+        if place.line > 0 {
+            write!(f, " (line {}, column {})", place.line, place.column)?;
+        }
+        if point.is_empty() { Ok(()) } else { write!(f, " at {point}") }
+    }
 }

@@ -7,7 +7,7 @@ use ntg::runtime::transcribe::{SetupError, Why};
 
 use crate::support::Shipped;
 
-/// The conflict behind a problem without solution. The Newton method alone ends sooner, so that
+/// The conflict behind a problem without solution. The interior-point method alone ends sooner, so that
 /// most tests ask for it.
 #[track_caller]
 fn conflict(problem: &Shipped, method: Method) -> Conflict {
@@ -67,7 +67,8 @@ fn a_constraint_said_twice_is_named_once_and_others_not_at_all() {
         high: altitude + 0 * x >= 1 [km];
         wide: -500 [km] <= x <= 500 [km];",
     )];
-    let found = conflict(&Shipped::edited("low_observable", &edits).with("signature_max", &[2.0]), Method::Newton);
+    let found =
+        conflict(&Shipped::edited("low_observable", &edits).with("signature_max", &[2.0]), Method::InteriorPoint);
     let names = names(&found);
     assert!(names == ["again", "arrival"] || names == ["arrival", "low_observable"], "{found}");
 }
@@ -76,7 +77,8 @@ fn a_constraint_said_twice_is_named_once_and_others_not_at_all() {
 fn a_speed_range_too_slow_for_the_time() {
     // 135 km in 150 s at no more than 0.25 km/s.
     let edits = [("duration T in 100 .. 3000 [s];", "duration T in 100 .. 150 [s];")];
-    let found = conflict(&Shipped::edited("low_observable", &edits).with("signature_max", &[7.0]), Method::Newton);
+    let found =
+        conflict(&Shipped::edited("low_observable", &edits).with("signature_max", &[7.0]), Method::InteriorPoint);
     let names = names(&found);
     for needed in ["speed_limits", "arrival", "the upper bound of the duration of the trajectory"] {
         assert!(names.contains(&needed), "{needed}: {found}");
@@ -113,7 +115,7 @@ fn phases_that_contradict_each_other_are_named_with_their_phase() {
         ("duration T in 100 .. 3000 [s];", phases),
         ("        T = 900 [s];\n", "        duration(away) = 600 [s]; duration(dash) = 50 [s];\n"),
     ];
-    let found = conflict(&Shipped::edited("low_observable_cosine", &edits), Method::Newton);
+    let found = conflict(&Shipped::edited("low_observable_cosine", &edits), Method::InteriorPoint);
     let expected =
         ["arrival", "away.still_far", "dash.speed_limits", "the upper bound of the duration of phase `dash`"];
     assert_eq!(names(&found), expected, "{found}");

@@ -103,7 +103,7 @@ fn random_routes_by_every_method() {
         let numbers: Vec<f64> = line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect();
         let inner = numbers.chunks_exact(2).map(|p| [p[0], p[1]]);
         let points: Vec<[f64; 2]> = [[-100.0, -100.0]].into_iter().chain(inner).chain([[5.0, -15.0]]).collect();
-        let method = [Method::Auto, Method::Newton, Method::Sqp][number % 3];
+        let method = [Method::Auto, Method::InteriorPoint, Method::Sqp][number % 3];
         let settings = Settings { method, ..Settings::default() };
         let report = solve_from(problem.problem(), &Guess::new().route(&["x", "y"], &points), &settings);
         let report = report.unwrap_or_else(|error| panic!("{error}"));

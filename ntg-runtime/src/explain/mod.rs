@@ -13,9 +13,6 @@ mod parts;
 
 use crate::error::Error;
 use crate::guess::start;
-use crate::newton;
-use crate::nlp::{Nlp, kkt};
-use crate::outcome::Outcome;
 use crate::problem::Problem;
 use crate::report::Report;
 use crate::settings::Settings;
@@ -23,6 +20,9 @@ use crate::status::Status;
 use crate::transcribe::Transcription;
 use crate::transcribe::rows::RowKind;
 use near::{Nearest, Row};
+use ntg_nlp::Status as End;
+use ntg_nlp::ipm::{self, FixedPenalty};
+use ntg_nlp::{Nlp, Options, Outcome, residuals};
 use ntg_structure::{Block, Place, Unit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
@@ -200,7 +200,7 @@ fn near(
 
 impl Relaxed {
     fn is_infeasible(&self) -> bool {
-        matches!(self.outcome.status, Status::Infeasible { .. })
+        matches!(self.outcome.status, End::Infeasible { .. })
     }
 }
 
@@ -281,21 +281,21 @@ impl Search<'_> {
         };
         let rows: Vec<Row> = (0..self.nlp.rows()).map(row).collect();
         let near = Nearest::new(self.nlp, x, &rows);
-        let settings = Settings {
+        let options = Options {
             tolerance: TOLERANCE,
             constraint_tolerance: TOLERANCE,
             max_iterations: ITERATIONS,
             time_limit: Some(remaining),
-            ..self.settings.clone()
+            ..self.settings.solver_options()
         };
-        let outcome = newton::solve_at_price(&near, x, (PRICE, barrier), &settings);
-        if matches!(outcome.status, Status::Cancelled | Status::TimeLimit | Status::NotFinite(_)) {
+        let outcome = ipm::solve_at_fixed_penalty(&near, x, FixedPenalty { parameter: PRICE, barrier }, &options);
+        if matches!(outcome.status, End::Cancelled | End::TimeLimit | End::NotFinite { .. }) {
             return None;
         }
         let (mut work, mut out) = near.workspace();
         near.values(&outcome.x, &mut work, &mut out).ok()?;
         let limits = near.limits();
-        let missed = |i: usize| kkt::violation(out.rows[i], limits.row_lower[i], limits.row_upper[i]);
+        let missed = |i: usize| residuals::violation(out.rows[i], limits.row_lower[i], limits.row_upper[i]);
         let sum = (0..near.rows()).map(|i| missed(i) / self.nlp.limits.row_scale[i]).sum();
         let violation = if outcome.status.is_solved() { 0.0 } else { sum };
         Some(Relaxed { rows: out.rows, outcome, violation })

@@ -9,9 +9,8 @@
 //! Solved with elastic bounds at a price that makes the objective small beside any violation, it
 //! gives the least sum of violations, and of all points with that sum the nearest one.
 
-use crate::nlp::{Block, BlockValues, Evaluation, Limits, Nlp, NotFinite, Scales, Target};
 use crate::transcribe::layout::narrow;
-use ntg_structure::Degree;
+use ntg_nlp::{Block, BlockValues, Evaluation, Limits, Nlp, NotFinite, Scales, Target};
 
 /// How much more a violation of a row that should hold counts than others.
 const FIRM: f64 = 100.0;
@@ -86,7 +85,6 @@ fn distances(x0: &[f64], sizes: &[f64]) -> Block {
         rows: 1,
         jacobian: vec![(0, 0)],
         hessian: vec![(0, 0)],
-        degree: vec![Degree::Quadratic],
         variable_start: (0..=count).collect(),
         variables: (0..count).map(narrow).collect(),
         map_start: (0..=count).collect(),
@@ -94,7 +92,6 @@ fn distances(x0: &[f64], sizes: &[f64]) -> Block {
         offset: x0.iter().zip(sizes).map(|(x, size)| -x / size).collect(),
         target: vec![Target::Objective; count],
         weight: vec![1.0; count],
-        tau: vec![f64::NAN; count],
     }
 }
 
@@ -143,13 +140,5 @@ impl<N: Nlp> Nlp for Nearest<'_, N> {
             own.hessian.fill(objective_weight);
         }
         Ok(())
-    }
-
-    fn row_name(&self, row: usize) -> String {
-        self.nlp.row_name(row)
-    }
-
-    fn variable_name(&self, variable: usize) -> String {
-        self.nlp.variable_name(variable)
     }
 }

@@ -1,10 +1,10 @@
 //! The parts of a conflict in the user's words: name, place, time, amount.
 
 use super::{AS_GOOD_AS_NONE, Constraints, IDLE, NOTHING, Part, Relaxed, Search};
-use crate::nlp::{Nlp, kkt};
 use crate::transcribe::layout::Time;
 use crate::transcribe::names;
 use crate::transcribe::rows::constraint_name;
+use ntg_nlp::{Nlp, residuals};
 use ntg_structure::{Place, Unit};
 
 impl Search<'_> {
@@ -24,7 +24,7 @@ impl Search<'_> {
     /// multiplier where all hold.
     fn part(&self, constraint: usize, relaxed: &Relaxed) -> Option<(f64, Part)> {
         let (limits, rows) = (&self.nlp.limits, &relaxed.rows);
-        let missed = |row: usize| kkt::violation(rows[row], limits.row_lower[row], limits.row_upper[row]);
+        let missed = |row: usize| residuals::violation(rows[row], limits.row_lower[row], limits.row_upper[row]);
         let own = (0..rows.len()).filter(|row| self.constraint(*row) == Some(constraint));
         let key = |row: &usize| {
             let relative = missed(*row) / limits.row_scale[*row];

@@ -3,6 +3,7 @@
 use crate::transcribe::Transcription;
 use crate::transcribe::layout::Time;
 use crate::transcribe::slots::AffineMap;
+use ntg_nlp::Target;
 use ntg_splines::Side;
 use ntg_structure::{Degree, Domain};
 
@@ -125,8 +126,8 @@ pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option
         if !matches!(declared.domain, Domain::Path { .. }) {
             continue;
         }
-        for row in (0..block.rows).filter(|row| block.degree[*row] == Degree::Linear) {
-            let crate::nlp::Target::Row(target) = block.target[row * block.elements + element] else { continue };
+        for row in (0..block.rows).filter(|row| group.degree[*row] == Degree::Linear) {
+            let Target::Row(target) = block.target[row * block.elements + element] else { continue };
             let slots: Vec<usize> = block.jacobian.iter().filter(|e| e.0 == row).map(|e| e.1).collect();
             let &[slot] = &slots[..] else { continue };
             let variables = block.variables(element);

@@ -6,7 +6,6 @@
 //!
 //! Finds: names that nothing bears, values that are not finite, wrong numbers of coefficients.
 
-pub(crate) mod continuation;
 mod defaults;
 mod earlier;
 mod program;

@@ -5,10 +5,10 @@
 use super::program::{Base, Guess};
 use super::statements::Statements;
 use super::{defaults, earlier};
-use crate::nlp::Nlp;
 use crate::transcribe::layout::{Layout, Time};
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Transcription};
+use ntg_nlp::Nlp;
 use ntg_splines::{Knots, Place, Sampled, fit_all};
 use std::rc::Rc;
 

@@ -9,8 +9,8 @@ use crate::guess::{Guess, start};
 use crate::problem::Problem;
 use crate::refine::{Refinement, refine};
 use crate::report::Report;
-use crate::session::Session;
 use crate::settings::{Control, InvalidSetting, Settings};
+use crate::strategy::{Session, Task};
 use crate::transcribe::Transcription;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -60,7 +60,7 @@ pub fn multistart_from(
         if watch.cancelled.load(Ordering::Relaxed) || remaining == Some(Duration::ZERO) {
             return None;
         }
-        let settings = Settings { time_limit: remaining, refine: None, ..settings.clone() };
+        let settings = Settings { time_limit: remaining, refine: None, ..settings.remembering() };
         Some(watch.done(plan.solve((problem, session), number, &settings), nlp.model.structure.maximize))
     });
     let solved: Vec<One> = solved.collect::<Vec<_>>().into_iter().flatten().collect();
@@ -162,7 +162,8 @@ impl<'a> Plan<'a> {
                 parameters::draw(self.nlp, self.guess, self.open, (self.starts.seed, self.visit(number)))
             }
         };
-        let result = x.map_err(Error::from).and_then(|x| session.solve((problem, Some(&Guess::raw(x))), settings));
+        let result =
+            x.map_err(Error::from).and_then(|x| session.solve(Task { problem, guess: Some(&Guess::raw(x)) }, settings));
         One { origin, result: result.map_err(|error| error.to_string()), seconds: began.elapsed().as_secs_f64() }
     }
 }

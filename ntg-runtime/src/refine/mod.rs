@@ -8,114 +8,24 @@
 //! Every round transcribes anew: breakpoints are plain data of the structure. The start of a round
 //! is the solution of the one before, which finer knots reproduce exactly.
 
-mod display;
 mod estimate;
 mod marks;
 
+pub use crate::report::{RefineStatus, Refined, Round};
+pub use crate::settings::Refinement;
+
 use crate::error::Error;
 use crate::guess::Guess;
-use crate::nlp::Nlp;
 use crate::problem::{Problem, WithStructure};
 use crate::report::Report;
-use crate::session::Session;
-use crate::settings::{InvalidSetting, Settings};
+use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::status::Status;
+use crate::strategy::{Session, Task};
 use crate::transcribe::Transcription;
 use marks::{Marks, split};
+use ntg_nlp::Nlp;
 use std::time::{Duration, Instant};
-
-/// How far to go.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Refinement {
-    /// The relative error of the cost, and the relative violation between points, that are wanted;
-    /// between 1e-12 and 0.1.
-    pub tolerance: f64,
-    /// Rounds at most, the first solve included. Default 12.
-    pub rounds: usize,
-    /// A round that would have more variables is not begun. Default 20 000.
-    pub variables: usize,
-}
-
-impl Refinement {
-    /// As far as a tolerance asks, with the usual limits.
-    pub fn to(tolerance: f64) -> Self {
-        Self { tolerance, rounds: 12, variables: 20_000 }
-    }
-
-    /// Checks the tolerance and the limits.
-    pub(crate) fn validate(&self) -> Result<(), InvalidSetting> {
-        let invalid = |message| Err(InvalidSetting { field: "refine", message });
-        if !(1e-12..=0.1).contains(&self.tolerance) {
-            return invalid(format!("the tolerance {} is not between 1e-12 and 0.1", self.tolerance));
-        }
-        if self.rounds == 0 {
-            return invalid("0 rounds leave nothing to do; it must be at least 1".into());
-        }
-        Ok(())
-    }
-}
-
-impl Refined {
-    /// Whether all errors are within the tolerance.
-    pub fn is_met(&self) -> bool {
-        self.status == RefineStatus::Met
-    }
-}
-
-/// One round.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Round {
-    /// Knot intervals of all phases.
-    pub intervals: usize,
-    /// Variables of the nonlinear program.
-    pub variables: usize,
-    /// The objective as discretised, in the user's sense and unit.
-    pub objective: f64,
-    /// The objective finely integrated, in the user's sense and unit.
-    pub fine: f64,
-    /// The relative difference of the two.
-    pub quadrature: f64,
-    /// The relative change of the finely integrated objective since the round before; NaN in the first.
-    pub change: f64,
-    /// The largest relative violation on the fine grid.
-    pub violation: f64,
-    /// Iterations of its solve.
-    pub iterations: usize,
-    /// Seconds of its solve.
-    pub seconds: f64,
-}
-
-/// Why refinement ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RefineStatus {
-    /// All errors are within the tolerance.
-    Met,
-    /// The limit on rounds was reached.
-    Rounds,
-    /// The limit on variables was reached.
-    Variables,
-    /// `Settings::time_limit` was reached.
-    Time,
-    /// A round was not solved; the report is that of the last one that was, or of the first.
-    NotSolved,
-    /// The callback asked to stop.
-    Cancelled,
-    /// No interval that would have to be split is long enough for it.
-    Shortest,
-}
-
-/// What refinement did, a part of the report of its last solve.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Refined {
-    /// Every round, in order.
-    pub rounds: Vec<Round>,
-    /// Why it ended.
-    pub status: RefineStatus,
-    /// The tolerance that was wanted.
-    pub tolerance: f64,
-}
 
 /// Solves a problem on finer and finer meshes, from a report about a coarser one; `problem` must be
 /// the one that was solved. [`Settings::refine`] does this after every solve.
@@ -209,7 +119,7 @@ fn from(mesh: &WithStructure, before: &Solution, settings: &Settings) -> Result<
     let mut session = Session::default();
     match session.solve_again(mesh, before, settings)? {
         Some(report) => Ok(report),
-        None => session.solve((mesh, Some(&Guess::from(before))), settings),
+        None => session.solve(Task { problem: mesh, guess: Some(&Guess::from(before)) }, settings),
     }
 }
 
@@ -236,11 +146,5 @@ fn round(nlp: &Transcription, report: &Report, before: Option<&Round>) -> Round 
         violation: report.violation.between,
         iterations: report.iterations,
         seconds: report.seconds,
-    }
-}
-
-impl Round {
-    fn within(&self, tolerance: f64) -> bool {
-        self.quadrature <= tolerance && self.change <= tolerance && self.violation <= tolerance
     }
 }

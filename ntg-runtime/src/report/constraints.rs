@@ -2,11 +2,11 @@
 
 use super::fine::{Plan, Wanted};
 use super::{ConstraintReport, Worst, multipliers};
-use crate::nlp::Evaluation;
-use crate::sqp::Outcome;
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
 use crate::transcribe::{SetupError, Transcription, names};
+use ntg_nlp::Evaluation;
+use ntg_nlp::Outcome;
 
 /// One entry for each constraint of the spec, and the terms on the finer grid.
 /// `at` holds the program's values at the last point.

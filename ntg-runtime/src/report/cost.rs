@@ -1,8 +1,8 @@
 //! The objective by terms, as discretised and on the finer grid.
 
 use super::TermReport;
-use crate::nlp::Evaluation;
 use crate::transcribe::Transcription;
+use ntg_nlp::Evaluation;
 use ntg_structure::Row;
 
 /// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.

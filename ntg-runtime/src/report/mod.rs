@@ -8,17 +8,19 @@ mod cost;
 mod display;
 pub(crate) mod fine;
 mod multipliers;
+mod refined;
+pub(crate) mod status;
 mod traces;
 
+pub use refined::{RefineStatus, Refined, Round};
 pub use traces::Trace;
 
-use crate::nlp::{Evaluation, Nlp};
-use crate::refine::Refined;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};
-use crate::sqp::Outcome;
 use crate::status::{Residuals, Status};
 use crate::transcribe::{SetupError, Singular, Transcription, Workspace};
 use fine::{Plan, Wanted};
+use ntg_nlp::Outcome;
+use ntg_nlp::{Evaluation, Nlp};
 use ntg_structure::{Block, Place, Unit};
 use std::sync::Arc;
 
@@ -217,10 +219,11 @@ impl Report {
                 bound_multipliers: outcome.bound_multipliers,
             }),
         };
+        let status = status::in_words(nlp, outcome.status);
         Ok(Self {
             problem: structure.name.clone(),
-            advice: outcome.status.advice(),
-            status: outcome.status,
+            advice: status.advice(),
+            status,
             objective: user(nlp, outcome.objective),
             objective_fine: user(nlp, fine_terms.iter().sum()),
             objective_unit: structure.objective_unit.clone(),
@@ -252,7 +255,7 @@ pub(crate) fn violations(nlp: &Transcription, x: &[f64], samples: usize) -> Resu
     Plan::new(nlp, samples)?.evaluate(nlp, (x, Wanted::Violated), |checked| {
         let (lower, upper) = checked.bounds;
         let unit = nlp.model.structure.constraints[checked.constraint].unit.factor;
-        let missed = crate::nlp::kkt::violation(checked.value, lower, upper);
+        let missed = ntg_nlp::residuals::violation(checked.value, lower, upper);
         let relative = missed / constraints::scale(lower, upper, unit);
         if let Some(phase) = checked.point.phase.filter(|_| relative > 0.0) {
             found.push((phase, checked.point.tau, relative));

@@ -3,10 +3,10 @@
 
 use super::{ConstraintReport, Multiplier};
 use crate::solution::Solution;
-use crate::sqp::Outcome;
 use crate::transcribe::Transcription;
 use crate::transcribe::layout::Layout;
 use crate::transcribe::rows::{RowInfo, RowKind, constraint_name};
+use ntg_nlp::Outcome;
 use ntg_structure::Structure;
 
 /// Adds one row's multiplier to its constraint's report.

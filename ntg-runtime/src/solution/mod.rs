@@ -12,10 +12,10 @@ pub use family::Family;
 pub use signal::Signal;
 pub use trajectory::Trajectory;
 
-use crate::outcome::Multipliers;
 use crate::transcribe::instances::family_members;
 use crate::transcribe::rows::RowInfo;
 use crate::transcribe::{Model, names};
+use ntg_nlp::Multipliers;
 use ntg_structure::{Structure, Unit};
 use std::fmt;
 use std::ops::Range;

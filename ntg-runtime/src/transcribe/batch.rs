@@ -9,8 +9,8 @@ use super::frame::Frame;
 use super::node::{Node, NodeWork, Site};
 use super::shape::{Traced, trace};
 use super::slots::{AffineMap, SlotMaps, Source};
-use crate::nlp::BlockValues;
 use crate::problem::{Derivatives, Lanes, Problem};
+use ntg_nlp::BlockValues;
 use ntg_splines::Table;
 use ntg_structure::{Call, Degree, Kernel, ReduceOp};
 

@@ -13,7 +13,7 @@ use super::linear::{Combination, LinearSystem};
 use super::names;
 use super::rows::{RowKind, constraint_words};
 use super::slots::AffineMap;
-use crate::nlp::{Block, BlockValues, Target};
+use ntg_nlp::{Block, BlockValues, Target};
 use ntg_structure::{Degree, Domain};
 
 /// A miss smaller than this part of the numbers it comes from is rounding.
@@ -72,7 +72,7 @@ fn combinations(frame: &Frame, elements: &Elements) -> Vec<Option<Combination>> 
     let zero = vec![0.0; frame.layout.variables];
     for (index, block) in elements.blocks.iter().enumerate() {
         let group = elements.batches.get(index);
-        let linear = |row: usize| block.degree[row] <= Degree::Linear;
+        let linear = |row: usize| group.is_some_and(|g| g.degree[row] <= Degree::Linear);
         let point = group.is_some_and(|g| !matches!(frame.structure.groups[g.group].domain, Domain::Path { .. }));
         let values =
             group.filter(|_| point && (0..block.rows).any(linear)).map(|g| derivatives(frame, g, block, &zero));
@@ -127,7 +127,7 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
         let block = &elements.blocks[index];
         let mut u = vec![f64::NAN; block.slots * block.elements];
         let mut ends = vec![];
-        for element in (0..block.elements).filter(|e| at_end(block.tau[*e])) {
+        for element in (0..block.elements).filter(|e| at_end(group.batch.sites[*e].point.tau)) {
             for slot in 0..block.slots {
                 if let Some(value) = system.value(&slot_map(block, element, slot)) {
                     u[slot * block.elements + element] = value;

@@ -13,7 +13,7 @@ use super::node::Site;
 use super::points::{Point, point_set};
 use super::rows::{RowInfo, RowKind, group_bounds};
 use super::slots::AffineMap;
-use crate::nlp::{Block, Target};
+use ntg_nlp::{Block, Target};
 use ntg_structure::{Affine, Degree, Domain, Group, PhaseRef, Points, Row};
 use std::collections::BTreeMap;
 
@@ -22,6 +22,8 @@ use std::collections::BTreeMap;
 pub(crate) struct GroupBatch {
     pub(crate) group: usize,
     pub(crate) batch: Batch,
+    /// How each row depends on the slots.
+    pub(crate) degree: Vec<Degree>,
 }
 
 /// Everything that depends on groups.
@@ -105,10 +107,8 @@ impl Elements {
             rows: group.rows.len(),
             jacobian,
             hessian,
-            degree: batch.degrees(kernels),
             target: vec![Target::Objective; group.rows.len() * count],
             weight: vec![1.0; group.rows.len() * count],
-            tau: batch.sites.iter().map(|site| site.point.tau).collect(),
             ..Block::default()
         };
         map_block(&mut block, &maps);
@@ -129,14 +129,15 @@ impl Elements {
             }
         }
         self.blocks.push(block);
-        self.batches.push(GroupBatch { group: index, batch });
+        let degree = batch.degrees(kernels);
+        self.batches.push(GroupBatch { group: index, batch, degree });
         Ok(())
     }
 
     /// Takes in other values of parameters: data and bounds. Layout and clock are the same.
     pub(crate) fn take_data(&mut self, frame: &Frame) -> Result<(), SetupError> {
         let Self { blocks, batches, lower, upper, rows, .. } = self;
-        for (number, (block, GroupBatch { group, batch })) in blocks.iter().zip(batches).enumerate() {
+        for (number, (block, GroupBatch { group, batch, .. })) in blocks.iter().zip(batches).enumerate() {
             let group = &frame.structure.groups[*group];
             batch.take_data(frame, &group.call)?;
             let mut bounds = vec![];
@@ -198,10 +199,8 @@ impl Elements {
             slots: 1,
             rows: 1,
             jacobian: vec![(0, 0)],
-            degree: vec![Degree::Linear],
             target: targets,
             weight: vec![1.0; count],
-            tau: vec![f64::NAN; count],
             ..Block::default()
         };
         map_block(&mut block, &maps);
@@ -210,7 +209,7 @@ impl Elements {
 
     /// Sends parts of constraints and of integrals to the rows that other elements have made.
     fn add_parts(&mut self, frame: &Frame) -> Result<(), SetupError> {
-        for (block, GroupBatch { group, batch }) in self.blocks.iter_mut().zip(&self.batches) {
+        for (block, GroupBatch { group, batch, .. }) in self.blocks.iter_mut().zip(&self.batches) {
             let group = &frame.structure.groups[*group];
             for (row, meaning) in group.rows.iter().enumerate() {
                 for (element, site) in batch.sites.iter().enumerate() {

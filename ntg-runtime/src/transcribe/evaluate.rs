@@ -4,9 +4,8 @@
 
 use super::Transcription;
 use super::batch::BatchWork;
-use super::fault;
-use crate::nlp::{Block, BlockValues, Evaluation, Limits, Nlp, NotFinite, Target};
 use ntg_math::{Simd, Task, dispatch};
+use ntg_nlp::{Block, BlockValues, Entry, Evaluation, Limits, Nlp, NotFinite, Target};
 
 /// Buffers for the evaluations of a [`Transcription`].
 #[derive(Clone, Debug, Default)]
@@ -47,7 +46,7 @@ impl Nlp for Transcription<'_> {
             out.values.copy_from_slice(&work.node.values);
         }
         self.identities(x, blocks);
-        self.finite_values(x, out)?;
+        self.finite_values(out)?;
         self.add_up(out);
         Ok(())
     }
@@ -74,18 +73,10 @@ impl Nlp for Transcription<'_> {
             group.batch.derivatives(self.problem, kernels, tables, x, work, out);
         }
         self.identities(x, &mut out.blocks);
-        self.finite_values(x, out)?;
-        self.finite_derivatives(x, out)?;
+        self.finite_values(out)?;
+        self.finite_derivatives(out)?;
         self.add_up(out);
         Ok(())
-    }
-
-    fn row_name(&self, row: usize) -> String {
-        self.name_of_row(row)
-    }
-
-    fn variable_name(&self, variable: usize) -> String {
-        self.name_of_variable(variable)
     }
 }
 
@@ -115,22 +106,30 @@ impl Transcription<'_> {
         }
     }
 
-    fn finite_values(&self, x: &[f64], out: &Evaluation) -> Result<(), NotFinite> {
+    fn finite_values(&self, out: &Evaluation) -> Result<(), NotFinite> {
         for (block, values) in out.blocks.iter().enumerate() {
             if !all_finite(&values.values) {
                 let at = first_fault(&values.values);
-                return Err(fault::in_values(self, x, block, at, values.values[at]));
+                let elements = self.elements.blocks[block].elements;
+                let entry = Entry::Value { block, element: at % elements, row: at / elements };
+                return Err(NotFinite { entry, value: values.values[at] });
             }
         }
         Ok(())
     }
 
-    fn finite_derivatives(&self, x: &[f64], out: &Evaluation) -> Result<(), NotFinite> {
+    fn finite_derivatives(&self, out: &Evaluation) -> Result<(), NotFinite> {
         for (block, values) in out.blocks.iter().enumerate() {
             for (entries, first) in [(&values.jacobian, true), (&values.hessian, false)] {
                 if !all_finite(entries) {
                     let at = first_fault(entries);
-                    return Err(fault::in_derivatives(self, x, block, (at, first), entries[at]));
+                    let Block { elements, jacobian, .. } = &self.elements.blocks[block];
+                    let element = at % elements;
+                    let entry = match first {
+                        true => Entry::FirstDerivative { block, element, row: jacobian[at / elements].0 },
+                        false => Entry::SecondDerivative { block, element },
+                    };
+                    return Err(NotFinite { entry, value: entries[at] });
                 }
             }
         }

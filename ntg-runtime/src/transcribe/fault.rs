@@ -1,34 +1,35 @@
 //! Which subexpression is not finite, and where.
 //!
-//! Takes the block and entry that failed; evaluates the probes of the kernels behind it at that
+//! Takes the indices that the solver gives back, and the point; evaluates the probes of the kernels behind it at that
 //! element, innermost first, and names the first that is not finite. Where all probes are finite,
 //! the function itself is named.
 
 use super::Transcription;
 use super::names;
 use super::node::{Node, NodeWork};
-use crate::nlp::NotFinite;
+use crate::status::NotFinite;
+use ntg_nlp::Entry;
 use ntg_structure::{Place, Row};
 
-/// Entry `at` of a block's values is not finite.
-pub(crate) fn in_values(this: &Transcription, x: &[f64], block: usize, at: usize, value: f64) -> NotFinite {
-    let elements = this.elements.blocks[block].elements;
-    locate(this, x, block, (at % elements, at / elements), value)
+/// An entry of an evaluation that is not finite, in the user's words; `x` is the point of the evaluation.
+pub(crate) fn words(this: &Transcription, what: ntg_nlp::NotFinite, x: &[f64]) -> NotFinite {
+    let value = what.value;
+    match what.entry {
+        Entry::Variable(variable) => {
+            let place = Place { text: this.variable_name(variable), ..Place::default() };
+            NotFinite { place, value, point: "the start".to_owned() }
+        }
+        Entry::Value { block, element, row } => locate(this, x, block, (element, row), value),
+        Entry::FirstDerivative { block, element, row } => {
+            in_derivative(locate(this, x, block, (element, row), value), "first")
+        }
+        Entry::SecondDerivative { block, element } => {
+            in_derivative(locate(this, x, block, (element, 0), value), "second")
+        }
+    }
 }
 
-/// An entry of a block's derivatives is not finite: of the Jacobian, or of the Hessian.
-pub(crate) fn in_derivatives(
-    this: &Transcription,
-    x: &[f64],
-    block: usize,
-    (at, first): (usize, bool),
-    value: f64,
-) -> NotFinite {
-    let elements = this.elements.blocks[block].elements;
-    let entry = at / elements;
-    let row = if first { this.elements.blocks[block].jacobian[entry].0 } else { 0 };
-    let mut found = locate(this, x, block, (at % elements, row), value);
-    let order = if first { "first" } else { "second" };
+fn in_derivative(mut found: NotFinite, order: &str) -> NotFinite {
     if found.point.is_empty() {
         found.point = format!("a {order} derivative");
     } else {

@@ -1,7 +1,7 @@
 //! From a problem to a nonlinear program (docs/maths.md, section 4).
 //!
 //! Takes a [`Problem`] with the values of its parameters; gives a [`Transcription`], which is an
-//! [`Nlp`](crate::nlp::Nlp): variables are spline coefficients, free times, declared variables and
+//! [`Nlp`](ntg_nlp::Nlp): variables are spline coefficients, free times, declared variables and
 //! integrals; elements are the problem's functions at points of collocation.
 //!
 //! Finds, before any iteration: parameters that are not finite, tables and splines that do not
@@ -16,7 +16,7 @@ mod contradictions;
 pub(crate) mod elements;
 mod error;
 mod evaluate;
-mod fault;
+pub(crate) mod fault;
 pub(crate) mod frame;
 pub(crate) mod instances;
 pub(crate) mod layout;
@@ -39,12 +39,12 @@ pub use singular::Singular;
 pub(crate) use singular::singular;
 pub use tables::interpolants;
 
-use crate::nlp::Limits;
 use crate::problem::Problem;
 use elements::Elements;
 use frame::Frame;
 use layout::Layout;
 use linear::LinearSystem;
+use ntg_nlp::Limits;
 use ntg_splines::Table;
 use ntg_structure::{Place, Structure};
 use rows::RowKind;
@@ -167,7 +167,8 @@ impl<'p> Transcription<'p> {
         self.model.frame(self.problem)
     }
 
-    pub(crate) fn name_of_row(&self, row: usize) -> String {
+    /// What row `row` of the program is, in the user's words: "`turn` at t = 12.5 s".
+    pub fn row_name(&self, row: usize) -> String {
         let Some(info) = self.elements.rows.get(row) else { return format!("row {row}") };
         let structure = &self.model.structure;
         let words = match info.kind {
@@ -182,7 +183,8 @@ impl<'p> Transcription<'p> {
         }
     }
 
-    pub(crate) fn name_of_variable(&self, variable: usize) -> String {
+    /// What variable `variable` of the program is, in the user's words.
+    pub fn variable_name(&self, variable: usize) -> String {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         let is = |candidate: u32| candidate as usize == variable;
         for phase in 0..layout.phases.len() {

@@ -4,9 +4,9 @@ use super::grid::{Grid, HEADINGS, TURNS};
 use super::poses::Poses;
 use super::rates::{Rate, Rates, Where};
 use crate::multistart::vehicles::Vehicle;
-use crate::nlp::{Nlp, Target};
 use crate::transcribe::layout::Time;
 use crate::transcribe::{SetupError, Transcription};
+use ntg_nlp::{Nlp, Target};
 use ntg_structure::Domain;
 
 /// Seconds with a relative violation of 1 cost this many times as much as others.

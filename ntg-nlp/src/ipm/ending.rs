@@ -1,0 +1,102 @@
+//! The end of an iteration, and of a solve (lines 5, 10 and 11 of Algorithm 11).
+
+use super::state::State;
+use crate::contract::Nlp;
+use crate::outcome::Outcome;
+use crate::residuals::{self, Residuals};
+use crate::status::{Bounded, Status, Violation};
+
+impl<N: Nlp> State<'_, N> {
+    /// Counts the iteration and computes derivatives at the new point.
+    ///
+    /// # Errors
+    /// The status of a point whose derivatives are not finite.
+    pub(super) fn advance(&mut self) -> Result<(), Status> {
+        self.history.push(self.record);
+        self.iterations += 1;
+        self.evaluate().map_err(|what| self.not_finite(what))
+    }
+
+    /// The status where no step is acceptable in penalty mode.
+    pub(super) fn stuck(&mut self) -> Status {
+        if self.slacks.violation(&self.values) > self.options.constraint_tolerance {
+            return Status::Infeasible { rows: self.violations() };
+        }
+        match self.trial.failure.take() {
+            Some(what) => self.not_finite(what),
+            None => Status::StepTooSmall,
+        }
+    }
+
+    /// The rows that are violated at the present point, the worst first.
+    pub(super) fn violations(&self) -> Vec<Violation> {
+        let tolerance = self.options.constraint_tolerance;
+        let limits = self.nlp.limits();
+        let rows = &self.system.latest().rows;
+        let mut found: Vec<(f64, Violation)> = Vec::new();
+        for (i, &value) in rows.iter().enumerate() {
+            let (lower, upper) = (limits.row_lower[i], limits.row_upper[i]);
+            let violation = residuals::violation(value, lower, upper);
+            let size = violation * self.system.scales.rows[i];
+            if size > tolerance {
+                let bound = if value < lower { lower } else { upper };
+                found.push((size, Violation { of: Bounded::Row(i), value, bound, violation }));
+            }
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().map(|(_, violation)| violation).collect()
+    }
+
+    /// Ends the solve, at the best point if one met all tolerances before.
+    pub(super) fn end(mut self, status: Status) -> Outcome {
+        let stopped = matches!(status, Status::Cancelled | Status::TimeLimit);
+        if self.take_best() && !stopped {
+            return self.outcome(Status::Solved);
+        }
+        self.outcome(status)
+    }
+
+    /// Ends the solve at the present point.
+    pub(super) fn outcome(mut self, status: Status) -> Outcome {
+        self.history.push(self.record);
+        let (n, m) = (self.nlp.variables(), self.nlp.rows());
+        let objective = self.system.scales.objective;
+        let first = self.system.first_variable();
+        self.slacks.multipliers(self.system.objective(), &mut self.multipliers);
+        let row_multipliers: Vec<f64> =
+            (0..m).map(|i| self.multipliers[i] * self.system.scales.rows[i] / objective).collect();
+        let bound_multipliers: Vec<f64> =
+            (0..n).map(|j| self.multipliers[first + j] / self.system.scales.variables[j] / objective).collect();
+        let x = self.system.unscaled(self.nlp, &self.x).to_vec();
+        let residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
+        self.analysis.system = Some(self.system);
+        self.analysis.is_unchanged = true;
+        Outcome {
+            status,
+            x,
+            row_multipliers,
+            bound_multipliers,
+            objective: self.record.objective,
+            residuals,
+            iterations: self.iterations,
+            qps: 0,
+            history: self.history,
+            seconds: self.begin.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// The residuals of the last point, scaled and unscaled.
+    fn residuals(&self, x: &[f64], rows: &[f64], bounds: &[f64]) -> Residuals {
+        let latest = self.system.latest();
+        let mut lagrangian = vec![0.0; x.len()];
+        residuals::lagrangian(self.nlp.blocks(), latest, rows, &mut lagrangian);
+        let point = residuals::Point {
+            x,
+            rows: &latest.rows,
+            lagrangian: &lagrangian,
+            row_multipliers: rows,
+            bound_multipliers: bounds,
+        };
+        residuals::residuals(self.nlp.limits(), &self.system.scales, &point)
+    }
+}

@@ -1,0 +1,135 @@
+//! The first iterate (docs/maths.md, sections 11.4, 11.7 and 11.8; line 1 of Algorithm 11).
+
+use super::filter::{Filter, LARGEST_THETA};
+use super::polish::Best;
+use super::slacks::Slacks;
+use super::state::{Analysis, State, Trial};
+use super::step::{FIRST_FRACTION, Step};
+use super::warm;
+use crate::contract::{Limits, Nlp, NotFinite};
+use crate::kkt::System;
+use crate::options::Options;
+use crate::outcome::{IterationRecord, Start};
+use crate::scaling::Scales;
+use crate::status::Status;
+use std::time::Instant;
+
+/// The first barrier parameter (scaled). A fit: of 1, 0.1, 0.01 and 0.001 the one that took the fewest
+/// iterations on the flights of `examples/robustness.rs`.
+const FIRST_BARRIER: f64 = 0.01;
+/// Where there are more inequalities than this, the barrier parameter is smaller in proportion: more points of
+/// collocation must not weigh more beside an integral, whose weights become smaller. The number itself is a fit to the
+/// flights of `examples/robustness.rs`.
+const MANY_INEQUALITIES: f64 = 160.0;
+/// How far inside their bounds the first point lies, relative to the bound and to the room between bounds. WB, section
+/// 3.6: kappa_1 = kappa_2 = 1e-2.
+const INSIDE: f64 = 1e-2;
+/// Most history records for which memory is reserved at once.
+const HISTORY: usize = 4096;
+
+impl<'a, N: Nlp> State<'a, N> {
+    /// Analyses and scales a program, moves `start` inside its bounds, and evaluates there.
+    ///
+    /// # Errors
+    /// The status of a solve whose start has no finite values or derivatives.
+    pub(super) fn new(
+        nlp: &'a N,
+        start: &[f64],
+        from: Start<'_>,
+        options: &'a Options,
+        analysis: &'a mut Analysis<N::Workspace>,
+    ) -> Result<Self, Status> {
+        let begin = Instant::now();
+        let mut system = System::for_program(analysis.system.take(), nlp, analysis.is_unchanged);
+        let n = nlp.variables();
+        let sizes = Scales::sizes(nlp.limits());
+        let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();
+        x.push(0.0);
+        let inside = if matches!(from, Start::Cold) { INSIDE } else { warm::INSIDE };
+        push_inside_bounds(&mut x, nlp.limits(), &sizes, inside);
+        if let Err(what) = system.choose_scales(nlp, &x, options.scaling) {
+            return Err(Status::NotFinite { what, x: system.last_point().to_vec() });
+        }
+        let slacks = Slacks::new(&system.scales.limits(nlp.limits()), system.first_variable());
+        system.mark_equalities(slacks.equalities.iter().map(|equality| equality.function));
+        let barrier_unit = (MANY_INEQUALITIES / slacks.inequalities.len().max(1) as f64).min(1.0);
+        let functions = system.functions();
+        let step = Step::new(n, functions, &slacks, system.border_rows().len());
+        let mut state = Self {
+            nlp,
+            options,
+            analysis,
+            values: vec![0.0; functions],
+            negative_gradient: vec![0.0; n + 1],
+            multipliers: vec![0.0; functions],
+            mu: FIRST_BARRIER * barrier_unit,
+            s_d: 1.0,
+            barrier_unit,
+            filter: Filter::with_capacity(options.max_iterations.min(HISTORY)),
+            best: Best::new(&x, &slacks),
+            saved_step: step.clone(),
+            penalty: None,
+            convex_fraction: FIRST_FRACTION,
+            step,
+            trial: Trial::new(&x, functions, slacks.s.clone()),
+            record: IterationRecord::default(),
+            history: Vec::with_capacity(options.max_iterations.min(HISTORY) + 1),
+            iterations: 0,
+            begin,
+            x,
+            slacks,
+            system,
+        };
+        match state.initialise(from) {
+            Ok(()) => Ok(state),
+            Err(what) => Err(state.not_finite(what)),
+        }
+    }
+
+    /// First slacks, multipliers and derivatives.
+    fn initialise(&mut self, from: Start<'_>) -> Result<(), NotFinite> {
+        // The scales were chosen by derivatives at this point, so the values are known.
+        self.system.latest_values(&self.x, &mut self.values);
+        self.slacks.update_distances(&self.values);
+        match (from, from.multipliers(self.nlp)) {
+            (_, Some(from)) => self.start_warm(from),
+            (Start::Cold, None) => self.start_without_multipliers(FIRST_BARRIER, INSIDE),
+            (Start::Near | Start::Warm(_), None) => self.start_without_multipliers(warm::NEAR_BARRIER, warm::INSIDE),
+        }
+        self.evaluate()?;
+        self.start_filter();
+        Ok(())
+    }
+
+    /// Slacks and multipliers of a point whose multipliers are not known.
+    fn start_without_multipliers(&mut self, barrier: f64, inside: f64) {
+        self.mu = barrier * self.barrier_unit;
+        self.slacks.initialise(inside);
+        for (z, s) in self.slacks.z.iter_mut().zip(&self.slacks.s) {
+            *z = self.mu / s;
+        }
+        self.estimate_equality_multipliers();
+    }
+
+    /// Starts a filter at the present point.
+    fn start_filter(&mut self) {
+        let theta = self.theta();
+        self.filter.clear();
+        self.filter.theta_max = LARGEST_THETA * theta.max(1.0);
+    }
+}
+
+/// Moves variables inside their bounds, by a fraction of the room between the bounds at most. WB, section 3.6.
+fn push_inside_bounds(x: &mut [f64], limits: &Limits, sizes: &[f64], inside: f64) {
+    for (j, size) in sizes.iter().enumerate() {
+        let (lower, upper) = (limits.lower[j] / size, limits.upper[j] / size);
+        let room = inside * (upper - lower);
+        let margin = |bound: f64| (inside * bound.abs().max(1.0)).min(room);
+        if lower.is_finite() {
+            x[j] = x[j].max(lower + margin(lower));
+        }
+        if upper.is_finite() {
+            x[j] = x[j].min(upper - margin(upper));
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! The structured primal-dual interior-point method: Algorithm 11 of docs/maths.md, section 11.
+//!
+//! Takes any [`Nlp`], a start and [`Options`]; gives an [`Outcome`], by the same test of optimality as
+//! sequential quadratic programming. Second derivatives are exact. The linear systems are condensed element by element
+//! into a band with a border, so that the cost of an iteration grows linearly with the length of the band.
+//!
+//! `state` holds the iterate and its residuals, `slacks` the bounds with slacks and multipliers, `barrier` the barrier
+//! parameter, `step` the primal-dual step, `line_search` the search by the `filter` with its second-order
+//! corrections, `penalty` and `penalty_search` the search where bounds are elastic, `initial` and `warm` the start,
+//! `polish` and `ending` the end.
+//!
+//! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), cited as WB.
+
+mod barrier;
+mod ending;
+mod equalities;
+mod filter;
+mod initial;
+mod line_search;
+mod penalty;
+mod penalty_search;
+mod polish;
+mod second_order;
+mod slacks;
+mod state;
+mod step;
+mod step_kernels;
+mod warm;
+
+use crate::check::refusal;
+use crate::contract::Nlp;
+use crate::options::Options;
+use crate::outcome::{Outcome, Start};
+use crate::status::Status;
+use line_search::SearchOutcome;
+pub use state::Analysis;
+use state::State;
+
+/// Tiny steps in a row that end a solve. A law: one may be an accident of rounding.
+const TINY_STEPS: usize = 3;
+
+/// Solves `nlp` from `start`, which is first moved to within the bounds of the variables.
+///
+/// The answer is deterministic: the same program, start and options give the same bits (a time
+/// limit apart).
+pub fn solve<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
+    solve_from(nlp, start, Start::Cold, options)
+}
+
+/// As [`solve`], from a start about which more is known.
+pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, options: &Options) -> Outcome {
+    solve_again(&mut Analysis::default(), nlp, start, from, options)
+}
+
+/// As [`solve_from`], with the symbolic analysis of an earlier solve, which is made anew only where the program's
+/// patterns have changed. After the first solve an unchanged program costs no analysis at all
+/// ([`Analysis::program_changed`]).
+pub fn solve_again<N: Nlp>(
+    analysis: &mut Analysis<N::Workspace>,
+    nlp: &N,
+    start: &[f64],
+    from: Start<'_>,
+    options: &Options,
+) -> Outcome {
+    match initial(nlp, start, from, options, analysis) {
+        Ok(state) => iterate(state),
+        Err(status) => Outcome::failed(nlp, start, status),
+    }
+}
+
+/// As [`solve`], in penalty mode from the first iteration on, with a low penalty parameter: slower, and harder to
+/// trap between constraints.
+pub fn solve_with_penalty<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
+    let mut analysis = Analysis::default();
+    match initial(nlp, start, Start::Cold, options, &mut analysis) {
+        Ok(mut state) => {
+            state.enter_penalty_mode(penalty::LOW_PARAMETER);
+            iterate(state)
+        }
+        Err(status) => Outcome::failed(nlp, start, status),
+    }
+}
+
+/// A penalty parameter that is the same from beginning to end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixedPenalty {
+    /// The penalty parameter: what a unit of violation costs, in units of the scaled objective.
+    pub parameter: f64,
+    /// The barrier parameter at and below which a violation that remains ends the solve as infeasible.
+    pub barrier: f64,
+}
+
+/// As [`solve`], in penalty mode with a fixed penalty parameter: where the constraints cannot be met, the sum of scaled
+/// violations is least, and the objective decides only among such points. Multipliers are at most the parameter.
+pub fn solve_at_fixed_penalty<N: Nlp>(nlp: &N, start: &[f64], penalty: FixedPenalty, options: &Options) -> Outcome {
+    let mut analysis = Analysis::default();
+    match initial(nlp, start, Start::Cold, options, &mut analysis) {
+        Ok(mut state) => {
+            state.enter_penalty_mode(penalty.parameter);
+            state.fix_penalty(penalty);
+            iterate(state)
+        }
+        Err(status) => Outcome::failed(nlp, start, status),
+    }
+}
+
+/// Line 1 of Algorithm 11: the scaled program and the first iterate, or why there is none.
+fn initial<'a, N: Nlp>(
+    nlp: &'a N,
+    start: &[f64],
+    from: Start<'_>,
+    options: &'a Options,
+    analysis: &'a mut Analysis<N::Workspace>,
+) -> Result<State<'a, N>, Status> {
+    match refusal(nlp, start) {
+        Some(status) => Err(status),
+        None => State::new(nlp, start, from, options, analysis),
+    }
+}
+
+/// Lines 2 to 11 of Algorithm 11, whose numbers stand beside them.
+fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
+    let mut tiny_steps = 0;
+    loop {
+        state.compute_residuals(); // 3
+        let stop = state.stop();
+        let solved = stop == Some(Status::Solved);
+        if (solved || state.best.is_held) && state.is_polished(solved) {
+            return state.outcome(Status::Solved); // 4
+        }
+        if let Some(status) = stop.filter(|_| !solved) {
+            return state.end(status); // 5
+        }
+        if let Some(status) = state.lower_barrier() {
+            return state.end(status); // 6
+        }
+        let searched = state.step_and_search(); // 7 to 9
+        tiny_steps = if searched == SearchOutcome::Tiny { tiny_steps + 1 } else { 0 };
+        let ended = match searched {
+            SearchOutcome::Tiny if tiny_steps >= TINY_STEPS => Some(state.stuck()),
+            SearchOutcome::Stuck if state.penalty.is_some() => Some(state.stuck()),
+            SearchOutcome::Stuck => {
+                state.enter_penalty_mode(penalty::PARAMETER);
+                None
+            }
+            SearchOutcome::Tiny | SearchOutcome::Accepted => None,
+        };
+        if let Some(status) = ended {
+            return state.end(status); // 10
+        }
+        if let Err(status) = state.advance() {
+            return state.end(status); // 11
+        }
+    }
+}
+
+impl<N: Nlp> State<'_, N> {
+    /// Lines 7 to 9 of Algorithm 11: the step of the present mode, and the search along it.
+    fn step_and_search(&mut self) -> SearchOutcome {
+        if self.penalty.is_some() {
+            self.minimise_over_slacks();
+            return if self.compute_step() { self.penalty_search() } else { SearchOutcome::Stuck };
+        }
+        if self.compute_step() && self.lower_barrier_along_step() { self.filter_search() } else { SearchOutcome::Stuck }
+    }
+}

@@ -1,0 +1,166 @@
+//! Penalty mode in the loop: how it is entered, its line search, when the penalty parameter rises
+//! (docs/maths.md, section 11.6; lines 9 and 10 of Algorithm 11).
+
+use super::FixedPenalty;
+use super::line_search::SearchOutcome;
+use super::penalty::Penalty;
+use super::state::{State, Trial};
+use crate::contract::Nlp;
+use crate::status::Status;
+
+/// The factor by which the penalty parameter rises.
+const RAISE: f64 = 10.0;
+/// The fraction of the penalty parameter above which a multiplier asks for a larger parameter.
+const NEAR: f64 = 0.5;
+/// Sufficient decrease: Armijo's constant.
+const ARMIJO: f64 = 1e-4;
+/// The shortest step.
+const SHORTEST: f64 = 1e-12;
+
+/// The point at which the penalty function is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum At {
+    Present,
+    Trial,
+}
+
+impl<N: Nlp> State<'_, N> {
+    /// Enters penalty mode at the present point.
+    pub(super) fn enter_penalty_mode(&mut self, rho: f64) {
+        let mut penalty = Penalty::new(&self.slacks, rho);
+        let most = NEAR * penalty.rho;
+        self.slacks.z.iter_mut().for_each(|z| *z = z.min(most));
+        self.slacks.y.iter_mut().for_each(|y| *y = y.clamp(-most, most));
+        let mut s = self.slacks.s.clone();
+        penalty.minimise_over_slacks(&self.slacks, &self.values, &self.slacks.distance, self.mu, &mut s);
+        self.penalty = Some(penalty);
+    }
+
+    /// Fixes the penalty parameter of penalty mode.
+    pub(super) fn fix_penalty(&mut self, fixed: FixedPenalty) {
+        if let Some(penalty) = &mut self.penalty {
+            (penalty.rho_max, penalty.barrier) = (fixed.parameter, fixed.barrier);
+        }
+    }
+
+    /// The penalty function without the objective. The relaxations are left in `penalty` and the slacks in `trial.s`.
+    fn penalty_terms(&mut self, at: At) -> f64 {
+        let Some(penalty) = &mut self.penalty else { return 0.0 };
+        let Trial { values, distance, s, .. } = &mut self.trial;
+        let (values, distance) = match at {
+            At::Present => (&*self.values, &*self.slacks.distance),
+            At::Trial => (&**values, &**distance),
+        };
+        penalty.minimise_over_slacks(&self.slacks, values, distance, self.mu, s)
+    }
+
+    /// Sets slacks and relaxations to the best ones at the present point and barrier parameter; the penalty function
+    /// without the objective.
+    pub(super) fn minimise_over_slacks(&mut self) -> f64 {
+        let terms = self.penalty_terms(At::Present);
+        std::mem::swap(&mut self.slacks.s, &mut self.trial.s);
+        terms
+    }
+
+    /// A line search for sufficient decrease of the penalty function; on success moves there.
+    pub(super) fn penalty_search(&mut self) -> SearchOutcome {
+        let objective = self.system.objective();
+        let before = self.values[objective] + self.minimise_over_slacks();
+        let slope = self.penalty_slope();
+        let mut alpha = self.to_hard_boundary();
+        let tiny = self.is_tiny();
+        while alpha >= SHORTEST {
+            if self.try_step(alpha) {
+                let after = self.trial.values[objective] + self.penalty_terms(At::Trial);
+                let rounding = 10.0 * f64::EPSILON * before.abs();
+                if after - before - rounding <= ARMIJO * alpha * slope || (tiny && after.is_finite()) {
+                    let how = if tiny { SearchOutcome::Tiny } else { SearchOutcome::Accepted };
+                    return self.accept_penalty_trial(alpha, how);
+                }
+            }
+            alpha *= 0.5;
+        }
+        SearchOutcome::Stuck
+    }
+
+    /// The derivative of the penalty function along the step.
+    fn penalty_slope(&self) -> f64 {
+        let Some(penalty) = &self.penalty else { return 0.0 };
+        let change = &self.step.jacobian_x;
+        let inequalities = self.slacks.inequalities.iter().zip(&self.slacks.s);
+        let inequalities: f64 = inequalities.map(|(of, s)| of.sign * self.mu / s * change[of.function]).sum();
+        let equalities = self.slacks.equalities.iter().enumerate().map(|(k, equality)| {
+            let (below, above) = (penalty.below[k], penalty.above[k]);
+            // The larger relaxation cancels less.
+            let y = if below < above { self.mu / above - penalty.rho } else { penalty.rho - self.mu / below };
+            y * change[equality.function]
+        });
+        change[self.system.objective()] - inequalities - equalities.sum::<f64>()
+    }
+
+    /// The longest step that stays within the bounds of variables, which are hard.
+    fn to_hard_boundary(&self) -> f64 {
+        let fraction = self.fraction_to_boundary();
+        let inequalities = self.slacks.inequalities.iter().enumerate();
+        let hard = inequalities.filter(|(_, of)| of.function >= self.slacks.first_variable);
+        hard.fold(1.0, |alpha: f64, (k, _)| {
+            let (s, d) = (self.slacks.s[k], self.step.s[k]);
+            if d < 0.0 { alpha.min(-fraction * s / d) } else { alpha }
+        })
+    }
+
+    /// The longest step of the multipliers that keeps them between 0 (or minus the penalty parameter) and the penalty
+    /// parameter.
+    fn to_multiplier_bounds(&self) -> f64 {
+        let rho = self.penalty.as_ref().map_or(0.0, |penalty| penalty.rho);
+        let fraction = self.fraction_to_boundary();
+        let room = |value: f64, d: f64, low: f64, high: f64| {
+            if d < 0.0 {
+                fraction * (value - low) / -d
+            } else if d > 0.0 {
+                fraction * (high - value) / d
+            } else {
+                1.0
+            }
+        };
+        let mut longest = 1.0_f64;
+        for (k, of) in self.slacks.inequalities.iter().enumerate() {
+            let high = if of.function < self.slacks.first_variable { rho } else { f64::INFINITY };
+            longest = longest.min(room(self.slacks.z[k], self.step.z[k], 0.0, high));
+        }
+        for (y, d) in self.slacks.y.iter().zip(&self.step.y) {
+            longest = longest.min(room(*y, *d, -rho, rho));
+        }
+        longest
+    }
+
+    /// Makes the trial point the present one, with multipliers.
+    fn accept_penalty_trial(&mut self, alpha: f64, how: SearchOutcome) -> SearchOutcome {
+        let dual = self.to_multiplier_bounds();
+        std::mem::swap(&mut self.x, &mut self.trial.x);
+        std::mem::swap(&mut self.slacks.s, &mut self.trial.s);
+        self.slacks.z.iter_mut().zip(&self.step.z).for_each(|(z, d)| *z += dual * d);
+        self.slacks.y.iter_mut().zip(&self.step.y).for_each(|(y, d)| *y += dual * d);
+        self.record.step = alpha;
+        self.record.elastic = true;
+        how
+    }
+
+    /// Raises the penalty parameter where multipliers come near to it and something is violated; a status where
+    /// it cannot rise any more. Called when the barrier problem is solved well enough.
+    pub(super) fn update_penalty(&mut self) -> Option<Status> {
+        let violation = self.slacks.violation(&self.values);
+        let Some(penalty) = &mut self.penalty else { return None };
+        if violation <= self.options.constraint_tolerance.max(self.mu) || self.mu > penalty.barrier {
+            return None;
+        }
+        let largest = self.slacks.z.iter().chain(&self.slacks.y).fold(0.0, |most: f64, z| most.max(z.abs()));
+        if largest > NEAR * penalty.rho {
+            if penalty.rho >= penalty.rho_max {
+                return Some(Status::Infeasible { rows: self.violations() });
+            }
+            penalty.rho *= RAISE;
+        }
+        None
+    }
+}

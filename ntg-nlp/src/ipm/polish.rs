@@ -1,0 +1,96 @@
+//! The last digits of a solution (docs/maths.md, section 11.4; line 4 of Algorithm 11).
+//!
+//! Near a solution the method converges fast. A few iterations after the tolerances are met therefore
+//! cost little; they bring constraints to rounding, and the objective to what the barrier leaves of it. The barrier
+//! parameter is lowered for them. The best point is kept in case they lead away from it. A rough tolerance asks for no
+//! such iterations.
+
+use super::slacks::Slacks;
+use super::state::State;
+use crate::contract::Nlp;
+use crate::outcome::IterationRecord;
+
+/// Iterations after the tolerances are met, at most.
+const ITERATIONS: usize = 8;
+/// What they aim for, as a fraction of the tolerances and of the last barrier parameter.
+const FINE: f64 = 1e-3;
+/// Residuals within this multiple of that aim are close to it.
+const CLOSE: f64 = 10.0;
+
+/// The best point that met all tolerances.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Best {
+    /// Whether there is one.
+    pub(super) is_held: bool,
+    x: Vec<f64>,
+    s: Vec<f64>,
+    z: Vec<f64>,
+    y: Vec<f64>,
+    record: IterationRecord,
+    /// The iteration at which the tolerances were first met.
+    since: usize,
+}
+
+impl Best {
+    /// Memory for a point of a program.
+    pub(super) fn new(x: &[f64], slacks: &Slacks) -> Self {
+        let (s, z, y) = (slacks.s.clone(), slacks.z.clone(), slacks.y.clone());
+        Self { x: x.to_vec(), s, z, y, ..Self::default() }
+    }
+}
+
+impl<N: Nlp> State<'_, N> {
+    /// Whether the solve is over, at a point that meets all tolerances or after one. If it is, the
+    /// present point becomes the best one.
+    pub(super) fn is_polished(&mut self, solved: bool) -> bool {
+        if !self.best.is_held {
+            self.best.since = self.iterations;
+        }
+        let since = self.best.since;
+        let largest = |record: &IterationRecord| record.residuals.scaled.largest();
+        if solved && (!self.best.is_held || largest(&self.record) < largest(&self.best.record)) {
+            let Self { x, slacks, record, best, .. } = self;
+            best.x.copy_from_slice(x);
+            best.s.copy_from_slice(&slacks.s);
+            best.z.copy_from_slice(&slacks.z);
+            best.y.copy_from_slice(&slacks.y);
+            (best.record, best.is_held) = (*record, true);
+        }
+        let fine = FINE * self.options.tolerance.min(self.options.constraint_tolerance);
+        // Close to the aim, an iteration whose matrix had to be convexified leads to nothing finer.
+        let astray = self.iterations > since
+            && self.history.last().is_some_and(|last| last.convexified)
+            && largest(&self.best.record) <= CLOSE * fine;
+        // Beside inequalities, constraints that are met do not show how far the gradient is from 0.
+        let free = self.slacks.inequalities.is_empty() && self.record.residuals.scaled.primal <= fine;
+        let enough = solved && (self.options.is_rough() || free || largest(&self.record) <= fine);
+        let over = enough || astray || self.iterations >= since + ITERATIONS;
+        if over {
+            self.take_best();
+        }
+        over
+    }
+
+    /// Returns to the best point; whether there is one.
+    pub(super) fn take_best(&mut self) -> bool {
+        if !std::mem::take(&mut self.best.is_held) {
+            return false;
+        }
+        if self.best.record != self.record {
+            let Self { x, slacks, best, .. } = self;
+            x.copy_from_slice(&best.x);
+            slacks.s.copy_from_slice(&best.s);
+            slacks.z.copy_from_slice(&best.z);
+            slacks.y.copy_from_slice(&best.y);
+            // The derivatives were finite when this point was met first.
+            _ = self.evaluate();
+            self.compute_residuals();
+        }
+        true
+    }
+
+    /// The factor of the last barrier parameter: below 1 after the tolerances are met.
+    pub(super) fn polish_factor(&self) -> f64 {
+        if self.best.is_held { FINE } else { 1.0 }
+    }
+}

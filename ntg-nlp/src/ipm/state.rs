@@ -1,0 +1,187 @@
+//! The state of a solve: the iterate, its function values, derivatives and residuals (docs/maths.md, section 11).
+
+use super::filter::Filter;
+use super::penalty::Penalty;
+use super::polish::Best;
+use super::slacks::{Slacks, log_sum};
+use super::step::Step;
+use crate::contract::{Nlp, NotFinite};
+use crate::kkt::System;
+use crate::options::Options;
+use crate::outcome::IterationRecord;
+use crate::reductions::{largest, sum};
+use crate::residuals::{LARGE_MULTIPLIER, Residuals};
+use crate::status::Status;
+use crate::stopping::Stage;
+use std::time::Instant;
+
+/// Everything that one solve needs, allocated once. All vectors are scaled.
+pub(super) struct State<'a, N: Nlp> {
+    pub(super) nlp: &'a N,
+    pub(super) options: &'a Options,
+    /// The scaled program and its condensed matrix.
+    pub(super) system: System<N::Workspace>,
+    /// Where the system is kept after the solve.
+    pub(super) analysis: &'a mut Analysis<N::Workspace>,
+    /// The bounds with their slacks `s` and multipliers `z`, and the equalities with their multipliers `y`.
+    pub(super) slacks: Slacks,
+    /// The variables, and the padding entry.
+    pub(super) x: Vec<f64>,
+    /// The values of all functions at `x`.
+    pub(super) values: Vec<f64>,
+    /// Minus the gradient of the Lagrangian, and the padding entry.
+    pub(super) negative_gradient: Vec<f64>,
+    /// The multipliers of all functions, from `y` and `z`.
+    pub(super) multipliers: Vec<f64>,
+    /// The barrier parameter.
+    pub(super) mu: f64,
+    /// The divisor of dual residuals, equation (6.5).
+    pub(super) s_d: f64,
+    /// The unit `u` of barrier parameters, equation (11.6).
+    pub(super) barrier_unit: f64,
+    pub(super) filter: Filter,
+    /// The best point that met all tolerances.
+    pub(super) best: Best,
+    /// The fraction of the convexifying term that the last matrix needed.
+    pub(super) convex_fraction: f64,
+    /// Set in penalty mode, where bounds are elastic.
+    pub(super) penalty: Option<Penalty>,
+    pub(super) step: Step,
+    /// The step before a second-order correction, to which a failed correction returns.
+    pub(super) saved_step: Step,
+    pub(super) trial: Trial,
+    pub(super) record: IterationRecord,
+    pub(super) history: Vec<IterationRecord>,
+    pub(super) iterations: usize,
+    pub(super) begin: Instant,
+}
+
+/// What one solve leaves to the next: the scaled system with its symbolic analysis. `W` is the program's workspace.
+///
+/// A solve analyses the program again where its patterns differ from those of the last program, and loads its numbers
+/// again where they may differ.
+pub struct Analysis<W> {
+    pub(super) system: Option<System<W>>,
+    /// Whether the next program has the very numbers of the last one, but for the sizes of its variables.
+    pub(super) is_unchanged: bool,
+}
+
+impl<W> Analysis<W> {
+    /// Must be called when a program differs from the one of the last solve in its blocks or in the data of its
+    /// workspace. Bounds, row sizes and variable sizes may differ without it.
+    pub fn program_changed(&mut self) {
+        self.is_unchanged = false;
+    }
+}
+
+impl<W> Default for Analysis<W> {
+    fn default() -> Self {
+        Self { system: None, is_unchanged: false }
+    }
+}
+
+/// A trial point.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trial {
+    pub(super) x: Vec<f64>,
+    /// The values of all functions.
+    pub(super) values: Vec<f64>,
+    /// The slacks.
+    pub(super) s: Vec<f64>,
+    /// The distances of the functions to their bounds.
+    pub(super) distance: Vec<f64>,
+    /// The multipliers with which derivatives were computed at the trial point.
+    pub(super) multipliers: Vec<f64>,
+    /// Whether derivatives were computed at the trial point (speculatively, before it was accepted).
+    pub(super) has_derivatives: bool,
+    /// Whether the first trial point of the last search was accepted: the next search then evaluates its first trial
+    /// point with derivatives.
+    pub(super) first_was_accepted: bool,
+    /// Why the last trial point had no value.
+    pub(super) failure: Option<NotFinite>,
+}
+
+impl Trial {
+    pub(super) fn new(x: &[f64], functions: usize, s: Vec<f64>) -> Self {
+        let values = vec![0.0; functions];
+        Self {
+            x: x.to_vec(),
+            distance: s.clone(),
+            multipliers: values.clone(),
+            values,
+            s,
+            has_derivatives: false,
+            first_was_accepted: true,
+            failure: None,
+        }
+    }
+}
+
+impl<N: Nlp> State<'_, N> {
+    /// Computes derivatives at the present point with the present multipliers; takes those of the trial point where
+    /// they were computed speculatively.
+    pub(super) fn evaluate(&mut self) -> Result<(), NotFinite> {
+        self.slacks.multipliers(self.system.objective(), &mut self.multipliers);
+        if std::mem::take(&mut self.trial.has_derivatives) && self.multipliers == self.trial.multipliers {
+            std::mem::swap(&mut self.values, &mut self.trial.values);
+            std::mem::swap(&mut self.slacks.distance, &mut self.trial.distance);
+            self.system.accept_speculative();
+            return Ok(());
+        }
+        self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.values)?;
+        self.slacks.update_distances(&self.values);
+        Ok(())
+    }
+
+    /// The status for an evaluation that failed last.
+    pub(super) fn not_finite(&self, what: NotFinite) -> Status {
+        Status::NotFinite { what, x: self.system.last_point().to_vec() }
+    }
+
+    /// Infeasibility of the present point for the barrier problem.
+    pub(super) fn theta(&self) -> f64 {
+        self.slacks.infeasibility(&self.values, &self.slacks.distance, &self.slacks.s)
+    }
+
+    /// The barrier objective at some function values and slacks.
+    pub(super) fn barrier_objective(&self, values: &[f64], s: &[f64]) -> f64 {
+        values[self.system.objective()] - self.mu * log_sum(s)
+    }
+
+    /// Computes the gradient of the Lagrangian and the residuals of the present point, and begins its record.
+    pub(super) fn compute_residuals(&mut self) {
+        self.system.transposed_product(&self.multipliers, &mut self.negative_gradient);
+        self.s_d = self.multiplier_scale();
+        let s_d = self.s_d;
+        let mut residuals = Residuals::default();
+        residuals.scaled.primal = self.slacks.violation(&self.values);
+        residuals.scaled.dual = self.dual_residual() / s_d;
+        residuals.scaled.complementarity = self.slacks.complementarity() / s_d;
+        self.record = IterationRecord {
+            objective: self.values[self.system.objective()] / self.system.scales.objective,
+            residuals,
+            exact: true,
+            barrier: self.mu,
+            ..IterationRecord::default()
+        };
+    }
+
+    /// The largest entry of the Lagrangian's gradient; infinite where an entry is not finite.
+    fn dual_residual(&self) -> f64 {
+        let finite = sum([&self.negative_gradient], |[g]| g).is_finite();
+        if finite { largest([&self.negative_gradient], |[g]| g.abs()) } else { f64::INFINITY }
+    }
+
+    /// Equation (6.5).
+    fn multiplier_scale(&self) -> f64 {
+        let (sum, count) = self.slacks.multiplier_sum();
+        if count > 0.0 { (sum / count / LARGE_MULTIPLIER).max(1.0) } else { 1.0 }
+    }
+
+    /// Why the solve is over at the present point; none where it goes on.
+    pub(super) fn stop(&self) -> Option<Status> {
+        let Self { options, record, history, iterations, begin, x, .. } = self;
+        let objective = self.values[self.system.objective()];
+        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, x }.stops()
+    }
+}

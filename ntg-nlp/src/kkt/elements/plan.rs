@@ -1,0 +1,335 @@
+//! The plan of the elements of one block: their batches, and the positions of their contributions in the matrix
+//! (docs/maths.md, section 11.2).
+
+use super::super::ordering::Order;
+use super::super::pack::{Pack, Term};
+use super::super::storage::Envelope;
+use super::super::supports::Supports;
+use super::Rows;
+use super::batching::Batching;
+use super::products::{Entries, Products, closure};
+use super::range_map::RangeMap;
+use crate::contract::{Block, BlockValues, Target};
+use crate::scaling::Scales;
+
+/// Some elements of one block, and their derivatives at the latest point.
+#[derive(Clone, Debug)]
+pub(super) struct Plan<const L: usize> {
+    /// The block's number.
+    pub(super) block: usize,
+    elements: usize,
+    pub(super) slots: usize,
+    pub(super) batching: Batching<L>,
+    pub(super) map: RangeMap<L>,
+    pub(super) supports: Supports,
+    /// Rows of elements.
+    pub(super) rows: Vec<Row>,
+    /// The function of each row of each pack.
+    pub(super) function: Vec<[u32; L]>,
+    /// The same where the row is condensed; elsewhere the unused function.
+    condensed: Vec<[u32; L]>,
+    /// The scaled weight of each row of each pack; 0 where there is no element.
+    weight: Vec<Pack<L>>,
+    /// The pair of slots of each second derivative; none where a slot depends on no variable.
+    pub(super) pair_of: Vec<Option<usize>>,
+    /// Products for second derivatives and condensed rows.
+    pub(super) exact: Products,
+    /// Products for the convexifying term, whose pattern is that of `exact` with the fill of its factors.
+    pub(super) filled: Products,
+    /// The number of entries of the products.
+    pub(super) entries: usize,
+    /// The position of each entry in the matrix, batch by batch.
+    pub(super) position: Vec<[u32; L]>,
+    /// The border rows.
+    pub(super) border: Vec<BorderRow<L>>,
+    /// The terms of `E^T` for each support: slots and their coefficients.
+    pub(super) add_transposed_map: Vec<Vec<Term>>,
+    /// Whether any row is an equality.
+    pub(super) has_equalities: bool,
+    /// First derivatives times weights, pack by pack, one number for each entry of the pattern.
+    pub(super) jacobian: Vec<Pack<L>>,
+    /// Weighted second derivatives, likewise.
+    pub(super) hessian: Vec<Pack<L>>,
+}
+
+/// A row of the elements of a block.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    /// Jacobian pattern: entry and slot.
+    pub(super) entries: Vec<(usize, usize)>,
+    /// For a condensed row, the pair of every two of its entries, `a >= b`; empty for the objective and border rows.
+    pub(super) pairs: Vec<usize>,
+}
+
+/// A row of elements that adds to border rows.
+#[derive(Clone, Debug)]
+pub(super) struct BorderRow<const L: usize> {
+    pub(super) row: usize,
+    /// The position of each element variable's entry in the matrix, pack by pack.
+    pub(super) position: Vec<[u32; L]>,
+}
+
+/// What the plans of one program share.
+pub(super) struct Program<'a> {
+    pub(super) order: &'a Order,
+    /// Sizes of the variables.
+    pub(super) sizes: &'a [f64],
+}
+
+impl<const L: usize> Plan<L> {
+    /// Plans some elements of a block. Positions are computed by [`Plan::locate`].
+    pub(super) fn new(
+        (number, block): (usize, &Block),
+        supports: &Supports,
+        batching: Batching<L>,
+        program: &Program<'_>,
+    ) -> Self {
+        let order = program.order;
+        let padding = order.unknown.len() as u32;
+        let map = RangeMap::new(block, supports, &batching, (program.sizes, padding));
+        let function = functions(block, &batching, order.border_row.len());
+        let nothing = order.border_row.len() as u32 + 1;
+        let inside = |q: u32| order.border_row.get(q as usize).is_some_and(Option::is_none);
+        let condensed = function.iter().map(|lanes: &[u32; L]| lanes.map(|q| if inside(q) { q } else { nothing }));
+        let mut rows = rows(block);
+        let kinds: Vec<[bool; 2]> = (0..block.rows).map(|row| kinds(block, row, order)).collect();
+        let pairs = slot_pairs(block, &rows, &kinds, supports);
+        let at = |i: usize, j: usize| pairs.iter().position(|&p| p == (i.max(j), i.min(j)));
+        let pair_of = block.hessian.iter().map(|&(i, j)| at(i, j)).collect();
+        for (row, _) in rows.iter_mut().zip(&kinds).filter(|(_, [condensed, _])| *condensed) {
+            row.entries.retain(|(_, slot)| supports.of[*slot].is_some());
+            let entries = row.entries.iter().enumerate();
+            let both = entries.flat_map(|(k, &(_, i))| row.entries[..=k].iter().map(move |&(_, j)| (i, j)));
+            row.pairs = both.filter_map(|(i, j)| at(i, j)).collect();
+        }
+        let all = closure(&pairs, block.slots);
+        let entries = Entries::new(supports, &all);
+        let terms = |c: &super::super::supports::Support| -> Vec<Term> {
+            c.slots.iter().map(|&slot| (slot as u32, map.coefficient_of[slot] as u32)).collect()
+        };
+        let border = (0..block.rows).filter(|&row| kinds[row][1]);
+        Self {
+            block: number,
+            elements: block.elements,
+            slots: block.slots,
+            exact: Products::new(pairs, supports, &map.coefficient_of, &entries),
+            filled: Products::new(all, supports, &map.coefficient_of, &entries),
+            entries: entries.len,
+            weight: vec![[0.0; L]; batching.packs() * block.rows],
+            jacobian: vec![[0.0; L]; batching.packs() * block.jacobian.len()],
+            hessian: vec![[0.0; L]; batching.packs() * block.hessian.len()],
+            border: border.map(|row| BorderRow { row, position: vec![] }).collect(),
+            add_transposed_map: supports.all.iter().map(terms).collect(),
+            position: vec![],
+            has_equalities: false,
+            supports: supports.clone(),
+            condensed: condensed.collect(),
+            function,
+            pair_of,
+            rows,
+            batching,
+            map,
+        }
+    }
+
+    /// Replaces the numbers by those of a block with the same pattern.
+    pub(super) fn refill(&mut self, block: &Block, sizes: &[f64]) {
+        self.map.fill(block, &self.supports, &self.batching, sizes);
+    }
+
+    /// Sets the weights of all rows from the block's and the scales.
+    pub(super) fn scale(&mut self, block: &Block, scales: &Scales) {
+        for (pack, lane, e) in self.batching.elements() {
+            for row in 0..block.rows {
+                let at = row * block.elements + e;
+                let factor = match block.target[at] {
+                    Target::Objective => scales.objective,
+                    Target::Row(i) => scales.rows[i as usize],
+                };
+                self.weight[pack * block.rows + row][lane] = block.weight[at] * factor;
+            }
+        }
+    }
+
+    /// Marks the functions that are equalities.
+    pub(super) fn mark_equalities(&mut self, is_equality: &[bool]) {
+        self.has_equalities = self.function.as_flattened().iter().any(|&function| is_equality[function as usize]);
+    }
+
+    /// Whether the plan has any of these rows.
+    #[inline(always)]
+    pub(super) fn has(&self, rows: Rows) -> bool {
+        rows == Rows::All || self.has_equalities
+    }
+
+    /// Loads the derivatives of a point.
+    #[inline(always)]
+    pub(super) fn load(&mut self, at: &BlockValues) {
+        let (elements, packs) = (self.elements, self.batching.packs().max(1));
+        let (first, second) = (self.jacobian.len() / packs, self.hessian.len() / packs);
+        for (pack, lanes) in self.batching.element.iter().enumerate() {
+            // Lanes without an element load the numbers of another one; their weight is 0.
+            let here = lanes.map(|e| (e as usize).min(elements - 1));
+            let present: Pack<L> = lanes.map(|e| f64::from(u8::from((e as usize) < elements)));
+            for (row, of) in self.rows.iter().enumerate() {
+                let weight = self.weight[pack * self.rows.len() + row];
+                for &(entry, _) in &of.entries {
+                    let numbers = &at.jacobian[entry * elements..][..elements];
+                    self.jacobian[pack * first + entry] = std::array::from_fn(|l| weight[l] * numbers[here[l]]);
+                }
+            }
+            for entry in 0..second {
+                let numbers = &at.hessian[entry * elements..][..elements];
+                self.hessian[pack * second + entry] = std::array::from_fn(|l| present[l] * numbers[here[l]]);
+            }
+        }
+    }
+
+    /// The first derivatives of a pack.
+    #[inline(always)]
+    pub(super) fn jacobian_of(&self, pack: usize) -> &[Pack<L>] {
+        let len = self.jacobian.len() / self.batching.packs();
+        &self.jacobian[pack * len..][..len]
+    }
+
+    /// The second derivatives of a pack.
+    #[inline(always)]
+    pub(super) fn hessian_of(&self, pack: usize) -> &[Pack<L>] {
+        let len = self.hessian.len() / self.batching.packs();
+        &self.hessian[pack * len..][..len]
+    }
+
+    /// The numbers of the functions that a row of a pack adds to.
+    #[inline(always)]
+    pub(super) fn of_function(&self, pack: usize, row: usize, numbers: &[f64]) -> Pack<L> {
+        self.function[pack * self.rows.len() + row].map(|function| numbers[function as usize])
+    }
+
+    /// The same, where the row is condensed; 0 elsewhere.
+    #[inline(always)]
+    pub(super) fn of_condensed(&self, pack: usize, row: usize, numbers: &[f64]) -> Pack<L> {
+        self.condensed[pack * self.rows.len() + row].map(|function| numbers[function as usize])
+    }
+
+    /// The unknowns that meet in the matrix, as lists of which every two meet.
+    pub(super) fn cliques(&self, order: &Order, mut visit: impl FnMut(&[u32])) {
+        let pairs = Entries::new(&self.supports, &self.filled.pairs).pairs;
+        let mut list = vec![];
+        for batch in 0..self.batching.batches() {
+            for lane in 0..L {
+                for &(a, b) in &pairs {
+                    let (a, b) = (&self.supports.all[a], &self.supports.all[b]);
+                    list.clear();
+                    list.extend(self.unknowns(order, (batch, lane), a.first..a.last));
+                    list.extend(self.unknowns(order, (batch, lane), b.first..b.last));
+                    visit(&list);
+                }
+                for (border, pack) in
+                    self.border.iter().flat_map(|b| self.batching.packs_of(batch).map(move |p| (b, p)))
+                {
+                    let Some(row) = self.border_unknown(order, border.row, (pack, lane)) else { continue };
+                    let all = self.unknowns(order, (batch, lane), 0..self.supports.element_variables);
+                    all.for_each(|unknown| visit(&[unknown, row]));
+                }
+            }
+        }
+    }
+
+    /// The unknowns of some element variables of a lane of a batch.
+    fn unknowns<'a>(
+        &'a self,
+        order: &'a Order,
+        (batch, lane): (usize, usize),
+        element_variables: std::ops::Range<usize>,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let variables = self.map.variables(batch)[element_variables].iter();
+        variables.filter_map(move |lanes| order.unknown.get(lanes[lane] as usize).copied())
+    }
+
+    /// The unknown of the border row that a lane of a pack adds to.
+    fn border_unknown(&self, order: &Order, row: usize, (pack, lane): (usize, usize)) -> Option<u32> {
+        let function = self.function[pack * self.rows.len() + row][lane] as usize;
+        let row = (*order.border_row.get(function)?)?;
+        Some((order.band + order.border) as u32 + row)
+    }
+
+    /// Computes the positions of all contributions in a matrix.
+    pub(super) fn locate(&mut self, order: &Order, envelope: &Envelope) {
+        let entries = Entries::new(&self.supports, &self.filled.pairs);
+        let mut position = vec![];
+        let mut places = vec![vec![]; self.border.len()];
+        for batch in 0..self.batching.batches() {
+            let variables = self.map.variables(batch);
+            let unknown =
+                |element_variable: usize, lane: usize| order.unknown.get(variables[element_variable][lane] as usize);
+            let place = |a: Option<&u32>, b: Option<&u32>| {
+                a.zip(b).map_or(envelope.sink(), |(a, b)| envelope.position(*a as usize, *b as usize)) as u32
+            };
+            entries.each(&self.supports, |a, b| {
+                position.push(std::array::from_fn(|lane| place(unknown(a, lane), unknown(b, lane))));
+            });
+            for (border, places) in self.border.iter().zip(&mut places) {
+                for pack in self.batching.packs_of(batch) {
+                    places.extend((0..self.supports.element_variables).map(|element_variable| {
+                        std::array::from_fn(|lane| {
+                            let row = self.border_unknown(order, border.row, (pack, lane));
+                            place(unknown(element_variable, lane), row.as_ref())
+                        })
+                    }));
+                }
+            }
+        }
+        self.position = position;
+        for (border, position) in self.border.iter_mut().zip(places) {
+            border.position = position;
+        }
+    }
+}
+
+/// The Jacobian patterns of all rows.
+fn rows(block: &Block) -> Vec<Row> {
+    let mut rows = vec![Row { entries: vec![], pairs: vec![] }; block.rows];
+    for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+        rows[row].entries.push((entry, slot));
+    }
+    rows
+}
+
+/// Whether a row of a block is condensed, and whether it is a border row, in any element.
+fn kinds(block: &Block, row: usize, order: &Order) -> [bool; 2] {
+    let targets = &block.target[row * block.elements..][..block.elements];
+    let of = |target: &Target| match target {
+        Target::Row(i) => Some(order.border_row[*i as usize].is_some()),
+        Target::Objective => None,
+    };
+    [targets.iter().any(|t| of(t) == Some(false)), targets.iter().any(|t| of(t) == Some(true))]
+}
+
+/// The function of each row of each element, by packs.
+fn functions<const L: usize>(block: &Block, batching: &Batching<L>, rows: usize) -> Vec<[u32; L]> {
+    let (objective, nothing) = (rows as u32, rows as u32 + 1);
+    let mut all = vec![[nothing; L]; batching.packs() * block.rows];
+    for (pack, lane, e) in batching.elements() {
+        for row in 0..block.rows {
+            all[pack * block.rows + row][lane] = match block.target[row * block.elements + e] {
+                Target::Objective => objective,
+                Target::Row(i) => i,
+            };
+        }
+    }
+    all
+}
+
+/// Pairs of slots, `i >= j`, that second derivatives or condensed rows connect.
+fn slot_pairs(block: &Block, rows: &[Row], kinds: &[[bool; 2]], supports: &Supports) -> Vec<(usize, usize)> {
+    let mut pairs: Vec<(usize, usize)> = block.hessian.iter().map(|&(i, j)| (i.max(j), i.min(j))).collect();
+    for (row, _) in rows.iter().zip(kinds).filter(|(_, [condensed, _])| *condensed) {
+        for &(_, i) in &row.entries {
+            pairs.extend(row.entries.iter().filter(|(_, j)| *j <= i).map(|&(_, j)| (i, j)));
+        }
+    }
+    pairs.retain(|&(i, j)| supports.of[i].is_some() && supports.of[j].is_some());
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}

@@ -1,0 +1,21 @@
+//! The condensed linear system of the interior-point method (docs/maths.md, sections 11.2 and 11.3).
+//!
+//! ```text
+//! A dx = -grad L + J^T q,   A = H + J^T Sigma J
+//! ```
+//!
+//! [`system`] holds the scaled program, the matrix `A` and its factors. `supports` finds which slots depend on the same
+//! variables, `elements` condenses rows into second derivatives element by element, `ordering` divides the unknowns
+//! into a band and a border, `storage` says where the entries of that matrix are stored, `factor` factorises it.
+
+mod elements;
+mod factor;
+mod ordering;
+mod pack;
+mod pattern;
+mod storage;
+mod supports;
+pub(crate) mod system;
+
+pub(crate) use elements::{Curvature, Weights};
+pub(crate) use system::System;

@@ -1,0 +1,372 @@
+//! The whole program in scaled variables, with its elements ready for work and its condensed matrix
+//! (docs/maths.md, sections 5 and 11).
+//!
+//! ```text
+//! x = D s,   rows = R c,   objective = w f
+//! ```
+//!
+//! The *functions* of a program are numbered: the rows, then the objective (at [`System::objective`]), then one unused
+//! function, to which padding refers, then the variables (from [`System::first_variable`] on). A bound on a variable is
+//! thus a bound on a function whose derivative is 1. Vectors by variable end with one padding entry, which is 0.
+
+use super::elements::{Curvature, Elements, Rows, Weights};
+use super::factor::{Factor, Regularised};
+use super::ordering::Order;
+use super::pattern::Pattern;
+use super::storage::Envelope;
+use super::supports::Supports;
+use crate::contract::{Block, Evaluation, Nlp, NotFinite};
+use crate::options::Scaling;
+use crate::scaling::{Scales, Slopes};
+
+/// A program, the symbolic analysis of its matrix, and its derivatives at the latest point. `W` is the program's
+/// workspace.
+pub(crate) struct System<W> {
+    /// The patterns of the blocks that were analysed.
+    patterns: Vec<Pattern>,
+    elements: Elements,
+    order: Order,
+    envelope: Envelope,
+    pub(crate) scales: Scales,
+    /// The unfactorised matrix.
+    matrix: Vec<f64>,
+    /// The convexifying term: what makes every element of the matrix positive semidefinite.
+    convexification: Vec<f64>,
+    factor: Factor,
+    workspace: W,
+    /// Derivatives of the elements at the latest point.
+    latest: Evaluation,
+    /// Values at a trial point, and derivatives where the trial point was evaluated speculatively.
+    trial: Evaluation,
+    /// The point of the last evaluation, in the program's own units.
+    x: Vec<f64>,
+    /// Multipliers of rows in the program's own units.
+    weights: Vec<f64>,
+    /// Right-hand side and solution, by unknown.
+    right_hand_side: Vec<f64>,
+    /// What the scales were chosen from; none where the program has changed since.
+    scaled_by: Option<ScaledBy>,
+}
+
+/// What scales are chosen from.
+struct ScaledBy {
+    /// The scaled point.
+    point: Vec<f64>,
+    rule: Scaling,
+    /// The sizes of the rows that the program gave.
+    row_sizes: Vec<f64>,
+}
+
+impl<W> System<W> {
+    /// Analyses a program: supports, order of the unknowns, pattern of the matrix.
+    pub(crate) fn new<N: Nlp<Workspace = W>>(nlp: &N) -> Self {
+        let (n, m) = (nlp.variables(), nlp.rows());
+        let sizes = Scales::sizes(nlp.limits());
+        let supports: Vec<Supports> = nlp.blocks().iter().map(Supports::new).collect();
+        let order = Order::new(nlp, &supports);
+        let mut elements = Elements::new(nlp.blocks(), &supports, &order, &sizes);
+        let mut cliques: Vec<u32> = vec![];
+        let mut ends = vec![0];
+        elements.cliques(&order, |list| {
+            cliques.extend_from_slice(list);
+            ends.push(cliques.len());
+        });
+        let lists = ends.windows(2).map(|range| &cliques[range[0]..range[1]]);
+        let envelope = Envelope::new(order.band, [order.border, order.bordered.len()], lists);
+        elements.locate(&order, &envelope);
+        let (workspace, latest) = nlp.workspace();
+        Self {
+            patterns: nlp.blocks().iter().map(Pattern::of).collect(),
+            elements,
+            scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0 },
+            matrix: vec![0.0; envelope.len],
+            convexification: vec![0.0; envelope.len],
+            factor: Factor::new(&envelope),
+            right_hand_side: vec![0.0; envelope.unknowns()],
+            workspace,
+            trial: latest.clone(),
+            latest,
+            x: vec![0.0; n],
+            weights: vec![0.0; m],
+            scaled_by: None,
+            order,
+            envelope,
+        }
+    }
+
+    /// The system of a program. The analysis of `earlier` is used again where the patterns are the same; where the
+    /// program `is_unchanged`, all of `earlier` is.
+    pub(crate) fn for_program<N: Nlp<Workspace = W>>(earlier: Option<Self>, nlp: &N, is_unchanged: bool) -> Self {
+        match earlier {
+            Some(system) if is_unchanged && system.scales.variables == Scales::sizes(nlp.limits()) => system,
+            Some(system) if system.fits(nlp) => system.refit(nlp),
+            _ => Self::new(nlp),
+        }
+    }
+
+    /// Whether a program has the patterns that were analysed.
+    fn fits<N: Nlp<Workspace = W>>(&self, nlp: &N) -> bool {
+        let same = |(pattern, block): (&Pattern, &Block)| pattern.is_of(block);
+        (self.x.len(), self.weights.len()) == (nlp.variables(), nlp.rows())
+            && self.patterns.len() == nlp.blocks().len()
+            && self.patterns.iter().zip(nlp.blocks()).all(same)
+    }
+
+    /// The same analysis with the numbers of another program, whose workspace holds its data.
+    fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N) -> Self {
+        let sizes = Scales::sizes(nlp.limits());
+        self.elements.refill(nlp.blocks(), &sizes);
+        self.scales = Scales { variables: sizes, rows: vec![1.0; self.weights.len()], objective: 1.0 };
+        (self.workspace, _) = nlp.workspace();
+        self.scaled_by = None;
+        self
+    }
+
+    /// The number of the objective among the functions.
+    pub(crate) fn objective(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// The number of the first variable among the functions.
+    pub(crate) fn first_variable(&self) -> usize {
+        self.weights.len() + 2
+    }
+
+    /// How many functions there are.
+    pub(crate) fn functions(&self) -> usize {
+        self.first_variable() + self.x.len()
+    }
+
+    /// Chooses the scales of rows and objective by the slopes at a scaled point.
+    pub(crate) fn choose_scales<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        scaling: Scaling,
+    ) -> Result<(), NotFinite> {
+        self.unscale(nlp, scaled);
+        self.weights.fill(0.0);
+        nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.workspace, &mut self.latest)?;
+        let rows = &nlp.limits().row_scale;
+        let same = |by: &ScaledBy| by.point == scaled && by.rule == scaling && by.row_sizes == *rows;
+        if self.scaled_by.as_ref().is_some_and(same) {
+            self.elements.load(&self.latest.blocks);
+            return Ok(());
+        }
+        let plain = Scales { rows: vec![1.0; self.weights.len()], objective: 1.0, ..self.scales.clone() };
+        self.set_scales(nlp, plain);
+        let slopes = self.slopes();
+        self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
+        self.scaled_by = Some(ScaledBy { point: scaled.to_vec(), rule: scaling, row_sizes: rows.clone() });
+        Ok(())
+    }
+
+    fn set_scales<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scales: Scales) {
+        self.elements.scale(nlp.blocks(), &scales);
+        self.elements.load(&self.latest.blocks);
+        self.scales = scales;
+    }
+
+    /// The slopes at the latest point, with row factors of 1.
+    fn slopes(&mut self) -> Slopes {
+        let (m, n) = (self.weights.len(), self.x.len());
+        let mut rows = vec![0.0; m + 2];
+        self.elements.slopes(&mut rows);
+        rows.truncate(m);
+        let mut multipliers = vec![0.0; self.functions()];
+        self.assemble(Weights { sigma: &multipliers, curvature: Curvature::Exact });
+        let columns = (0..n).map(|j| self.order.unknown[j] as usize);
+        let curvature = columns.map(|u| self.matrix[self.envelope.position(u, u)].abs()).fold(0.0, f64::max);
+        for (row, slope) in rows.iter_mut().enumerate() {
+            let Some(border) = self.order.border_row[row] else { continue };
+            let unknown = self.order.band + self.order.border + border as usize;
+            *slope = self.envelope.row(unknown).map(|at| self.matrix[at].abs()).fold(0.0, f64::max);
+        }
+        multipliers[m] = 1.0;
+        let mut gradient = vec![0.0; n + 1];
+        self.transposed_product(&multipliers, &mut gradient);
+        let objective = gradient[..n].iter().fold(0.0, |most: f64, g| most.max(g.abs()));
+        Slopes { rows, objective, curvature }
+    }
+
+    /// Writes a point in the program's own units, within the bounds to the last bit.
+    fn unscale<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scaled: &[f64]) {
+        let limits = nlp.limits();
+        for (j, x) in self.x.iter_mut().enumerate() {
+            *x = (scaled[j] * self.scales.variables[j]).max(limits.lower[j]).min(limits.upper[j]);
+        }
+    }
+
+    /// A scaled point in the program's own units.
+    pub(crate) fn unscaled<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scaled: &[f64]) -> &[f64] {
+        self.unscale(nlp, scaled);
+        &self.x
+    }
+
+    /// Writes the values of all functions at a scaled point.
+    pub(crate) fn values<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), NotFinite> {
+        self.unscale(nlp, scaled);
+        nlp.values(&self.x, &mut self.workspace, &mut self.trial)?;
+        self.copy_values(&self.trial, scaled, out);
+        Ok(())
+    }
+
+    /// Moves to a scaled point: writes the values of all functions, and computes the derivatives that the products and
+    /// the matrix below need, the second ones weighted by the multipliers of all functions.
+    pub(crate) fn derivatives<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        multipliers: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), NotFinite> {
+        self.speculative_derivatives(nlp, scaled, multipliers, out)?;
+        self.accept_speculative();
+        Ok(())
+    }
+
+    /// As [`System::derivatives`] for a trial point: products and matrix stay those of the latest point until
+    /// [`System::accept_speculative`].
+    pub(crate) fn speculative_derivatives<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        scaled: &[f64],
+        multipliers: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), NotFinite> {
+        self.unscale(nlp, scaled);
+        for ((weight, multiplier), factor) in self.weights.iter_mut().zip(multipliers).zip(&self.scales.rows) {
+            *weight = -multiplier * factor;
+        }
+        nlp.derivatives(&self.x, self.scales.objective, &self.weights, &mut self.workspace, &mut self.trial)?;
+        self.copy_values(&self.trial, scaled, out);
+        Ok(())
+    }
+
+    /// Moves to the point of [`System::speculative_derivatives`], which must be the last that was evaluated.
+    pub(crate) fn accept_speculative(&mut self) {
+        std::mem::swap(&mut self.latest, &mut self.trial);
+        self.elements.load(&self.latest.blocks);
+    }
+
+    /// Writes the values of all functions at the latest point, whose scaled variables are `scaled`.
+    pub(crate) fn latest_values(&self, scaled: &[f64], out: &mut [f64]) {
+        self.copy_values(&self.latest, scaled, out);
+    }
+
+    fn copy_values(&self, from: &Evaluation, scaled: &[f64], out: &mut [f64]) {
+        for ((out, row), factor) in out.iter_mut().zip(&from.rows).zip(&self.scales.rows) {
+            *out = row * factor;
+        }
+        out[self.objective()] = self.scales.objective * from.objective;
+        out[self.first_variable()..].copy_from_slice(&scaled[..self.x.len()]);
+    }
+
+    /// Marks the functions that are equalities, for the products that concern equalities only.
+    pub(crate) fn mark_equalities(&mut self, equalities: impl Iterator<Item = usize>) {
+        let mut is_equality = vec![false; self.functions()];
+        equalities.for_each(|function| is_equality[function] = true);
+        self.elements.mark_equalities(&is_equality);
+    }
+
+    /// Writes `J^T multipliers`, the sum over functions of multiplier times gradient; `out` has one entry a variable
+    /// and the padding entry.
+    pub(crate) fn transposed_product(&mut self, multipliers: &[f64], out: &mut [f64]) {
+        self.transposed_product_of(Rows::All, multipliers, out);
+    }
+
+    /// As [`System::transposed_product`], where only equalities have multipliers.
+    pub(crate) fn transposed_product_of_equalities(&mut self, multipliers: &[f64], out: &mut [f64]) {
+        self.transposed_product_of(Rows::Equalities, multipliers, out);
+    }
+
+    fn transposed_product_of(&mut self, rows: Rows, multipliers: &[f64], out: &mut [f64]) {
+        let n = self.x.len();
+        out[..n].copy_from_slice(&multipliers[self.first_variable()..]);
+        out[n] = 0.0;
+        self.elements.transposed_product(rows, multipliers, out);
+        out[n] = 0.0;
+    }
+
+    /// Writes `J direction`, the change of all functions along a direction, which ends with the padding entry.
+    pub(crate) fn product(&mut self, direction: &[f64], out: &mut [f64]) {
+        self.product_of(Rows::All, direction, out);
+    }
+
+    /// As [`System::product`], where only the change of equalities is needed; the other entries are undefined.
+    pub(crate) fn product_of_equalities(&mut self, direction: &[f64], out: &mut [f64]) {
+        self.product_of(Rows::Equalities, direction, out);
+    }
+
+    fn product_of(&mut self, rows: Rows, direction: &[f64], out: &mut [f64]) {
+        let first = self.first_variable();
+        out[..first].fill(0.0);
+        self.elements.product(rows, direction, out);
+        out[first..].copy_from_slice(&direction[..self.x.len()]);
+    }
+
+    /// Builds the matrix at the latest point. Border rows need [`System::set_border_diagonal`] besides.
+    pub(crate) fn assemble(&mut self, weights: Weights<'_>) {
+        self.envelope.clear(&mut self.matrix);
+        self.elements.assemble(weights, &mut self.matrix);
+        for (weight, &unknown) in weights.sigma[self.first_variable()..].iter().zip(&self.order.unknown) {
+            let at = self.envelope.position(unknown as usize, unknown as usize);
+            self.matrix[at] += weight;
+        }
+    }
+
+    /// Computes the convexifying term. Precondition: [`System::assemble`] with the same `sigma`.
+    pub(crate) fn convexify(&mut self, sigma: &[f64]) {
+        self.convexification.fill(0.0);
+        self.elements.convexify(sigma, &mut self.convexification);
+    }
+
+    /// Sets the diagonal entry of a border row to `-compliance`.
+    pub(crate) fn set_border_diagonal(&mut self, border: usize, compliance: f64) {
+        let unknown = self.order.band + self.order.border + border;
+        let at = self.envelope.position(unknown, unknown);
+        self.matrix[at] = -compliance;
+    }
+
+    /// Factorises the matrix plus a fraction of the convexifying term and a shift of the variables' diagonal; whether
+    /// its inertia is that of a minimum.
+    pub(crate) fn factorise(&mut self, fraction: f64, shift: f64) -> bool {
+        let convexification = if fraction == 0.0 { &[][..] } else { &self.convexification };
+        let sum = Regularised { matrix: &self.matrix, convexification, fraction, shift };
+        self.factor.factorise(&self.envelope, &sum) == Some(self.order.bordered.len())
+    }
+
+    /// Replaces the right-hand side, by variable and by border row, by the solution.
+    pub(crate) fn solve(&mut self, variables: &mut [f64], rows: &mut [f64]) {
+        for (value, &unknown) in variables.iter().zip(&self.order.unknown) {
+            self.right_hand_side[unknown as usize] = *value;
+        }
+        let first = self.order.band + self.order.border;
+        self.right_hand_side[first..].copy_from_slice(rows);
+        self.factor.solve(&self.envelope, &mut self.right_hand_side);
+        for (value, &unknown) in variables.iter_mut().zip(&self.order.unknown) {
+            *value = self.right_hand_side[unknown as usize];
+        }
+        rows.copy_from_slice(&self.right_hand_side[first..]);
+    }
+
+    /// The point of the last evaluation, in the program's own units, whether or not that evaluation succeeded.
+    pub(crate) fn last_point(&self) -> &[f64] {
+        &self.x
+    }
+
+    /// The rows of the program that are unknowns of the border.
+    pub(crate) fn border_rows(&self) -> &[usize] {
+        &self.order.bordered
+    }
+
+    /// The derivatives of the elements and the rows at the latest point, in the program's own units.
+    pub(crate) fn latest(&self) -> &Evaluation {
+        &self.latest
+    }
+}

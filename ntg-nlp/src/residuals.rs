@@ -1,0 +1,260 @@
+//! How far a point is from a solution, from the program's own data (docs/maths.md, section 6).
+//!
+//! Every method ends by this test and by no other; a sub-solver's opinion does not count.
+//!
+//! ```text
+//! primal           max over rows and variables of the violation of their bounds
+//! dual             max over variables of | f' - J^T lambda - mu |
+//! complementarity  max over bounds of  max(multiplier, 0) * distance to the bound
+//! ```
+//!
+//! A positive multiplier belongs to the lower bound, a negative one to the upper bound. A multiplier
+//! that belongs to no bound counts as dual residual, a row's by its own size.
+
+use crate::contract::{Block, Evaluation, Limits, Target};
+use crate::scaling::Scales;
+
+/// Where the mean size of the multipliers exceeds this, dual residuals are measured relative to it.
+pub const LARGE_MULTIPLIER: f64 = 100.0;
+
+/// How far a point is from a solution, measured in one way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// Largest violation of a row or of a bound on a variable.
+    pub primal: f64,
+    /// Largest component of the gradient of the Lagrangian.
+    pub dual: f64,
+    /// Largest product of a multiplier and the distance to the bound that it belongs to.
+    pub complementarity: f64,
+}
+
+/// How far a point is from a solution, by scale and in the program's own units
+/// (docs/maths.md, section 6, termination).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residuals {
+    /// In scaled variables and rows: what the tolerances are compared with.
+    pub scaled: Residual,
+    /// In the program's own units.
+    pub unscaled: Residual,
+}
+
+/// A point, its multipliers, and the first derivatives there, all in the program's own units.
+#[derive(Clone, Copy, Debug)]
+pub struct Point<'a> {
+    /// The variables.
+    pub x: &'a [f64],
+    /// The rows.
+    pub rows: &'a [f64],
+    /// The gradient of the objective without that of the rows times their multipliers: `f' - J^T lambda`.
+    pub lagrangian: &'a [f64],
+    /// Multipliers of the rows: the derivative of the optimal objective by the active bound.
+    pub row_multipliers: &'a [f64],
+    /// Multipliers of the bounds of the variables.
+    pub bound_multipliers: &'a [f64],
+}
+
+/// Elements that are worked on side by side.
+const LANES: usize = 8;
+/// Up to so many slots and variables of an element, slopes are added up before they go further.
+const SLOTS: usize = 32;
+const VARIABLES: usize = 64;
+
+/// Writes `f' - J^T lambda`, element by element, from their derivatives at a point. Allocates nothing.
+pub fn lagrangian(blocks: &[Block], at: &Evaluation, multipliers: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    for (block, values) in blocks.iter().zip(&at.blocks) {
+        for first in (0..block.elements).step_by(LANES) {
+            let count = LANES.min(block.elements - first);
+            let mut slopes = [[0.0; LANES]; SLOTS];
+            for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                let from = row * block.elements + first;
+                let numbers = &values.jacobian[entry * block.elements + first..][..count];
+                let targets = block.weight[from..].iter().zip(&block.target[from..]);
+                for (lane, ((weight, target), number)) in targets.zip(numbers).enumerate() {
+                    let factor = match target {
+                        Target::Objective => 1.0,
+                        Target::Row(row) => -multipliers[*row as usize],
+                    };
+                    let slope = weight * factor * number;
+                    match slopes.get_mut(slot) {
+                        Some(sums) => sums[lane] += slope,
+                        None => add_slope(block, first + lane, (slot, slope), out),
+                    }
+                }
+            }
+            for lane in 0..count {
+                add_slopes(block, first + lane, slopes.iter().map(|sums| sums[lane]), out);
+            }
+        }
+    }
+}
+
+/// Adds the slopes by the slots of an element to those by its variables.
+fn add_slopes(block: &Block, element: usize, slopes: impl Iterator<Item = f64>, out: &mut [f64]) {
+    let (variables, map) = (block.variables(element), block.map(element));
+    if variables.len() > VARIABLES {
+        let slopes = slopes.enumerate().take(block.slots);
+        return slopes.for_each(|slope| add_slope(block, element, slope, out));
+    }
+    let mut sums = [0.0; VARIABLES];
+    for (slope, coefficients) in slopes.zip(map.chunks_exact(variables.len().max(1))) {
+        sums.iter_mut().zip(coefficients).for_each(|(sum, coefficient)| *sum += slope * coefficient);
+    }
+    variables.iter().zip(sums).for_each(|(&variable, sum)| out[variable as usize] += sum);
+}
+
+/// Adds a slope by a slot to those by the variables of its element.
+fn add_slope(block: &Block, element: usize, (slot, slope): (usize, f64), out: &mut [f64]) {
+    let (variables, map) = (block.variables(element), block.map(element));
+    for (&variable, coefficient) in variables.iter().zip(&map[slot * variables.len()..]) {
+        out[variable as usize] += slope * coefficient;
+    }
+}
+
+/// The violation of `lower <= value <= upper`.
+pub fn violation(value: f64, lower: f64, upper: f64) -> f64 {
+    (lower - value).max(value - upper).max(0.0)
+}
+
+/// The product of a multiplier and the distance to its bound; none where that bound is infinite.
+fn complementarity(multiplier: f64, value: f64, lower: f64, upper: f64) -> Option<f64> {
+    let distance = if multiplier > 0.0 { value - lower } else { upper - value };
+    if multiplier == 0.0 {
+        Some(0.0)
+    } else if distance.is_finite() {
+        Some((multiplier * distance).abs())
+    } else {
+        None
+    }
+}
+
+/// The residuals (6.2) to (6.4) of a point. Allocates nothing.
+pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residuals {
+    let mut found = Residuals::default();
+    for (j, &size) in scales.variables.iter().enumerate() {
+        let dual = point.lagrangian[j] - point.bound_multipliers[j];
+        let (value, mu) = (point.x[j], point.bound_multipliers[j]);
+        found.primal(violation(value, limits.lower[j], limits.upper[j]), 1.0 / size);
+        found.dual(dual, scales.objective * size);
+        match complementarity(mu, value, limits.lower[j], limits.upper[j]) {
+            Some(product) => found.complementarity(product, scales.objective),
+            None => found.dual(mu, scales.objective * size),
+        }
+    }
+    for (i, &factor) in scales.rows.iter().enumerate() {
+        let (value, lambda) = (point.rows[i], point.row_multipliers[i]);
+        found.primal(violation(value, limits.row_lower[i], limits.row_upper[i]), factor);
+        match complementarity(lambda, value, limits.row_lower[i], limits.row_upper[i]) {
+            Some(product) => found.complementarity(product, scales.objective),
+            None => found.dual(lambda, scales.objective / factor),
+        }
+    }
+    let s_d = multiplier_scale(scales, point);
+    found.scaled.dual /= s_d;
+    found.scaled.complementarity /= s_d;
+    found
+}
+
+/// The divisor `s_d` of equation (6.5): 1, or more where the multipliers are large on average. Reference: A. Wächter
+/// and L. T. Biegler, *Mathematical Programming* 106 (2006), equation (5).
+fn multiplier_scale(scales: &Scales, point: &Point<'_>) -> f64 {
+    let rows = point.row_multipliers.iter().zip(&scales.rows).map(|(lambda, factor)| (lambda / factor).abs());
+    let bounds = point.bound_multipliers.iter().zip(&scales.variables).map(|(mu, size)| (mu * size).abs());
+    let (sum, count) = rows
+        .chain(bounds)
+        .fold((0.0, 0.0), |(sum, count), size| if size > 0.0 { (sum + size, count + 1.0) } else { (sum, count) });
+    let mean = if count > 0.0 { scales.objective * sum / count } else { 0.0 };
+    (mean / LARGE_MULTIPLIER).max(1.0)
+}
+
+impl Residuals {
+    /// Includes one violation, in the program's units.
+    fn primal(&mut self, size: f64, factor: f64) {
+        grow(&mut self.unscaled.primal, &mut self.scaled.primal, size, factor);
+    }
+
+    /// Includes one component of the Lagrangian's gradient.
+    fn dual(&mut self, size: f64, factor: f64) {
+        grow(&mut self.unscaled.dual, &mut self.scaled.dual, size, factor);
+    }
+
+    /// Includes one product of multiplier and distance.
+    fn complementarity(&mut self, size: f64, factor: f64) {
+        grow(&mut self.unscaled.complementarity, &mut self.scaled.complementarity, size, factor);
+    }
+}
+
+/// Both maxima; a number that is not one stays visible as infinity.
+fn grow(unscaled: &mut f64, scaled: &mut f64, size: f64, factor: f64) {
+    let size = if size.is_nan() { f64::INFINITY } else { size.abs() };
+    *unscaled = unscaled.max(size);
+    *scaled = scaled.max(size * factor);
+}
+
+impl Residual {
+    /// The largest of the three.
+    pub fn largest(&self) -> f64 {
+        self.primal.max(self.dual).max(self.complementarity)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contract::BlockValues;
+
+    /// Eleven elements, more than are worked on side by side, with three rows of which the first is an objective.
+    fn block(slots: usize, variables: usize) -> (Block, BlockValues) {
+        let (elements, rows) = (11, 3);
+        let number = |i: usize| (i as f64 * 0.7).sin();
+        let jacobian: Vec<_> = (0..rows).flat_map(|row| (row..slots).step_by(2).map(move |slot| (row, slot))).collect();
+        let target = |i: usize| match i / elements {
+            0 => Target::Objective,
+            row => Target::Row(((row - 1) * elements + i % elements) as u32),
+        };
+        let block = Block {
+            elements,
+            slots,
+            rows,
+            variable_start: (0..=elements).map(|e| e * variables).collect(),
+            variables: (0..elements).flat_map(|e| (e as u32..).take(variables)).collect(),
+            map_start: (0..=elements).map(|e| e * slots * variables).collect(),
+            map: (0..elements * slots * variables).map(number).collect(),
+            target: (0..rows * elements).map(target).collect(),
+            weight: (0..rows * elements).map(|i| 1.0 + 0.1 * i as f64).collect(),
+            jacobian,
+            ..Block::default()
+        };
+        let jacobian = (0..block.jacobian.len() * elements).map(|i| number(3 * i + 1)).collect();
+        (block, BlockValues { jacobian, ..BlockValues::default() })
+    }
+
+    #[test]
+    fn the_lagrangian_is_the_sum_of_its_entries_however_large_the_elements() {
+        let sizes = [(3, 2), (SLOTS, VARIABLES), (SLOTS + 5, 4), (5, VARIABLES + 1), (SLOTS + 2, VARIABLES + 2)];
+        for (slots, variables) in sizes {
+            let (block, values) = block(slots, variables);
+            let multipliers: Vec<f64> = (0..22).map(|i| (f64::from(i) * 1.3).cos()).collect();
+            let mut wanted = vec![0.0; block.elements + variables];
+            for e in 0..block.elements {
+                for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                    let at = row * block.elements + e;
+                    let factor = match block.target[at] {
+                        Target::Objective => 1.0,
+                        Target::Row(row) => -multipliers[row as usize],
+                    };
+                    let slope = block.weight[at] * factor * values.jacobian[entry * block.elements + e];
+                    for (k, &variable) in block.variables(e).iter().enumerate() {
+                        wanted[variable as usize] += slope * block.map(e)[slot * variables + k];
+                    }
+                }
+            }
+            let mut found = vec![f64::NAN; wanted.len()];
+            let at = Evaluation { blocks: vec![values], ..Evaluation::default() };
+            lagrangian(&[block], &at, &multipliers, &mut found);
+            for (found, wanted) in found.iter().zip(&wanted) {
+                assert!((found - wanted).abs() < 1e-11, "{slots} slots, {variables} variables: {found} {wanted}");
+            }
+        }
+    }
+}

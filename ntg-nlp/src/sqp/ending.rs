@@ -1,0 +1,70 @@
+//! How far a solve has come, whether it is over, and what it gives back.
+
+use super::run::Run;
+use crate::contract::{Nlp, NotFinite};
+use crate::outcome::{IterationRecord, Outcome};
+use crate::residuals;
+use crate::status::{Bounded, Status, Violation};
+use crate::stopping::Stage;
+
+impl<N: Nlp> Run<'_, N> {
+    /// Computes the residuals of the present point, (6.2) to (6.5).
+    pub(super) fn measure(&mut self) {
+        self.record = IterationRecord {
+            objective: self.program.objective / self.program.scales.objective,
+            residuals: self.program.residuals(&self.row_multipliers, &self.bound_multipliers),
+            ..IterationRecord::default()
+        };
+    }
+
+    /// Whether the solve is over, and why.
+    pub(super) fn stops(&self) -> Option<Status> {
+        let Self { options, record, history, iterations, begin, x, .. } = self;
+        let objective = self.program.objective;
+        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, x }.stops()
+    }
+
+    /// The status for an evaluation that failed last.
+    pub(super) fn not_finite(&self, what: NotFinite) -> Status {
+        Status::NotFinite { what, x: self.program.last_point().to_vec() }
+    }
+
+    /// The rows that are violated at the present point, the worst first.
+    pub(super) fn violations(&self) -> Vec<Violation> {
+        let nlp = self.program.nlp;
+        let tolerance = self.options.constraint_tolerance;
+        let limits = &self.program.limits;
+        let mut found: Vec<(f64, Violation)> = Vec::new();
+        for (i, &scaled) in self.program.rows.iter().enumerate() {
+            let size = residuals::violation(scaled, limits.row_lower[i], limits.row_upper[i]);
+            if size > tolerance {
+                let value = scaled / self.program.scales.rows[i];
+                let bounds = nlp.limits();
+                let bound = if scaled < limits.row_lower[i] { bounds.row_lower[i] } else { bounds.row_upper[i] };
+                let (of, violation) = (Bounded::Row(i), (value - bound).abs());
+                found.push((size, Violation { of, value, bound, violation }));
+            }
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().map(|(_, violation)| violation).collect()
+    }
+
+    /// Ends the solve.
+    pub(super) fn outcome(mut self, status: Status) -> Outcome {
+        self.history.push(self.record);
+        let (row_multipliers, bound_multipliers) =
+            self.program.multipliers(&self.row_multipliers, &self.bound_multipliers);
+        Outcome {
+            status,
+            x: self.program.unscale(&self.x),
+            row_multipliers,
+            bound_multipliers,
+            objective: self.record.objective,
+            residuals: self.record.residuals,
+            iterations: self.iterations,
+            qps: self.qps,
+            history: self.history,
+            seconds: self.begin.elapsed().as_secs_f64(),
+        }
+    }
+}

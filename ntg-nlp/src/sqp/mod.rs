@@ -1,0 +1,82 @@
+//! Sequential quadratic programming (docs/maths.md, section 6).
+//!
+//! Takes any [`Nlp`], a start and [`Options`]; gives an [`Outcome`]. In one iteration:
+//!
+//! 1. Newton's step on the bounds that were active before, if the last one was such a step;
+//! 2. otherwise the convex subproblem, whose Hessian is clipped element by element, and then Newton's
+//!    step on the bounds that it finds active;
+//! 3. a search along the step, corrected for the curvature of the constraints where that helps.
+//!
+//! The first gets far from bad starts, the second converges quadratically; both descend on the same
+//! merit function. The end is decided by the residuals of the program itself.
+
+mod clarabel;
+mod convexify;
+mod elastic;
+mod ending;
+mod exact;
+mod globalise;
+mod restore;
+mod run;
+mod scaled;
+mod search;
+mod step;
+mod subproblem;
+
+use crate::check::refusal;
+use crate::contract::Nlp;
+use crate::options::Options;
+use crate::outcome::{Multipliers, Outcome};
+use crate::status::Status;
+use run::Run;
+use std::time::Instant;
+
+/// Solves `nlp` from `start`, which is first moved to within the bounds of the variables.
+///
+/// The answer is deterministic: the same program, start and options give the same bits (a time
+/// limit apart).
+pub fn solve<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
+    solve_from(nlp, start, None, options)
+}
+
+/// As [`solve`], with multipliers to start from, as after a small change of the program.
+pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
+    let begin = Instant::now();
+    if let Some(status) = refusal(nlp, start) {
+        return Outcome::failed(nlp, start, status);
+    }
+    let limits = nlp.limits();
+    let bounds = limits.lower.iter().zip(&limits.upper);
+    let inside: Vec<f64> = start.iter().zip(bounds).map(|(x, (lower, upper))| x.max(*lower).min(*upper)).collect();
+    match Run::new(nlp, &inside, from, options, begin) {
+        Ok(run) => iterate(run),
+        Err(what) => Outcome::failed(nlp, &inside, Status::NotFinite { what, x: inside.clone() }),
+    }
+}
+
+/// The method. Each line is a step of docs/maths.md, section 6.
+fn iterate<N: Nlp>(mut run: Run<'_, N>) -> Outcome {
+    loop {
+        run.measure();
+        if let Some(status) = run.stops() {
+            return run.outcome(status);
+        }
+        let newton = run.newton_again() && run.search_full();
+        if !newton {
+            if let Some(status) = run.subproblem() {
+                return run.outcome(status);
+            }
+            let moved = (run.newton_from_subproblem() && run.search_full()) || run.search();
+            if !moved {
+                if let Some(status) = run.shorten() {
+                    return run.outcome(status);
+                }
+                continue;
+            }
+        }
+        if let Err(what) = run.advance() {
+            let status = run.not_finite(what);
+            return run.outcome(status);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! When a solve is over, by any method (docs/maths.md, section 6.1).
+
+use crate::options::{Control, Options, Progress};
+use crate::outcome::IterationRecord;
+use crate::status::Status;
+use std::time::Instant;
+
+/// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
+const UNBOUNDED: f64 = 1e10;
+
+/// How far a solve has come.
+pub(crate) struct Stage<'a> {
+    pub(crate) options: &'a Options,
+    /// The record of the present point, with its residuals.
+    pub(crate) record: &'a IterationRecord,
+    /// The records of the iterations before.
+    pub(crate) history: &'a [IterationRecord],
+    pub(crate) iterations: usize,
+    pub(crate) begin: Instant,
+    /// The scaled objective.
+    pub(crate) objective: f64,
+    /// The scaled variables.
+    pub(crate) x: &'a [f64],
+}
+
+impl Stage<'_> {
+    /// Whether the solve is over, and why; asks the callback.
+    pub(crate) fn stops(&self) -> Option<Status> {
+        let (options, found) = (self.options, self.record.residuals.scaled);
+        let feasible = found.primal <= options.constraint_tolerance;
+        if feasible && found.dual <= options.tolerance && found.complementarity <= options.tolerance {
+            return Some(Status::Solved);
+        }
+        let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        if self.objective < -UNBOUNDED || largest > UNBOUNDED {
+            return Some(Status::Unbounded);
+        }
+        if let Some(watch) = &options.on_iteration {
+            let progress = Progress {
+                iteration: self.iterations,
+                objective: self.record.objective,
+                primal: found.primal,
+                dual: found.dual,
+                step: self.history.last().map_or(0.0, |last| last.step),
+                seconds: self.begin.elapsed().as_secs_f64(),
+            };
+            if watch(&progress) == Control::Cancel {
+                return Some(Status::Cancelled);
+            }
+        }
+        if options.time_limit.is_some_and(|limit| self.begin.elapsed() >= limit) {
+            return Some(Status::TimeLimit);
+        }
+        (self.iterations >= options.max_iterations).then_some(Status::IterationLimit)
+    }
+}

@@ -1,0 +1,50 @@
+//! A solver's status in the user's words: rows, variables and expressions by their names.
+
+use crate::status::{Crossing, Status, Violation};
+use crate::transcribe::{Transcription, fault};
+use ntg_nlp::status::Bounded;
+
+/// The status of a solve of this transcription.
+pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
+    use ntg_nlp::Status as Solver;
+    match status {
+        Solver::Solved => Status::Solved,
+        Solver::Infeasible { rows } => Status::Infeasible {
+            rows: rows
+                .into_iter()
+                .map(|ntg_nlp::status::Violation { of, value, bound, violation }| Violation {
+                    of,
+                    name: name(nlp, of),
+                    value,
+                    bound,
+                    violation,
+                })
+                .collect(),
+        },
+        Solver::IterationLimit => Status::IterationLimit,
+        Solver::TimeLimit => Status::TimeLimit,
+        Solver::Cancelled => Status::Cancelled,
+        Solver::StepTooSmall => Status::StepTooSmall,
+        Solver::Unbounded => Status::Unbounded,
+        Solver::NotFinite { what, x } => Status::NotFinite(fault::words(nlp, what, &x)),
+        Solver::Contradiction { bounds } => Status::Contradiction {
+            bounds: bounds
+                .into_iter()
+                .map(|ntg_nlp::status::Crossing { of, lower, upper }| Crossing {
+                    of,
+                    name: name(nlp, of),
+                    lower,
+                    upper,
+                })
+                .collect(),
+        },
+        Solver::SubproblemFailed => Status::SubproblemFailed,
+    }
+}
+
+fn name(nlp: &Transcription, of: Bounded) -> String {
+    match of {
+        Bounded::Row(row) => nlp.row_name(row),
+        Bounded::Variable(variable) => nlp.variable_name(variable),
+    }
+}

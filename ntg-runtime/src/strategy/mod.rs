@@ -1,0 +1,17 @@
+//! From a problem to a report: which program is solved from where, and what is tried where a solve fails
+//! (docs/maths.md, sections 8.4, 11.9 and 11.10).
+//!
+//! ```text
+//! Problem -> Transcription -> (guess, scales) -> solver -> Report
+//! ```
+//!
+//! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
+//! `coarse_start` finds starts on fewer knots, `fallback` is the sequence of attempts where a solve fails.
+
+mod coarse_start;
+mod continuation;
+mod fallback;
+mod session;
+mod solve;
+
+pub(crate) use session::{Session, Task};

@@ -1,0 +1,104 @@
+//! A solve on the problem's own mesh, step by step of its continuation, each solution the guess of the next
+//! (docs/maths.md, section 8.4).
+
+use super::continuation::{set, steps};
+use super::session::{FirstPoint, Session, Task, record};
+use crate::error::Error;
+use crate::guess::{Guess, start};
+use crate::problem::Problem;
+use crate::report::{Report, StepReport};
+use crate::settings::Settings;
+use crate::solution::Solution;
+use crate::transcribe::SetupError;
+use ntg_nlp::{Outcome, Start, Status};
+use std::time::Instant;
+
+impl Session {
+    /// Solves a problem from a guess, by continuation where it says so.
+    pub(crate) fn solve(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
+        let began = Instant::now();
+        let Task { problem, guess } = task;
+        let mut structure = self.structure_of(problem);
+        let steps = steps(&structure);
+        let mut history: Vec<StepReport> = vec![];
+        let mut last: Option<Outcome> = None;
+        let mut at_guess = vec![];
+        for (i, step) in steps.iter().enumerate() {
+            let step_began = Instant::now();
+            let is_last = i + 1 == steps.len();
+            set(&mut structure, step);
+            let mut nlp = self.program(problem, &structure)?;
+            // The layout is the same in every step: only parameters change.
+            let (mut first, mut spent, mut from) = match &last {
+                Some(last) => (start(&nlp, Some(&Guess::raw(last.x.clone())))?, 0, Start::Cold),
+                None => {
+                    let (first, singular) = self.first_point(&nlp, guess)?;
+                    at_guess = singular;
+                    (first, 0, Start::Cold)
+                }
+            };
+            if i == 0 {
+                let level = &nlp.model.structure;
+                let coarse = self.start_from_coarse(task, level, &settings.after(began.elapsed()))?;
+                spent = coarse.iterations;
+                if let Some(solution) = &coarse.solution {
+                    first = start(&nlp, Some(&Guess::from(solution)))?;
+                    from = Start::Near;
+                }
+            }
+            nlp.set_scales(&first, settings)?;
+            if let Some(last) = last.as_ref().filter(|last| last.status.is_solved()) {
+                from = Start::Warm(last.multipliers());
+            }
+            let mut left = settings.after(began.elapsed());
+            if !is_last {
+                left = left.rough();
+            }
+            let mut outcome = self.solve_with_fallback(&nlp, task, FirstPoint { x: &first, from }, &left)?;
+            outcome.iterations += spent;
+            history.push(record(&nlp, step, &outcome, step_began));
+            if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
+                let mut report = self.report(nlp, outcome, history, settings)?;
+                report.singular = at_guess;
+                self.structure = Some(structure);
+                report.seconds = began.elapsed().as_secs_f64();
+                return Ok(report);
+            }
+            self.kept = Some(nlp.keep());
+            // A step that failed has still moved; the next one may recover from there.
+            let finite = outcome.x.iter().all(|v| v.is_finite());
+            last = Some(if finite { outcome } else { Outcome { x: first, ..outcome } });
+        }
+        Err(SetupError::Malformed { message: "a continuation has no step".into() }.into())
+    }
+
+    /// Solves a problem from a solution of the same problem with other parameters: at once, without
+    /// continuation. None where that has no solution.
+    pub(crate) fn solve_again(
+        &mut self,
+        problem: &dyn Problem,
+        last: &Solution,
+        settings: &Settings,
+    ) -> Result<Option<Report>, Error> {
+        settings.validate()?;
+        let began = Instant::now();
+        let structure = self.structure_of(problem);
+        let mut nlp = self.program(problem, &structure)?;
+        self.structure = Some(structure);
+        let first = start(&nlp, Some(&Guess::from(last)))?;
+        nlp.set_scales(&first, settings)?;
+        let from = match last.inner.x.len() == first.len() {
+            true => Start::Warm(last.inner.multipliers()),
+            false => Start::Near,
+        };
+        let once = self.solve_once(&nlp, FirstPoint { x: &first, from }, settings);
+        if !matches!(once.status, Status::Solved | Status::Cancelled | Status::TimeLimit) {
+            self.kept = Some(nlp.keep());
+            return Ok(None);
+        }
+        let step = record(&nlp, &[], &once, began);
+        let mut report = self.report(nlp, once, vec![step], settings)?;
+        report.seconds = began.elapsed().as_secs_f64();
+        Ok(Some(report))
+    }
+}
