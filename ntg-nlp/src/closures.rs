@@ -165,7 +165,7 @@ impl Program {
                 (self.functions[number])(&work.slots, &mut work.functions);
                 work.add_values(block, e, out, number);
                 if let Some((objective, rows)) = weights {
-                    work.add_derivatives(block, e, (objective, rows), &mut out.blocks[number]);
+                    work.add_derivatives(block, e, objective, rows, &mut out.blocks[number]);
                 }
             }
             let values = &out.blocks[number];
@@ -229,14 +229,21 @@ impl Work {
     }
 
     /// Writes the derivatives of an element.
-    fn add_derivatives(&mut self, block: &Block, e: usize, weights: (f64, &[f64]), out: &mut BlockValues) {
+    fn add_derivatives(
+        &mut self,
+        block: &Block,
+        e: usize,
+        objective_weight: f64,
+        multipliers: &[f64],
+        out: &mut BlockValues,
+    ) {
         let slots = block.slots;
         self.hessian.fill(0.0);
         for row in 0..block.rows {
             let at = row * block.elements + e;
             let factor = match block.target[at] {
-                Target::Objective => weights.0,
-                Target::Row(i) => weights.1[i as usize],
+                Target::Objective => objective_weight,
+                Target::Row(i) => multipliers[i as usize],
             };
             for slot in 0..slots {
                 let entry = row * slots + slot;

@@ -78,7 +78,7 @@ pub fn lagrangian(blocks: &[Block], at: &Evaluation, multipliers: &[f64], out: &
                     let slope = weight * factor * number;
                     match slopes.get_mut(slot) {
                         Some(sums) => sums[lane] += slope,
-                        None => add_slope(block, first + lane, (slot, slope), out),
+                        None => add_slope(block, first + lane, slot, slope, out),
                     }
                 }
             }
@@ -94,7 +94,7 @@ fn add_slopes(block: &Block, element: usize, slopes: impl Iterator<Item = f64>, 
     let (variables, map) = (block.variables(element), block.map(element));
     if variables.len() > VARIABLES {
         let slopes = slopes.enumerate().take(block.slots);
-        return slopes.for_each(|slope| add_slope(block, element, slope, out));
+        return slopes.for_each(|(slot, slope)| add_slope(block, element, slot, slope, out));
     }
     let mut sums = [0.0; VARIABLES];
     for (slope, coefficients) in slopes.zip(map.chunks_exact(variables.len().max(1))) {
@@ -104,7 +104,7 @@ fn add_slopes(block: &Block, element: usize, slopes: impl Iterator<Item = f64>, 
 }
 
 /// Adds a slope by a slot to those by the variables of its element.
-fn add_slope(block: &Block, element: usize, (slot, slope): (usize, f64), out: &mut [f64]) {
+fn add_slope(block: &Block, element: usize, slot: usize, slope: f64, out: &mut [f64]) {
     let (variables, map) = (block.variables(element), block.map(element));
     for (&variable, coefficient) in variables.iter().zip(&map[slot * variables.len()..]) {
         out[variable as usize] += slope * coefficient;

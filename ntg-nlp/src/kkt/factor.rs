@@ -153,7 +153,7 @@ impl Factor {
         let mut negative = 0;
         for component in &envelope.components {
             for j in component.blocks.clone() {
-                negative += self.eliminate(envelope, component, (j, sum))?;
+                negative += self.eliminate(envelope, component, j, sum)?;
             }
             self.subtract_from_corner(envelope, component);
         }
@@ -167,7 +167,8 @@ impl Factor {
         &mut self,
         envelope: &Envelope,
         component: &Component,
-        (j, sum): (usize, &Regularised<'_>),
+        j: usize,
+        sum: &Regularised<'_>,
     ) -> Option<usize> {
         let (band, rows) = self.value.split_at_mut(BLOCK * BLOCK * envelope.column[envelope.column.len() - 1]);
         let (head, tail) = squares(band).split_at_mut(envelope.column[j + 1]);

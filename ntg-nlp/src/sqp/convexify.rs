@@ -155,7 +155,7 @@ fn eigen<const L: usize>(a: &mut [Lanes<L>], v: &mut [Lanes<L>], n: usize) {
                     any |= a[p * n + q][lane].abs() > negligible[lane];
                 }
                 if any {
-                    rotate(a, v, (n, p, q), &negligible);
+                    rotate(a, v, n, (p, q), &negligible);
                     turned = true;
                 }
             }
@@ -171,7 +171,8 @@ fn eigen<const L: usize>(a: &mut [Lanes<L>], v: &mut [Lanes<L>], n: usize) {
 fn rotate<const L: usize>(
     a: &mut [Lanes<L>],
     v: &mut [Lanes<L>],
-    (n, p, q): (usize, usize, usize),
+    n: usize,
+    (p, q): (usize, usize),
     negligible: &Lanes<L>,
 ) {
     let (app, aqq, apq) = (a[p * n + p], a[q * n + q], a[p * n + q]);

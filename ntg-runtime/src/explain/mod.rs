@@ -1,8 +1,9 @@
 //! Which constraints cannot hold together, where, and by how much (docs/maths.md, section 13).
 //!
 //! Takes a transcription and the point at which a solve ended; minimises the sum of violations from
-//! there, and then leaves out constraints as long as the others remain contradictory. What is left
-//! is a conflict in which, around that point, every constraint is needed.
+//! there, and then leaves out constraints one after the other as long as the others remain contradictory (the deletion
+//! filter of J. W. Chinneck, *Feasibility and Infeasibility in Optimization*, 2008). What is left is a conflict (an
+//! irreducible infeasible subset) in which, around that point, every constraint is needed.
 //!
 //! The method finds local minima, so the conflict is one *near the point*: elsewhere the constraints
 //! may hold together.

@@ -1,7 +1,7 @@
 //! A solver's status in the user's words: rows, variables and expressions by their names.
 
 use crate::status::{Crossing, Status, Violation};
-use crate::transcribe::{Transcription, fault};
+use crate::transcribe::Transcription;
 use ntg_nlp::status::Bounded;
 
 /// The status of a solve of this transcription.
@@ -26,7 +26,7 @@ pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
         Solver::Cancelled => Status::Cancelled,
         Solver::StepTooSmall => Status::StepTooSmall,
         Solver::Unbounded => Status::Unbounded,
-        Solver::NotFinite { what, x } => Status::NotFinite(fault::words(nlp, what, &x)),
+        Solver::NotFinite { what, x } => Status::NotFinite(nlp.in_words(what, &x)),
         Solver::Contradiction { bounds } => Status::Contradiction {
             bounds: bounds
                 .into_iter()

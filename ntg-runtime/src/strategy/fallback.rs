@@ -26,10 +26,10 @@ impl Session {
         }
         let x = first.x;
         let interior_point = Settings { method: Method::InteriorPoint, ..settings.clone() };
-        outcome = self.solve_from_fewer_knots(nlp, task, (x, outcome), &left(&interior_point))?;
+        outcome = self.solve_from_fewer_knots(nlp, task, x, outcome, &left(&interior_point))?;
         let options = left(settings).solver_options();
         outcome = unless_final(outcome, || ipm::solve_with_penalty(nlp, x, &options));
-        outcome = self.solve_from_fewer_knots(nlp, task, (x, outcome), &left(settings))?;
+        outcome = self.solve_from_fewer_knots(nlp, task, x, outcome, &left(settings))?;
         Ok(unless_final_by_sqp(nlp, x, outcome, &left(settings).solver_options()))
     }
 
@@ -39,7 +39,8 @@ impl Session {
         &mut self,
         nlp: &Transcription,
         task: Task<'_>,
-        (x, failed): (&[f64], Outcome),
+        x: &[f64],
+        failed: Outcome,
         settings: &Settings,
     ) -> Result<Outcome, SetupError> {
         if failed.status.is_final() {

@@ -12,7 +12,7 @@ use ntg_nlp::Entry;
 use ntg_structure::{Place, Row};
 
 /// An entry of an evaluation that is not finite, in the user's words; `x` is the point of the evaluation.
-pub(crate) fn words(this: &Transcription, what: ntg_nlp::NotFinite, x: &[f64]) -> NotFinite {
+pub(super) fn words(this: &Transcription, what: ntg_nlp::NotFinite, x: &[f64]) -> NotFinite {
     let value = what.value;
     match what.entry {
         Entry::Variable(variable) => {

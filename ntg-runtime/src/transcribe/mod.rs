@@ -16,7 +16,7 @@ mod contradictions;
 pub(crate) mod elements;
 mod error;
 mod evaluate;
-pub(crate) mod fault;
+mod fault;
 pub(crate) mod frame;
 pub(crate) mod instances;
 pub(crate) mod layout;
@@ -40,6 +40,7 @@ pub(crate) use singular::singular;
 pub use tables::interpolants;
 
 use crate::problem::Problem;
+use crate::status::NotFinite;
 use elements::Elements;
 use frame::Frame;
 use layout::Layout;
@@ -165,6 +166,11 @@ impl<'p> Transcription<'p> {
     /// Everything that gives calls their meaning.
     pub(crate) fn frame(&self) -> Frame<'_> {
         self.model.frame(self.problem)
+    }
+
+    /// An entry of an evaluation at `x` that is not finite, in the user's words: the subexpression, and the point in time.
+    pub fn in_words(&self, what: ntg_nlp::NotFinite, x: &[f64]) -> NotFinite {
+        fault::words(self, what, x)
     }
 
     /// What row `row` of the program is, in the user's words: "`turn` at t = 12.5 s".

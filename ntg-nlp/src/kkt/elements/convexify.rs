@@ -12,7 +12,8 @@ impl<const L: usize> Plan<L> {
     pub(super) fn convexify<S: Simd>(
         &self,
         simd: S,
-        (sigma, sizes): (&[f64], &[f64]),
+        sigma: &[f64],
+        sizes: &[f64],
         workspace: &mut Workspace<L>,
         matrix: &mut [f64],
     ) {
@@ -58,7 +59,7 @@ impl<const L: usize> Plan<L> {
         second.fill([0.0; L]);
         let mut convexified = false;
         for from in (0..L).step_by(S::LANES) {
-            modified_ldl.load(simd, (&*hessian, &self.exact.pairs), sizes, from);
+            modified_ldl.load(simd, hessian, &self.exact.pairs, sizes, from);
             if modified_ldl.compute(simd, n) {
                 convexified = true;
                 for ((entry, &pair), unscaling) in second.iter_mut().zip(&self.filled.pairs).zip(&*unscaling) {

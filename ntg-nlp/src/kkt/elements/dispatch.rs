@@ -132,10 +132,10 @@ impl Task for Convexify<'_> {
     fn run<S: Simd>(self, simd: S) {
         let Elements { packed, remainder, sizes } = self.elements;
         for plan in &packed.plans {
-            plan.convexify(simd, (self.sigma, &sizes[plan.block]), &mut packed.workspace, self.matrix);
+            plan.convexify(simd, self.sigma, &sizes[plan.block], &mut packed.workspace, self.matrix);
         }
         for plan in &remainder.plans {
-            plan.convexify(simd, (self.sigma, &sizes[plan.block]), &mut remainder.workspace, self.matrix);
+            plan.convexify(simd, self.sigma, &sizes[plan.block], &mut remainder.workspace, self.matrix);
         }
     }
 }

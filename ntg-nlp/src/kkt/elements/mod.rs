@@ -79,8 +79,8 @@ impl Elements {
         let (mut packed, mut remainder) = (Plans::default(), Plans::default());
         for (number, (block, supports)) in blocks.iter().zip(supports).enumerate() {
             let (many, few) = batching::batch_elements(block, supports);
-            packed.add((number, block), supports, many, &program);
-            remainder.add((number, block), supports, few, &program);
+            packed.add(number, block, supports, many, &program);
+            remainder.add(number, block, supports, few, &program);
         }
         Self { packed, remainder, sizes: slot_sizes(blocks, sizes) }
     }
@@ -125,9 +125,9 @@ impl Elements {
 }
 
 impl<const L: usize> Plans<L> {
-    fn add(&mut self, block: (usize, &Block), supports: &Supports, batching: Batching<L>, program: &Program<'_>) {
+    fn add(&mut self, number: usize, block: &Block, supports: &Supports, batching: Batching<L>, program: &Program<'_>) {
         if batching.packs() > 0 {
-            let plan = Plan::new(block, supports, batching, program);
+            let plan = Plan::new(number, block, supports, batching, program);
             self.workspace.fit(&plan);
             self.plans.push(plan);
         }

@@ -62,7 +62,8 @@ impl ModifiedLdl {
     pub(super) fn load<S: Simd, const L: usize>(
         &mut self,
         simd: S,
-        (second, pairs): (&[[f64; L]], &[(usize, usize)]),
+        second: &[[f64; L]],
+        pairs: &[(usize, usize)],
         sizes: &[f64],
         from: usize,
     ) {
@@ -296,7 +297,7 @@ mod tests {
         modified_ldl.fit(n);
         let pairs = pairs(n);
         let second: Vec<[f64; 1]> = pairs.iter().map(|&pair| [k[pair]]).collect();
-        modified_ldl.load(Scalar, (&second, &pairs), &vec![1.0; n], 0);
+        modified_ldl.load(Scalar, &second, &pairs, &vec![1.0; n], 0);
         let convexified = modified_ldl.compute(Scalar, n);
         let term = |i: usize, j: usize| modified_ldl.term(Scalar, n, (i.max(j), i.min(j))).to_array()[0];
         (convexified, DMatrix::from_fn(n, n, |i, j| if convexified { term(i, j) } else { 0.0 }))
@@ -363,7 +364,7 @@ mod tests {
             let Self { n, second, out } = self;
             let mut modified_ldl = ModifiedLdl::default();
             modified_ldl.fit(n);
-            modified_ldl.load(simd, (second, &pairs(n)), &vec![1.0; n], 4);
+            modified_ldl.load(simd, second, &pairs(n), &vec![1.0; n], 4);
             assert!(modified_ldl.compute(simd, n));
             out.extend((0..n * n).map(|at| modified_ldl.term(simd, n, (at / n, at % n)).to_array()));
             // Lanes that the processor does not have.

@@ -79,14 +79,15 @@ pub(super) struct Program<'a> {
 impl<const L: usize> Plan<L> {
     /// Plans some elements of a block. Positions are computed by [`Plan::locate`].
     pub(super) fn new(
-        (number, block): (usize, &Block),
+        number: usize,
+        block: &Block,
         supports: &Supports,
         batching: Batching<L>,
         program: &Program<'_>,
     ) -> Self {
         let order = program.order;
         let padding = order.unknown.len() as u32;
-        let map = RangeMap::new(block, supports, &batching, (program.sizes, padding));
+        let map = RangeMap::new(block, supports, &batching, program.sizes, padding);
         let function = functions(block, &batching, order.border_row.len());
         let nothing = order.border_row.len() as u32 + 1;
         let inside = |q: u32| order.border_row.get(q as usize).is_some_and(Option::is_none);

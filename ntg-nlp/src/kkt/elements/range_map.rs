@@ -23,12 +23,7 @@ pub(super) struct RangeMap<const L: usize> {
 
 impl<const L: usize> RangeMap<L> {
     /// The range transformations of a block whose variables have these sizes; `padding` is the variable of padding.
-    pub(super) fn new(
-        block: &Block,
-        supports: &Supports,
-        batching: &Batching<L>,
-        (sizes, padding): (&[f64], u32),
-    ) -> Self {
+    pub(super) fn new(block: &Block, supports: &Supports, batching: &Batching<L>, sizes: &[f64], padding: u32) -> Self {
         let (mut coefficient_of, mut stride) = (vec![0; block.slots], 0);
         for (slot, at) in coefficient_of.iter_mut().enumerate() {
             *at = stride;
