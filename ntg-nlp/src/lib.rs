@@ -25,7 +25,8 @@
 //! let program = Program::dense(&bounds, &constraints, |x, out| {
 //!     let [a, b, c] = [x[0], x[1], x[2]];
 //!     // Function 0 is the objective, function 1 the first constraint.
-//!     out.set_value(0, 9.0 - 8.0 * a - 6.0 * b - 4.0 * c + 2.0 * a * a + 2.0 * b * b + c * c + 2.0 * a * b + 2.0 * a * c);
+//!     let squares = 2.0 * a * a + 2.0 * b * b + c * c + 2.0 * a * b + 2.0 * a * c;
+//!     out.set_value(0, 9.0 - 8.0 * a - 6.0 * b - 4.0 * c + squares);
 //!     out.set_gradient(0, &[4.0 * a + 2.0 * b + 2.0 * c - 8.0, 2.0 * a + 4.0 * b - 6.0, 2.0 * a + 2.0 * c - 4.0]);
 //!     out.set_hessian(0, &[4.0, 2.0, 2.0, 2.0, 4.0, 0.0, 2.0, 0.0, 2.0]);
 //!     out.set_value(1, a + b + 2.0 * c);
@@ -39,8 +40,8 @@
 //! ```
 //!
 //! Two methods end by the same test of optimality ([`residuals`]): [`ipm`], a primal-dual interior-point method with
-//! exact second derivatives, and `sqp`, sequential quadratic programming on Clarabel (feature `sqp`). [`solve`] chooses.
-//! The mathematics is in docs/maths.md, sections 5, 6 and 11.
+//! exact second derivatives, and `sqp`, sequential quadratic programming on Clarabel (feature `sqp`). [`solve`]
+//! chooses. The mathematics is in docs/maths.md, sections 5, 6 and 11.
 //!
 //! The crate knows variables, rows, blocks and elements by their indices. Names are the caller's.
 

@@ -168,8 +168,8 @@ impl<N: Nlp> State<'_, N> {
             && alpha * (-reference.slope).powf(SWITCH_PHI) > reference.theta.powf(SWITCH_THETA)
     }
 
-    /// Whether the trial point is acceptable. Where it is because of its infeasibility, the pair of the present point is
-    /// added to the filter.
+    /// Whether the trial point is acceptable. Where it is because of its infeasibility, the pair of the present point
+    /// is added to the filter.
     pub(super) fn is_acceptable(&mut self, reference: ReferencePoint, alpha: f64) -> bool {
         let (theta, phi) = self.trial_pair();
         if !(theta.is_finite() && phi.is_finite() && self.filter.accepts(theta, phi)) {

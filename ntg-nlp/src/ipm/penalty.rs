@@ -6,9 +6,9 @@
 //!
 //! A *relaxation* `n > 0` lets a bound give way, and each unit costs the penalty parameter `rho`. For a given `x` the
 //! best `s` and `n` have a closed form, so this is one smooth function of `x`, without constraints but the bounds of
-//! variables, which stay hard. Its step is that of section 11.2 with the weight `1 / (s / z + n / (rho - z))`, always one
-//! of descent, so that a plain line search needs no filter and no restoration. Multipliers stay below `rho`; where the
-//! constraints cannot be met with any penalty parameter, the sum of violations is least.
+//! variables, which stay hard. Its step is that of section 11.2 with the weight `1 / (s / z + n / (rho - z))`, always
+//! one of descent, so that a plain line search needs no filter and no restoration. Multipliers stay below `rho`; where
+//! the constraints cannot be met with any penalty parameter, the sum of violations is least.
 
 use super::slacks::{Slacks, log_sum};
 

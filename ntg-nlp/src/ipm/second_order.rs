@@ -13,8 +13,8 @@ const CORRECTIONS: usize = 4;
 const KAPPA_SOC: f64 = 0.99;
 
 impl<N: Nlp> State<'_, N> {
-    /// Corrects a rejected full step of length `alpha`; whether a corrected trial point is acceptable. Where none is, the
-    /// step is the uncorrected one again.
+    /// Corrects a rejected full step of length `alpha`; whether a corrected trial point is acceptable. Where none is,
+    /// the step is the uncorrected one again.
     pub(super) fn correct_second_order(&mut self, reference: ReferencePoint, alpha: f64) -> bool {
         let (mut theta, _) = self.trial_pair();
         if theta < reference.theta {

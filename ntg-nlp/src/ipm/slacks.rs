@@ -1,9 +1,9 @@
 //! Bounds with their slacks and multipliers (docs/maths.md, section 11.1).
 //!
 //! Every finite bound of a function is an *inequality* `d = sign (value - bound) >= 0`, where `d` is the function's
-//! *distance* to the bound. The barrier problem replaces it by `d = s`, `s > 0` with a slack `s`, which is a variable of
-//! its own, and a multiplier `z > 0`. A pair of bounds without room between them is an *equality* with a multiplier `y`
-//! of either sign.
+//! *distance* to the bound. The barrier problem replaces it by `d = s`, `s > 0` with a slack `s`, which is a variable
+//! of its own, and a multiplier `z > 0`. A pair of bounds without room between them is an *equality* with a multiplier
+//! `y` of either sign.
 
 use crate::contract::Limits;
 use crate::reductions::{largest, sum};

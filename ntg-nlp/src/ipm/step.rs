@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! A dx = -grad L + J^T q,   A = H + J^T Sigma J + shift I
-//! inequalities:  Sigma = z / s,   q = sign (mu / z - s - r) Sigma,   ds = sign J dx + r,   dz = (mu / z - s - ds) Sigma
-//! equalities:    Sigma = 1 / p,   q = -c / p                                        (p: proximal term)
+//! inequalities:  Sigma = z / s,   q = sign (mu / z - s - r) Sigma
+//!                ds = sign J dx + r,   dz = (mu / z - s - ds) Sigma
+//! equalities:    Sigma = 1 / p,   q = -c / p,   dy = -(c + J dx) / p                  (p: proximal term)
 //! ```
 //!
-//! `r = d - s` is the residual of an inequality. The slack step is computed as `J dx + (d - s)`, in this association: it
-//! keeps the digits of small slacks. Equalities are then refined until the proximal term no longer shows
+//! `r = d - s` is the residual of an inequality. The slack step is computed as `J dx + (d - s)`, in this association:
+//! it keeps the digits of small slacks. Equalities are then refined until the proximal term no longer shows
 //! (`equalities`).
 
 use super::slacks::Slacks;
@@ -21,12 +22,12 @@ use crate::reductions::sum;
 pub(super) const PROXIMAL: f64 = 1e-6;
 /// The weight of a function without bounds: none, but a number that may divide.
 const WEIGHTLESS: f64 = 1e-30;
-/// From this barrier parameter on, relative to its unit, the solution that the guess leads to is settled, and a fraction
-/// of the convexifying term is enough. Before, all of it keeps steps short: a fraction leaves the neighbourhood of a
-/// good guess. A fit to the flights of `examples/robustness.rs`.
+/// From this barrier parameter on, relative to its unit, the solution that the guess leads to is settled, and a
+/// fraction of the convexifying term is enough. Before, all of it keeps steps short: a fraction leaves the
+/// neighbourhood of a good guess. A fit to the flights of `examples/robustness.rs`.
 const SETTLED: f64 = 1e-3;
-/// The fraction of the convexifying term that counts as the last one in the first iteration, the least fraction, and the
-/// factor from one trial to the next. The last two are fits, as above.
+/// The fraction of the convexifying term that counts as the last one in the first iteration, the least fraction, and
+/// the factor from one trial to the next. The last two are fits, as above.
 pub(super) const FIRST_FRACTION: f64 = 0.25;
 const LEAST_FRACTION: f64 = 1e-4;
 const FRACTION_FACTOR: f64 = 4.0;

@@ -14,11 +14,11 @@
 use super::storage::{BLOCK, Component, Envelope};
 use ntg_math::{Simd, Task, dispatch};
 
-/// A pivot smaller than this fraction of the column's largest entry counts as zero. A law: a hundred roundings.
+/// A pivot smaller than this fraction of the column's largest entry counts as zero. A law: some fifty roundings.
 const SINGULAR: f64 = 1e-14;
-/// A pivot of the band within this fraction of the diagonal entry that it came from is nothing but rounding: tight bounds
-/// leave directions whose curvature is lost beside theirs. Such a pivot counts as positive and of this size, which
-/// changes the matrix by no more than its own rounding. A law: a hundred roundings.
+/// A pivot of the band within this fraction of the diagonal entry that it came from is nothing but rounding: tight
+/// bounds leave directions whose curvature is lost beside theirs. Such a pivot counts as positive and of this size,
+/// which changes the matrix by no more than its own rounding. A law: some fifty roundings.
 const NOISE: f64 = 1e-14;
 
 /// Numbers of as many unknowns as a block has.

@@ -201,7 +201,8 @@ impl Envelope {
     }
 }
 
-/// Where the entry of two padded indices of the band is stored, the later index first: block by block, column by column.
+/// Where the entry of two padded indices of the band is stored, the later index first: block by block, column by
+/// column.
 fn entry(column: &[usize], high: usize, low: usize) -> usize {
     let block = column[low / BLOCK] + high / BLOCK - low / BLOCK;
     BLOCK * BLOCK * block + BLOCK * (low % BLOCK) + high % BLOCK

@@ -1,10 +1,10 @@
 //! Which slots of a block depend on the same unknowns (docs/maths.md, section 11.2).
 //!
 //! Slots that share a variable in any element belong to one *support* (as a rule an output with its derivatives). Every
-//! slot of a support is a dense combination of the same few variables, the *element variables* of the support. Different
-//! supports share no variable. All elements of a block are given the same number of element variables; where an element
-//! depends on fewer, the last ones are padding. An element at a breakpoint depends on some of the variables of the
-//! interval beside it; it is given all variables of that interval, so that both are worked on together.
+//! slot of a support is a dense combination of the same few variables, the *element variables* of the support.
+//! Different supports share no variable. All elements of a block are given the same number of element variables; where
+//! an element depends on fewer, the last ones are padding. An element at a breakpoint depends on some of the variables
+//! of the interval beside it; it is given all variables of that interval, so that both are worked on together.
 
 use crate::contract::Block;
 

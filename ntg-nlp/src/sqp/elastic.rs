@@ -1,7 +1,7 @@
 //! Elastic mode: what to do where the subproblem has no solution (docs/maths.md, section 6, (6.13)).
 //!
-//! Rows may be violated, and the violation is penalised. The penalty rises until the step reduces the violation, as far as
-//! it can be reduced at all, by a fair fraction; so the step descends on the merit function with that
+//! Rows may be violated, and the violation is penalised. The penalty rises until the step reduces the violation, as far
+//! as it can be reduced at all, by a fair fraction; so the step descends on the merit function with that
 //! penalty. Where even the largest penalty brings no reduction, the point is a stationary point of the
 //! violation: the program is infeasible there.
 //!

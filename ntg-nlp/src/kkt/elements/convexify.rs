@@ -6,8 +6,9 @@ use super::{Curvature, Weights};
 use ntg_math::{Scalar, Simd};
 
 impl<const L: usize> Plan<L> {
-    /// Adds the convexifying term: what makes the second derivatives of every element, with its condensed rows, positive
-    /// semidefinite, in the measure of slots of these sizes. Precondition: [`Plan::assemble`] with the same `sigma`.
+    /// Adds the convexifying term: what makes the second derivatives of every element, with its condensed rows,
+    /// positive semidefinite, in the measure of slots of these sizes. Precondition: [`Plan::assemble`] with the same
+    /// `sigma`.
     #[inline(always)]
     pub(super) fn convexify<S: Simd>(
         &self,

@@ -7,9 +7,9 @@
 //! ```
 //!
 //! `K` plus the *convexifying term* is `P^T L |D| L^T P`, which is positive semidefinite, and `K` itself where `K` is
-//! positive semidefinite. Pivoting is complete, so that `L` stays small and no eigenvalues of `K` are needed. Every lane
-//! has pivots of its own. Pivots are not moved but selected by comparing slot numbers, so that all lanes do the same
-//! operations.
+//! positive semidefinite. Pivoting is complete, so that `L` stays small and no eigenvalues of `K` are needed. Every
+//! lane has pivots of its own. Pivots are not moved but selected by comparing slot numbers, so that all lanes do the
+//! same operations.
 //!
 //! References: J. R. Bunch and B. N. Parlett, *SIAM J. Numer. Anal.* 8 (1971), for the factors; S. H. Cheng
 //! and N. J. Higham, *SIAM J. Matrix Anal. Appl.* 19 (1998), for the term of `D`.

@@ -46,8 +46,8 @@ impl Entries {
         entries
     }
 
-    /// Visits every row: the pair of supports, the element variable within the first support, the position of the row, and
-    /// its length. Within one support only the lower triangle is there.
+    /// Visits every row: the pair of supports, the element variable within the first support, the position of the row,
+    /// and its length. Within one support only the lower triangle is there.
     fn each_row(&self, supports: &Supports, mut visit: impl FnMut((usize, usize), usize, usize, usize)) {
         let mut first = 0;
         for &(p, q) in &self.pairs {

@@ -9,10 +9,11 @@ use crate::contract::Block;
 /// The range transformations of all elements of a batching, scaled: `slot = E s` for scaled variables `s`.
 #[derive(Clone, Debug)]
 pub(super) struct RangeMap<const L: usize> {
-    /// The variable of each element variable: `[(batch * element_variables + element_variable)][lane]`; `padding` for none.
+    /// The variable of each element variable: `[(batch * element_variables + element_variable)][lane]`; `padding` for
+    /// none.
     pub(super) variable: Vec<[u32; L]>,
-    /// Where the coefficients of each slot begin within those of a pack; a slot has one for each element variable of its
-    /// support.
+    /// Where the coefficients of each slot begin within those of a pack; a slot has one for each element variable of
+    /// its support.
     pub(super) coefficient_of: Vec<usize>,
     /// Coefficients of a pack.
     pub(super) stride: usize,
