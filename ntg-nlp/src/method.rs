@@ -30,8 +30,7 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, options: &Opt
 fn automatic<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, options: &Options) -> Outcome {
     let began = Instant::now();
     let first = ipm::solve_from(nlp, start, from, options);
-    let second = unless_final(first, || ipm::solve_with_penalty(nlp, start, &options.after(began.elapsed())));
-    unless_final_by_sqp(nlp, start, second, &options.after(began.elapsed()))
+    unless_final_by_sqp(nlp, start, first, &options.after(began.elapsed()))
 }
 
 /// Where other attempts have failed, sequential quadratic programming from the start: its iterations cost many times

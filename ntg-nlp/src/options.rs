@@ -61,7 +61,7 @@ pub enum Method {
 
 /// The loosest tolerance at which a solution is polished: with this tolerance and looser ones a solution serves as a
 /// guess only.
-pub const ROUGH_TOLERANCE: f64 = 1e-3;
+pub const ROUGH_TOLERANCE: f64 = 1e-4;
 
 /// How to solve. `Options::default()` suits most programs.
 #[derive(Clone)]

@@ -41,6 +41,9 @@ pub struct Crossing {
 pub enum Status {
     /// All residuals are within their tolerances: a local minimum to first order.
     Solved,
+    /// The solve could not go on, and all residuals are within 1e-6 though not within
+    /// their tolerances.
+    Acceptable,
     /// The point minimises the violation of the constraints locally, and some stay violated.
     Infeasible {
         /// What remains violated, the worst (by scale) first.
@@ -80,7 +83,7 @@ impl Status {
 
     /// Whether another method could do no better.
     pub fn is_final(&self) -> bool {
-        matches!(self, Self::Solved | Self::Cancelled | Self::TimeLimit | Self::Contradiction { .. })
+        matches!(self, Self::Solved | Self::Acceptable | Self::Cancelled | Self::TimeLimit | Self::Contradiction { .. })
     }
 }
 
@@ -97,6 +100,7 @@ impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Solved => f.write_str("solved"),
+            Self::Acceptable => f.write_str("acceptable: optimal to 1e-6, not to the tolerances"),
             Self::Infeasible { rows } => {
                 f.write_str("infeasible: no nearby point meets all constraints")?;
                 rows.first().map_or(Ok(()), |worst| {

@@ -8,6 +8,10 @@ use std::time::Instant;
 /// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
 const UNBOUNDED: f64 = 1e10;
 
+/// All residuals of an acceptable end are within this (or within the tolerances, where these are looser): the acceptable
+/// tolerance of IPOPT.
+pub(crate) const ACCEPTABLE: f64 = 1e-6;
+
 /// How far a solve has come.
 pub(crate) struct Stage<'a> {
     pub(crate) options: &'a Options,
@@ -19,6 +23,8 @@ pub(crate) struct Stage<'a> {
     pub(crate) begin: Instant,
     /// The scaled objective.
     pub(crate) objective: f64,
+    /// Whether feasibility is being restored: then the residuals are not those of the program.
+    pub(crate) is_restoring: bool,
     /// The scaled variables.
     pub(crate) x: &'a [f64],
 }
@@ -28,7 +34,11 @@ impl Stage<'_> {
     pub(crate) fn stops(&self) -> Option<Status> {
         let (options, found) = (self.options, self.record.residuals.scaled);
         let feasible = found.primal <= options.constraint_tolerance;
-        if feasible && found.dual <= options.tolerance && found.complementarity <= options.tolerance {
+        if !self.is_restoring
+            && feasible
+            && found.dual <= options.tolerance
+            && found.complementarity <= options.tolerance
+        {
             return Some(Status::Solved);
         }
         let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));

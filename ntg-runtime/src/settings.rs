@@ -55,7 +55,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// Largest scaled violation of a constraint at a solution; between 1e-12 and 0.1. Default 1e-8.
     pub constraint_tolerance: f64,
-    /// Most iterations; at least 1. Default 500.
+    /// Most iterations of everything that a solve does: starts on coarser knots, steps of a continuation, further
+    /// attempts where one fails, of at most 500 iterations each; at least 1. Default 2000.
     pub max_iterations: usize,
     /// Most wall-clock time, checked once an iteration; greater than zero. Default none.
     pub time_limit: Option<Duration>,
@@ -87,7 +88,7 @@ impl Default for Settings {
             method: Method::Auto,
             tolerance: 1e-8,
             constraint_tolerance: 1e-8,
-            max_iterations: 500,
+            max_iterations: 2000,
             time_limit: None,
             on_iteration: None,
             scaling: Scaling::Automatic,

@@ -77,6 +77,9 @@ pub struct NotFinite {
 pub enum Status {
     /// All residuals are within their tolerances: a local minimum to first order.
     Solved,
+    /// The solve could not go on, and all residuals are within 1e-6 though not within their tolerances: in most cases
+    /// the solution to five or six digits.
+    Acceptable,
     /// The point minimises the violation of the constraints locally, and some stay violated.
     Infeasible {
         /// What remains violated, the worst (by scale) first.
@@ -113,6 +116,10 @@ impl Status {
     pub fn advice(&self) -> &'static str {
         match self {
             Self::Solved => "",
+            Self::Acceptable => {
+                "Compare the residuals with what you need; for more digits give typical sizes by `scales`, or remove \
+                 constraints that say the same thing twice."
+            }
             Self::Infeasible { .. } => {
                 "Relax one of the named constraints, or start from another guess: the constraints may \
                  contradict each other only near this one."
@@ -147,6 +154,7 @@ impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Solved => f.write_str("solved"),
+            Self::Acceptable => f.write_str("acceptable: optimal to 1e-6, not to the tolerances"),
             Self::Infeasible { rows } => {
                 f.write_str("infeasible: no nearby point meets all constraints")?;
                 list(f, rows, |f, row| {

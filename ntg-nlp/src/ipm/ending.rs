@@ -5,6 +5,7 @@ use crate::contract::Nlp;
 use crate::outcome::Outcome;
 use crate::residuals::{self, Residuals};
 use crate::status::{Bounded, Status, Violation};
+use crate::stopping::ACCEPTABLE;
 
 impl<N: Nlp> State<'_, N> {
     /// Counts the iteration and computes derivatives at the new point.
@@ -14,7 +15,11 @@ impl<N: Nlp> State<'_, N> {
     pub(super) fn advance(&mut self) -> Result<(), Status> {
         self.history.push(self.record);
         self.iterations += 1;
-        self.evaluate().map_err(|what| self.not_finite(what))
+        self.evaluate().map_err(|what| self.not_finite(what))?;
+        if self.take_estimate_due() && self.recall_multipliers() {
+            self.evaluate().map_err(|what| self.not_finite(what))?;
+        }
+        Ok(())
     }
 
     /// The status where no step is acceptable in penalty mode.
@@ -47,13 +52,26 @@ impl<N: Nlp> State<'_, N> {
         found.into_iter().map(|(_, violation)| violation).collect()
     }
 
-    /// Ends the solve, at the best point if one met all tolerances before.
+    /// Ends the solve at the best point: one that met all tolerances, else the best of all, which may be acceptable.
     pub(super) fn end(mut self, status: Status) -> Outcome {
-        let stopped = matches!(status, Status::Cancelled | Status::TimeLimit);
-        if self.take_best() && !stopped {
-            return self.outcome(Status::Solved);
+        let cancelled = matches!(status, Status::Cancelled);
+        if self.take_best() {
+            return self.outcome(if cancelled { status } else { Status::Solved });
         }
-        self.outcome(status)
+        self.take_nearest();
+        let found = self.record.residuals.scaled;
+        let is_acceptable = found.primal <= self.options.constraint_tolerance.max(ACCEPTABLE)
+            && found.dual.max(found.complementarity) <= self.options.tolerance.max(ACCEPTABLE);
+        if is_acceptable && !cancelled {
+            return self.outcome(Status::Acceptable);
+        }
+        match status {
+            Status::Infeasible { .. } => {
+                let rows = self.violations();
+                self.outcome(Status::Infeasible { rows })
+            }
+            status => self.outcome(status),
+        }
     }
 
     /// Ends the solve at the present point.

@@ -13,6 +13,27 @@ const REFINED: f64 = 1e-10;
 const ROUNDING: f64 = 1e-13;
 /// Where an estimated multiplier is larger than this, all start at 0 instead. WB, section 3.6: lambda_max = 1e3.
 const LARGEST_ESTIMATE: f64 = 1e3;
+/// Multipliers run off where the largest one exceeds this multiple of the largest one of the last estimate (or of
+/// `LEAST_SIZE`) while steps are shorter than `RUN_OFF_STEP`; an estimate replaces them where it is smaller by the factor
+/// `SMALLER`. Fits to the gallery.
+const RUN_OFF: f64 = 1e3;
+const LEAST_SIZE: f64 = 10.0;
+const RUN_OFF_STEP: f64 = 0.5;
+const SMALLER: f64 = 0.1;
+
+/// What is known of the size of the equalities' multipliers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Estimate {
+    /// The largest multiplier of the last estimate.
+    largest: f64,
+    /// Whether multipliers seem to have run off since.
+    is_due: bool,
+}
+
+/// The largest absolute value.
+fn largest(of: &[f64]) -> f64 {
+    of.iter().fold(0.0_f64, |most, y| most.max(y.abs()))
+}
 
 impl<N: Nlp> State<'_, N> {
     /// The method of multipliers for the equalities, equation (11.4): the residual that the proximal term leaves
@@ -59,9 +80,45 @@ impl<N: Nlp> State<'_, N> {
         left
     }
 
+    /// Notes whether the equalities' multipliers have run off after a step of length `alpha`.
+    pub(super) fn watch_multipliers(&mut self, alpha: f64) {
+        let usual = self.estimate.largest.max(LEAST_SIZE);
+        self.estimate.is_due = alpha < RUN_OFF_STEP && largest(&self.slacks.y) > RUN_OFF * usual;
+    }
+
+    /// Whether multipliers that have run off are to be estimated anew.
+    pub(super) fn take_estimate_due(&mut self) -> bool {
+        std::mem::take(&mut self.estimate.is_due)
+    }
+
+    /// Replaces multipliers that have run off by estimates, where these are much smaller. Precondition: derivatives at
+    /// the present point. Whether the multipliers have changed.
+    pub(super) fn recall_multipliers(&mut self) -> bool {
+        let before = std::mem::take(&mut self.slacks.y);
+        let size = largest(&before);
+        self.slacks.y = before.clone();
+        self.estimate_by_least_squares();
+        let estimated = largest(&self.slacks.y);
+        let is_smaller = estimated < SMALLER * size;
+        self.estimate.largest = if is_smaller { estimated } else { estimated.max(SMALLER * size) };
+        if !is_smaller {
+            self.slacks.y = before;
+        }
+        is_smaller
+    }
+
+    /// First multipliers of equalities: estimates by least squares, or 0 where one of them is large.
+    pub(super) fn estimate_equality_multipliers(&mut self) {
+        self.estimate_by_least_squares();
+        let estimated = largest(&self.slacks.y);
+        if estimated > LARGEST_ESTIMATE || self.slacks.y.iter().any(|y| y.is_nan()) {
+            self.slacks.y.fill(0.0);
+        }
+    }
+
     /// Multipliers of equalities by least squares (section 11.7): those that come nearest to a stationary
     /// point, given the multipliers of the inequalities. Precondition: derivatives at the present point.
-    pub(super) fn estimate_equality_multipliers(&mut self) {
+    fn estimate_by_least_squares(&mut self) {
         self.slacks.y.fill(0.0);
         if self.slacks.equalities.is_empty() {
             return;
@@ -83,10 +140,6 @@ impl<N: Nlp> State<'_, N> {
         self.system.product_of_equalities(&self.step.x, &mut self.step.jacobian_x);
         for (equality, y) in self.slacks.equalities.iter().zip(&mut self.slacks.y) {
             *y = -self.step.jacobian_x[equality.function] / PROXIMAL;
-        }
-        let largest = self.slacks.y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
-        if largest.is_nan() || largest > LARGEST_ESTIMATE {
-            self.slacks.y.fill(0.0);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The first iterate (docs/maths.md, sections 11.4, 11.7 and 11.8; line 1 of Algorithm 11).
 
+use super::best::Point;
+use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
-use super::polish::Best;
 use super::slacks::Slacks;
 use super::state::{Analysis, State, Trial};
 use super::step::{FIRST_FRACTION, Step};
@@ -14,12 +15,13 @@ use crate::scaling::Scales;
 use crate::status::Status;
 use std::time::Instant;
 
-/// The first barrier parameter (scaled). A fit: of 1, 0.1, 0.01 and 0.001 the one that took the fewest
-/// iterations on the flights of `examples/robustness.rs`.
-const FIRST_BARRIER: f64 = 0.01;
-/// Where there are more inequalities than this, the barrier parameter is smaller in proportion: more points of
-/// collocation must not weigh more beside an integral, whose weights become smaller. The number itself is a fit to the
-/// flights of `examples/robustness.rs`.
+/// The first barrier parameter, relative to its unit. WB, section 4: 0.1. A fit to the gallery and to the fleets of
+/// `multi_vehicle_separated`: with a larger one the barrier leads away from the minimum that the guess means, with a
+/// smaller one the first steps hit the bounds.
+const FIRST_BARRIER: f64 = 0.03;
+/// Where there are more inequalities than this, barrier parameters and first multipliers are smaller in proportion: more
+/// points of collocation must not weigh more beside an integral, whose weights become smaller. The number itself is a
+/// fit to the flights of `examples/robustness.rs`.
 const MANY_INEQUALITIES: f64 = 160.0;
 /// How far inside their bounds the first point lies, relative to the bound and to the room between bounds. WB, section
 /// 3.6: kappa_1 = kappa_2 = 1e-2.
@@ -66,9 +68,16 @@ impl<'a, N: Nlp> State<'a, N> {
             s_d: 1.0,
             barrier_unit,
             filter: Filter::with_capacity(options.max_iterations.min(HISTORY)),
-            best: Best::new(&x, &slacks),
+            best: Point::new(&x, &slacks),
+            solved_at: 0,
+            nearest: Point::new(&x, &slacks),
+            before_step: Point::new(&x, &slacks),
             saved_step: step.clone(),
             penalty: None,
+            restoration: None,
+            restorations: 0,
+            short_steps: 0,
+            estimate: Estimate::default(),
             convex_fraction: FIRST_FRACTION,
             step,
             trial: Trial::new(&x, functions, slacks.s.clone()),
@@ -94,7 +103,9 @@ impl<'a, N: Nlp> State<'a, N> {
         match (from, from.multipliers(self.nlp)) {
             (_, Some(from)) => self.start_warm(from),
             (Start::Cold, None) => self.start_without_multipliers(FIRST_BARRIER, INSIDE),
-            (Start::Near | Start::Warm(_), None) => self.start_without_multipliers(warm::NEAR_BARRIER, warm::INSIDE),
+            (Start::Near | Start::Warm(_), None) => {
+                self.start_without_multipliers(warm::NEAR_BARRIER, warm::NEAR_INSIDE);
+            }
         }
         self.evaluate()?;
         self.start_filter();
@@ -105,14 +116,12 @@ impl<'a, N: Nlp> State<'a, N> {
     fn start_without_multipliers(&mut self, barrier: f64, inside: f64) {
         self.mu = barrier * self.barrier_unit;
         self.slacks.initialise(inside);
-        for (z, s) in self.slacks.z.iter_mut().zip(&self.slacks.s) {
-            *z = self.mu / s;
-        }
+        self.slacks.z.fill(self.barrier_unit); // WB, section 3.6: 1.
         self.estimate_equality_multipliers();
     }
 
     /// Starts a filter at the present point.
-    fn start_filter(&mut self) {
+    pub(super) fn start_filter(&mut self) {
         let theta = self.theta();
         self.filter.clear();
         self.filter.theta_max = LARGEST_THETA * theta.max(1.0);

@@ -22,6 +22,12 @@ const GAMMA_ALPHA: f64 = 0.05;
 /// Relative to the variables, a step below this is rounding: WB, section 3.9.
 const TINY: f64 = 10.0 * f64::EPSILON;
 
+/// A step below this is short, and after so many short steps in a row far from feasibility another one is not searched
+/// for: feasibility is restored instead. Fits to the gallery.
+const SHORT: f64 = 1e-2;
+const SHORT_STEPS: usize = 3;
+const NEARLY_FEASIBLE: f64 = 1e-4;
+
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SearchOutcome {
@@ -53,7 +59,10 @@ impl<N: Nlp> State<'_, N> {
             let has_value = self.try_step(longest);
             return if has_value { self.accept_trial(longest, SearchOutcome::Tiny) } else { SearchOutcome::Stuck };
         }
-        let shortest = GAMMA_ALPHA * self.shortest(reference);
+        let mut shortest = GAMMA_ALPHA * self.shortest(reference);
+        if self.short_steps >= SHORT_STEPS && reference.theta > NEARLY_FEASIBLE {
+            shortest = shortest.max(SHORT);
+        }
         let mut alpha = longest;
         let speculative = self.trial.first_was_accepted;
         while alpha >= shortest {
@@ -61,19 +70,32 @@ impl<N: Nlp> State<'_, N> {
             let has_value =
                 if first && speculative { self.try_step_with_derivatives(alpha) } else { self.try_step(alpha) };
             if has_value {
-                if self.is_acceptable(reference, alpha) {
+                if self.accepts(reference, alpha) {
                     self.trial.first_was_accepted = first;
                     return self.accept_trial(alpha, SearchOutcome::Accepted);
                 }
                 (self.trial.first_was_accepted, self.trial.has_derivatives) = (false, false);
-                if first && self.options.second_order_correction && self.correct_second_order(reference, alpha) {
+                if first
+                    && self.options.second_order_correction
+                    && let Some(length) = self.correct_second_order(reference, alpha)
+                {
                     self.record.corrected = true;
-                    return self.accept_trial(alpha, SearchOutcome::Accepted);
+                    return self.accept_trial(length, SearchOutcome::Accepted);
                 }
             }
             alpha *= 0.5;
         }
         SearchOutcome::Stuck
+    }
+
+    /// Makes the end of the longest step the present point, without a search; false where it has no value.
+    pub(super) fn try_longest_step(&mut self) -> bool {
+        let longest = self.to_boundary(self.step.shrinkage.slack);
+        let has_value = self.try_step(longest);
+        if has_value {
+            self.accept_trial(longest, SearchOutcome::Accepted);
+        }
+        has_value
     }
 
     fn reference_point(&self) -> ReferencePoint {
@@ -168,23 +190,28 @@ impl<N: Nlp> State<'_, N> {
             && alpha * (-reference.slope).powf(SWITCH_PHI) > reference.theta.powf(SWITCH_THETA)
     }
 
-    /// Whether the trial point is acceptable. Where it is because of its infeasibility, the pair of the present point
-    /// is added to the filter.
-    pub(super) fn is_acceptable(&mut self, reference: ReferencePoint, alpha: f64) -> bool {
+    /// Whether the trial point is accepted. Where infeasibility decides, the pair of the present point is then added to
+    /// the filter, WB (22).
+    pub(super) fn accepts(&mut self, reference: ReferencePoint, alpha: f64) -> bool {
+        let objective_decides = self.objective_decides(reference, alpha);
+        let accepted = self.is_acceptable(reference, alpha, objective_decides);
+        if accepted && !objective_decides {
+            self.filter.add(reference.theta, reference.phi);
+        }
+        accepted
+    }
+
+    /// Whether the trial point is acceptable to the filter and sufficiently better than the present point.
+    fn is_acceptable(&self, reference: ReferencePoint, alpha: f64, objective_decides: bool) -> bool {
         let (theta, phi) = self.trial_pair();
         if !(theta.is_finite() && phi.is_finite() && self.filter.accepts(theta, phi)) {
             return false;
         }
-        let rounding = 10.0 * f64::EPSILON * reference.phi.abs();
-        let armijo = phi - reference.phi - rounding <= ARMIJO * alpha * reference.slope;
-        if self.objective_decides(reference, alpha) {
-            return armijo;
+        if objective_decides {
+            let rounding = 10.0 * f64::EPSILON * reference.phi.abs();
+            return phi - reference.phi - rounding <= ARMIJO * alpha * reference.slope;
         }
-        if !Filter::improves(theta, phi, (reference.theta, reference.phi)) {
-            return false;
-        }
-        self.filter.add(reference.theta, reference.phi);
-        true
+        Filter::improves(theta, phi, (reference.theta, reference.phi))
     }
 
     /// The shortest step worth trying before the factor gamma_alpha, WB (23).
@@ -211,6 +238,8 @@ impl<N: Nlp> State<'_, N> {
         self.slacks.reset(&self.trial.distance);
         self.slacks.safeguard_multipliers(self.mu);
         self.record.step = alpha;
+        self.short_steps = if alpha < SHORT { self.short_steps + 1 } else { 0 };
+        self.watch_multipliers(alpha);
         how
     }
 }

@@ -12,6 +12,7 @@
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), cited as WB.
 
 mod barrier;
+mod best;
 mod ending;
 mod equalities;
 mod filter;
@@ -20,6 +21,7 @@ mod line_search;
 mod penalty;
 mod penalty_search;
 mod polish;
+mod restoration;
 mod second_order;
 mod slacks;
 mod state;
@@ -68,19 +70,6 @@ pub fn solve_again<N: Nlp>(
     }
 }
 
-/// As [`solve`], in penalty mode from the first iteration on, with a low penalty parameter: slower, and harder to
-/// trap between constraints.
-pub fn solve_with_penalty<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
-    let mut analysis = Analysis::default();
-    match initial(nlp, start, Start::Cold, options, &mut analysis) {
-        Ok(mut state) => {
-            state.enter_penalty_mode(penalty::LOW_PARAMETER);
-            iterate(state)
-        }
-        Err(status) => Outcome::failed(nlp, start, status),
-    }
-}
-
 /// A penalty parameter that is the same from beginning to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedPenalty {
@@ -123,6 +112,8 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
     let mut tiny_steps = 0;
     loop {
         state.compute_residuals(); // 3
+        state.leave_restoration();
+        state.keep_nearest();
         let stop = state.stop();
         let solved = stop == Some(Status::Solved);
         if (solved || state.best.is_held) && state.is_polished(solved) {
@@ -138,9 +129,23 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         tiny_steps = if searched == SearchOutcome::Tiny { tiny_steps + 1 } else { 0 };
         let ended = match searched {
             SearchOutcome::Tiny if tiny_steps >= TINY_STEPS => Some(state.stuck()),
-            SearchOutcome::Stuck if state.penalty.is_some() => Some(state.stuck()),
-            SearchOutcome::Stuck => {
+            SearchOutcome::Stuck if state.restoration.is_some() => {
+                state.abandon_restoration();
                 state.enter_penalty_mode(penalty::PARAMETER);
+                None
+            }
+            SearchOutcome::Stuck if state.penalty.is_some() => Some(state.stuck()),
+            SearchOutcome::Stuck if state.is_nearly_feasible() => {
+                if state.newton_step() {
+                    None
+                } else {
+                    Some(state.stuck())
+                }
+            }
+            SearchOutcome::Stuck => {
+                if !state.enter_restoration() {
+                    state.enter_penalty_mode(penalty::PARAMETER);
+                }
                 None
             }
             SearchOutcome::Tiny | SearchOutcome::Accepted => None,
@@ -157,6 +162,9 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
 impl<N: Nlp> State<'_, N> {
     /// Lines 7 to 9 of Algorithm 11: the step of the present mode, and the search along it.
     fn step_and_search(&mut self) -> SearchOutcome {
+        if self.restoration.is_some() {
+            return self.restoration_step();
+        }
         if self.penalty.is_some() {
             self.minimise_over_slacks();
             return if self.compute_step() { self.penalty_search() } else { SearchOutcome::Stuck };

@@ -6,17 +6,14 @@
 //!
 //! A *relaxation* `n > 0` lets a bound give way, and each unit costs the penalty parameter `rho`. For a given `x` the
 //! best `s` and `n` have a closed form, so this is one smooth function of `x`, without constraints but the bounds of
-//! variables, which stay hard. Its step is that of section 11.2 with the weight `1 / (s / z + n / (rho - z))`, always
-//! one of descent, so that a plain line search needs no filter and no restoration. Multipliers stay below `rho`; where
-//! the constraints cannot be met with any penalty parameter, the sum of violations is least.
+//! variables, which stay hard. Its step is that of section 11.2 with the weight `1 / (s / z + n / (rho - z))`, always one
+//! of descent, so that a plain line search needs no filter and no restoration. Multipliers stay below `rho`; where the
+//! constraints cannot be met with any penalty parameter, the sum of violations is least.
 
 use super::slacks::{Slacks, log_sum};
 
 /// The first penalty parameter after the filter search was stuck.
 pub(super) const PARAMETER: f64 = 1e2;
-/// The first penalty parameter of a solve in penalty mode from its start: so low that the objective may first
-/// straighten what the constraints would tangle up.
-pub(super) const LOW_PARAMETER: f64 = 1.0;
 /// The largest penalty parameter (scaled).
 const LARGEST_PARAMETER: f64 = 1e8;
 
@@ -109,6 +106,19 @@ impl Penalty {
         for (c, y) in equality_residual.iter_mut().zip(&slacks.y) {
             *c += mu / (self.rho - y) - mu / (self.rho + y);
         }
+    }
+
+    /// Writes the multipliers of equalities that belong to the relaxations on the central path, (11.9).
+    pub(super) fn centre_equality_multipliers(&self, mu: f64, y: &mut [f64]) {
+        for (y, (below, above)) in y.iter_mut().zip(self.below.iter().zip(&self.above)) {
+            *y = self.centred_multiplier(mu, *below, *above);
+        }
+    }
+
+    /// The multiplier of an equality whose relaxations are on the central path.
+    pub(super) fn centred_multiplier(&self, mu: f64, below: f64, above: f64) -> f64 {
+        // The larger relaxation cancels less.
+        if below < above { mu / above - self.rho } else { self.rho - mu / below }
     }
 
     /// The largest deviation of relaxations and their multipliers from the central path.

@@ -64,14 +64,13 @@ impl<N: Nlp> State<'_, N> {
 
     /// A line search for sufficient decrease of the penalty function; on success moves there.
     pub(super) fn penalty_search(&mut self) -> SearchOutcome {
-        let objective = self.system.objective();
-        let before = self.values[objective] + self.minimise_over_slacks();
+        let before = self.penalty_objective(false) + self.minimise_over_slacks();
         let slope = self.penalty_slope();
         let mut alpha = self.to_hard_boundary();
         let tiny = self.is_tiny();
         while alpha >= SHORTEST {
             if self.try_step(alpha) {
-                let after = self.trial.values[objective] + self.penalty_terms(At::Trial);
+                let after = self.penalty_objective(true) + self.penalty_terms(At::Trial);
                 let rounding = 10.0 * f64::EPSILON * before.abs();
                 if after - before - rounding <= ARMIJO * alpha * slope || (tiny && after.is_finite()) {
                     let how = if tiny { SearchOutcome::Tiny } else { SearchOutcome::Accepted };
@@ -90,12 +89,9 @@ impl<N: Nlp> State<'_, N> {
         let inequalities = self.slacks.inequalities.iter().zip(&self.slacks.s);
         let inequalities: f64 = inequalities.map(|(of, s)| of.sign * self.mu / s * change[of.function]).sum();
         let equalities = self.slacks.equalities.iter().enumerate().map(|(k, equality)| {
-            let (below, above) = (penalty.below[k], penalty.above[k]);
-            // The larger relaxation cancels less.
-            let y = if below < above { self.mu / above - penalty.rho } else { penalty.rho - self.mu / below };
-            y * change[equality.function]
+            penalty.centred_multiplier(self.mu, penalty.below[k], penalty.above[k]) * change[equality.function]
         });
-        change[self.system.objective()] - inequalities - equalities.sum::<f64>()
+        self.penalty_objective_slope() - inequalities - equalities.sum::<f64>()
     }
 
     /// The longest step that stays within the bounds of variables, which are hard.
@@ -150,6 +146,9 @@ impl<N: Nlp> State<'_, N> {
     /// it cannot rise any more. Called when the barrier problem is solved well enough.
     pub(super) fn update_penalty(&mut self) -> Option<Status> {
         let violation = self.slacks.violation(&self.values);
+        if self.restoration.is_some() {
+            return None; // The penalty parameter of a restoration is fixed.
+        }
         let Some(penalty) = &mut self.penalty else { return None };
         if violation <= self.options.constraint_tolerance.max(self.mu) || self.mu > penalty.barrier {
             return None;

@@ -5,7 +5,6 @@
 //! parameter is lowered for them. The best point is kept in case they lead away from it. A rough tolerance asks for no
 //! such iterations.
 
-use super::slacks::Slacks;
 use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::IterationRecord;
@@ -17,44 +16,18 @@ const FINE: f64 = 1e-3;
 /// Residuals within this multiple of that aim are close to it.
 const CLOSE: f64 = 10.0;
 
-/// The best point that met all tolerances.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Best {
-    /// Whether there is one.
-    pub(super) is_held: bool,
-    x: Vec<f64>,
-    s: Vec<f64>,
-    z: Vec<f64>,
-    y: Vec<f64>,
-    record: IterationRecord,
-    /// The iteration at which the tolerances were first met.
-    since: usize,
-}
-
-impl Best {
-    /// Memory for a point of a program.
-    pub(super) fn new(x: &[f64], slacks: &Slacks) -> Self {
-        let (s, z, y) = (slacks.s.clone(), slacks.z.clone(), slacks.y.clone());
-        Self { x: x.to_vec(), s, z, y, ..Self::default() }
-    }
-}
-
 impl<N: Nlp> State<'_, N> {
     /// Whether the solve is over, at a point that meets all tolerances or after one. If it is, the
     /// present point becomes the best one.
     pub(super) fn is_polished(&mut self, solved: bool) -> bool {
         if !self.best.is_held {
-            self.best.since = self.iterations;
+            self.solved_at = self.iterations;
         }
-        let since = self.best.since;
+        let since = self.solved_at;
         let largest = |record: &IterationRecord| record.residuals.scaled.largest();
         if solved && (!self.best.is_held || largest(&self.record) < largest(&self.best.record)) {
             let Self { x, slacks, record, best, .. } = self;
-            best.x.copy_from_slice(x);
-            best.s.copy_from_slice(&slacks.s);
-            best.z.copy_from_slice(&slacks.z);
-            best.y.copy_from_slice(&slacks.y);
-            (best.record, best.is_held) = (*record, true);
+            best.keep(x, slacks, record);
         }
         let fine = FINE * self.options.tolerance.min(self.options.constraint_tolerance);
         // Close to the aim, an iteration whose matrix had to be convexified leads to nothing finer.
@@ -77,14 +50,8 @@ impl<N: Nlp> State<'_, N> {
             return false;
         }
         if self.best.record != self.record {
-            let Self { x, slacks, best, .. } = self;
-            x.copy_from_slice(&best.x);
-            slacks.s.copy_from_slice(&best.s);
-            slacks.z.copy_from_slice(&best.z);
-            slacks.y.copy_from_slice(&best.y);
-            // The derivatives were finite when this point was met first.
-            _ = self.evaluate();
-            self.compute_residuals();
+            let point = std::mem::take(&mut self.best);
+            self.restore(&point);
         }
         true
     }

@@ -13,25 +13,26 @@ const CORRECTIONS: usize = 4;
 const KAPPA_SOC: f64 = 0.99;
 
 impl<N: Nlp> State<'_, N> {
-    /// Corrects a rejected full step of length `alpha`; whether a corrected trial point is acceptable. Where none is,
-    /// the step is the uncorrected one again.
-    pub(super) fn correct_second_order(&mut self, reference: ReferencePoint, alpha: f64) -> bool {
+    /// Corrects a rejected full step of length `alpha`: the length of the corrected step (WB, line) whose trial
+    /// point is acceptable. Where none is, the step is the uncorrected one again.
+    pub(super) fn correct_second_order(&mut self, reference: ReferencePoint, alpha: f64) -> Option<f64> {
         let (mut theta, _) = self.trial_pair();
         if theta < reference.theta {
-            return false;
+            return None;
         }
+        let mut length = alpha;
         self.saved_step.copy(&self.step);
         for _ in 0..CORRECTIONS {
-            self.accumulate_residuals(alpha);
+            self.accumulate_residuals(length);
             if !self.solve_for_step() {
                 break;
             }
-            let longest = self.to_boundary(self.step.shrinkage.slack);
-            if !self.try_step(longest) {
+            length = self.to_boundary(self.step.shrinkage.slack);
+            if !self.try_step(length) {
                 break;
             }
-            if self.is_acceptable(reference, alpha) {
-                return true;
+            if self.accepts(reference, alpha) {
+                return Some(length);
             }
             let (now, _) = self.trial_pair();
             if now > KAPPA_SOC * theta {
@@ -40,10 +41,11 @@ impl<N: Nlp> State<'_, N> {
             theta = now;
         }
         std::mem::swap(&mut self.step, &mut self.saved_step);
-        false
+        None
     }
 
-    /// Adds the residuals at the trial point to those that the step removes.
+    /// Adds the residuals at the trial point, which is the end of a step of length `alpha`, to those that the step
+    /// removes.
     fn accumulate_residuals(&mut self, alpha: f64) {
         let trial = self.trial.distance.iter().zip(&self.trial.s);
         for (r, (d, s)) in self.step.residual.iter_mut().zip(trial) {

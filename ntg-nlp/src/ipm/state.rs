@@ -1,8 +1,10 @@
 //! The state of a solve: the iterate, its function values, derivatives and residuals (docs/maths.md, section 11).
 
+use super::best::Point;
+use super::equalities::Estimate;
 use super::filter::Filter;
 use super::penalty::Penalty;
-use super::polish::Best;
+use super::restoration::Restoration;
 use super::slacks::{Slacks, log_sum};
 use super::step::Step;
 use crate::contract::{Nlp, NotFinite};
@@ -41,11 +43,25 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) barrier_unit: f64,
     pub(super) filter: Filter,
     /// The best point that met all tolerances.
-    pub(super) best: Best,
+    pub(super) best: Point,
+    /// The iteration at which the tolerances were first met.
+    pub(super) solved_at: usize,
+    /// The best point of all.
+    pub(super) nearest: Point,
+    /// Memory for the point before a step that may be taken back.
+    pub(super) before_step: Point,
     /// The fraction of the convexifying term that the last matrix needed.
     pub(super) convex_fraction: f64,
     /// Set in penalty mode, where bounds are elastic.
     pub(super) penalty: Option<Penalty>,
+    /// Set while feasibility is restored.
+    pub(super) restoration: Option<Restoration>,
+    /// How often feasibility was restored.
+    pub(super) restorations: usize,
+    /// How many short steps were made in a row.
+    pub(super) short_steps: usize,
+    /// What the last estimate of the equalities' multipliers found.
+    pub(super) estimate: Estimate,
     pub(super) step: Step,
     /// The step before a second-order correction, to which a failed correction returns.
     pub(super) saved_step: Step,
@@ -121,7 +137,7 @@ impl<N: Nlp> State<'_, N> {
     /// Computes derivatives at the present point with the present multipliers; takes those of the trial point where
     /// they were computed speculatively.
     pub(super) fn evaluate(&mut self) -> Result<(), NotFinite> {
-        self.slacks.multipliers(self.system.objective(), &mut self.multipliers);
+        self.collect_multipliers();
         if std::mem::take(&mut self.trial.has_derivatives) && self.multipliers == self.trial.multipliers {
             std::mem::swap(&mut self.values, &mut self.trial.values);
             std::mem::swap(&mut self.slacks.distance, &mut self.trial.distance);
@@ -131,6 +147,15 @@ impl<N: Nlp> State<'_, N> {
         self.system.derivatives(self.nlp, &self.x, &self.multipliers, &mut self.values)?;
         self.slacks.update_distances(&self.values);
         Ok(())
+    }
+
+    /// Collects the multipliers of all functions. In restoration the objective has none.
+    fn collect_multipliers(&mut self) {
+        let objective = self.system.objective();
+        self.slacks.multipliers(objective, &mut self.multipliers);
+        if self.restoration.is_some() {
+            self.multipliers[objective] = 0.0;
+        }
     }
 
     /// The status for an evaluation that failed last.
@@ -151,6 +176,7 @@ impl<N: Nlp> State<'_, N> {
     /// Computes the gradient of the Lagrangian and the residuals of the present point, and begins its record.
     pub(super) fn compute_residuals(&mut self) {
         self.system.transposed_product(&self.multipliers, &mut self.negative_gradient);
+        self.add_proximity_gradient();
         self.s_d = self.multiplier_scale();
         let s_d = self.s_d;
         let mut residuals = Residuals::default();
@@ -181,7 +207,8 @@ impl<N: Nlp> State<'_, N> {
     /// Why the solve is over at the present point; none where it goes on.
     pub(super) fn stop(&self) -> Option<Status> {
         let Self { options, record, history, iterations, begin, x, .. } = self;
-        let objective = self.values[self.system.objective()];
-        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, x }.stops()
+        let is_restoring = self.restoration.is_some();
+        let objective = if is_restoring { 0.0 } else { self.values[self.system.objective()] };
+        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, x, is_restoring }.stops()
     }
 }

@@ -2,13 +2,12 @@
 //!
 //! ```text
 //! A dx = -grad L + J^T q,   A = H + J^T Sigma J + shift I
-//! inequalities:  Sigma = z / s,   q = sign (mu / z - s - r) Sigma
-//!                ds = sign J dx + r,   dz = (mu / z - s - ds) Sigma
-//! equalities:    Sigma = 1 / p,   q = -c / p,   dy = -(c + J dx) / p                  (p: proximal term)
+//! inequalities:  Sigma = z / s,   q = sign (mu / z - s - r) Sigma,   ds = sign J dx + r,   dz = (mu / z - s - ds) Sigma
+//! equalities:    Sigma = 1 / p,   q = -c / p                                        (p: proximal term)
 //! ```
 //!
-//! `r = d - s` is the residual of an inequality. The slack step is computed as `J dx + (d - s)`, in this association:
-//! it keeps the digits of small slacks. Equalities are then refined until the proximal term no longer shows
+//! `r = d - s` is the residual of an inequality. The slack step is computed as `J dx + (d - s)`, in this association: it
+//! keeps the digits of small slacks. Equalities are then refined until the proximal term no longer shows
 //! (`equalities`).
 
 use super::slacks::Slacks;
@@ -17,17 +16,18 @@ use crate::contract::Nlp;
 use crate::kkt::{Curvature, Weights};
 use crate::reductions::sum;
 
-/// The proximal term `p` of equalities (scaled). A fit: smaller ones turn the rounding of rows into noise of
+/// The proximal term `p` of equalities, whose scaled slope is 1. A fit to the gallery: the condensed matrix has the
+/// inertia of a minimum only where `p` is small beside `J H^-1 J^T`, and 1e-12 turns the rounding of rows into noise of
 /// multipliers.
-pub(super) const PROXIMAL: f64 = 1e-6;
+pub(super) const PROXIMAL: f64 = 1e-10;
 /// The weight of a function without bounds: none, but a number that may divide.
 const WEIGHTLESS: f64 = 1e-30;
-/// From this barrier parameter on, relative to its unit, the solution that the guess leads to is settled, and a
-/// fraction of the convexifying term is enough. Before, all of it keeps steps short: a fraction leaves the
-/// neighbourhood of a good guess. A fit to the flights of `examples/robustness.rs`.
+/// From this barrier parameter on, relative to its unit, the solution that the guess leads to is settled, and a fraction
+/// of the convexifying term is enough. Before, all of it keeps steps short: a fraction leaves the neighbourhood of a
+/// good guess. A fit to the flights of `examples/robustness.rs`.
 const SETTLED: f64 = 1e-3;
-/// The fraction of the convexifying term that counts as the last one in the first iteration, the least fraction, and
-/// the factor from one trial to the next. The last two are fits, as above.
+/// The fraction of the convexifying term that counts as the last one in the first iteration, the least fraction, and the
+/// factor from one trial to the next. The last two are fits, as above.
 pub(super) const FIRST_FRACTION: f64 = 0.25;
 const LEAST_FRACTION: f64 = 1e-4;
 const FRACTION_FACTOR: f64 = 4.0;
@@ -138,6 +138,7 @@ impl<N: Nlp> State<'_, N> {
     /// not finite.
     pub(super) fn compute_step(&mut self) -> bool {
         self.step.prepare(&self.slacks);
+        self.step.compliance.fill(0.0);
         if let Some(penalty) = &self.penalty {
             penalty.weights(&self.slacks, &mut self.step.inequality_sigma, &mut self.step.compliance);
         }
@@ -174,7 +175,8 @@ impl<N: Nlp> State<'_, N> {
     fn factorise(&mut self) -> bool {
         self.assemble(Curvature::Exact);
         self.record.shift = 0.0;
-        if self.system.factorise(0.0, 0.0) {
+        let proximity = self.proximity_weight();
+        if self.system.factorise(0.0, proximity) {
             return true;
         }
         self.system.convexify(&self.step.sigma);
@@ -182,7 +184,7 @@ impl<N: Nlp> State<'_, N> {
         if self.mu <= SETTLED * self.barrier_unit {
             let mut fraction = (self.convex_fraction / FRACTION_FACTOR).max(LEAST_FRACTION);
             while fraction < 1.0 {
-                if self.system.factorise(fraction, 0.0) {
+                if self.system.factorise(fraction, proximity) {
                     self.convex_fraction = fraction;
                     return true;
                 }
@@ -192,7 +194,7 @@ impl<N: Nlp> State<'_, N> {
         }
         let mut shift = 0.0;
         while shift <= LARGEST_SHIFT {
-            if self.system.factorise(1.0, shift) {
+            if self.system.factorise(1.0, proximity + shift) {
                 self.record.shift = shift;
                 return true;
             }

@@ -17,7 +17,7 @@ use super::storage::Envelope;
 use super::supports::Supports;
 use crate::contract::{Block, Evaluation, Nlp, NotFinite};
 use crate::options::Scaling;
-use crate::scaling::{Scales, Slopes};
+use crate::scaling::{Scales, Slopes, beside, typical_variation, variation};
 
 /// A program, the symbolic analysis of its matrix, and its derivatives at the latest point. `W` is the program's
 /// workspace.
@@ -155,7 +155,7 @@ impl<W> System<W> {
         }
         let plain = Scales { rows: vec![1.0; self.weights.len()], objective: 1.0, ..self.scales.clone() };
         self.set_scales(nlp, plain);
-        let slopes = self.slopes();
+        let slopes = self.slopes(nlp);
         self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
         self.scaled_by = Some(ScaledBy { point: scaled.to_vec(), rule: scaling, row_sizes: rows.clone() });
         Ok(())
@@ -168,25 +168,33 @@ impl<W> System<W> {
     }
 
     /// The slopes at the latest point, with row factors of 1.
-    fn slopes(&mut self) -> Slopes {
-        let (m, n) = (self.weights.len(), self.x.len());
+    fn slopes<N: Nlp<Workspace = W>>(&mut self, nlp: &N) -> Slopes {
+        let m = self.weights.len();
         let mut rows = vec![0.0; m + 2];
         self.elements.slopes(&mut rows);
         rows.truncate(m);
-        let mut multipliers = vec![0.0; self.functions()];
-        self.assemble(Weights { sigma: &multipliers, curvature: Curvature::Exact });
-        let columns = (0..n).map(|j| self.order.unknown[j] as usize);
-        let curvature = columns.map(|u| self.matrix[self.envelope.position(u, u)].abs()).fold(0.0, f64::max);
+        if !self.order.bordered.is_empty() {
+            let multipliers = vec![0.0; self.functions()];
+            self.assemble(Weights { sigma: &multipliers, curvature: Curvature::None });
+        }
         for (row, slope) in rows.iter_mut().enumerate() {
             let Some(border) = self.order.border_row[row] else { continue };
             let unknown = self.order.band + self.order.border + border as usize;
             *slope = self.envelope.row(unknown).map(|at| self.matrix[at].abs()).fold(0.0, f64::max);
         }
-        multipliers[m] = 1.0;
-        let mut gradient = vec![0.0; n + 1];
-        self.transposed_product(&multipliers, &mut gradient);
-        let objective = gradient[..n].iter().fold(0.0, |most: f64, g| most.max(g.abs()));
-        Slopes { rows, objective, curvature }
+        Slopes { rows, variation: self.variation(nlp) }
+    }
+
+    /// The variation that scales the objective, from the latest point and one beside it.
+    fn variation<N: Nlp<Workspace = W>>(&mut self, nlp: &N) -> f64 {
+        let sizes = &self.scales.variables;
+        let at_start = variation(nlp.blocks(), &self.latest, sizes);
+        let start = self.x.clone();
+        beside(&start, nlp.limits(), sizes, &mut self.x);
+        let probe = nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.workspace, &mut self.trial);
+        let beside = probe.ok().map(|()| variation(nlp.blocks(), &self.trial, sizes));
+        self.x = start;
+        typical_variation(at_start, beside)
     }
 
     /// Writes a point in the program's own units, within the bounds to the last bit.
@@ -217,7 +225,7 @@ impl<W> System<W> {
     }
 
     /// Moves to a scaled point: writes the values of all functions, and computes the derivatives that the products and
-    /// the matrix below need, the second ones weighted by the multipliers of all functions.
+    /// the matrix below need, the second ones weighted by the multipliers of all functions (of the objective, -1 or 0).
     pub(crate) fn derivatives<N: Nlp<Workspace = W>>(
         &mut self,
         nlp: &N,
@@ -243,7 +251,8 @@ impl<W> System<W> {
         for ((weight, multiplier), factor) in self.weights.iter_mut().zip(multipliers).zip(&self.scales.rows) {
             *weight = -multiplier * factor;
         }
-        nlp.derivatives(&self.x, self.scales.objective, &self.weights, &mut self.workspace, &mut self.trial)?;
+        let weight = -multipliers[self.objective()] * self.scales.objective;
+        nlp.derivatives(&self.x, weight, &self.weights, &mut self.workspace, &mut self.trial)?;
         self.copy_values(&self.trial, scaled, out);
         Ok(())
     }

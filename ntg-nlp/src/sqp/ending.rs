@@ -21,7 +21,8 @@ impl<N: Nlp> Run<'_, N> {
     pub(super) fn stops(&self) -> Option<Status> {
         let Self { options, record, history, iterations, begin, x, .. } = self;
         let objective = self.program.objective;
-        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, x }.stops()
+        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, is_restoring: false, x }
+            .stops()
     }
 
     /// The status for an evaluation that failed last.

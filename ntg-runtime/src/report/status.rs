@@ -9,6 +9,7 @@ pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
     use ntg_nlp::Status as Solver;
     match status {
         Solver::Solved => Status::Solved,
+        Solver::Acceptable => Status::Acceptable,
         Solver::Infeasible { rows } => Status::Infeasible {
             rows: rows
                 .into_iter()

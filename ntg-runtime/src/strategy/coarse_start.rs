@@ -4,15 +4,13 @@
 //! A rough guess (a polygon with corners) asks more of a method the finer the knots are, since corners
 //! are sharper there. On few knots it is mended cheaply, and each finer level begins near its solution.
 
+use super::budget::Budget;
 use super::session::{FirstPoint, Session, Task, solution};
 use crate::guess::{Guess, start};
-use crate::settings::{Method, Settings};
 use crate::solution::Solution;
 use crate::transcribe::SetupError;
-use ntg_nlp::method::unless_final;
-use ntg_nlp::{Start, ipm};
+use ntg_nlp::Start;
 use ntg_structure::{Points, Structure};
-use std::time::Instant;
 
 /// Up to so many intervals a problem is solved at once. This number and those below are fits to random routes of the
 /// flight B1.
@@ -36,18 +34,6 @@ const LARGE: Levels = Levels { few: FEW, finer: 4 };
 /// With as few intervals as this, there is nothing coarser.
 const FEWEST: usize = 2;
 
-/// A start that was found on fewer knots.
-pub(super) struct CoarseStart {
-    /// The solution there; none where there is none.
-    pub(super) solution: Option<Solution>,
-    /// The iterations that were spent.
-    pub(super) iterations: usize,
-}
-
-impl CoarseStart {
-    const NONE: Self = Self { solution: None, iterations: 0 };
-}
-
 impl Session {
     /// A start near a solution of `structure`, found on coarser knots; none where the knots are few, the
     /// guess is a solution already, or the coarser problem has no solution. The coarser problem is kept for the next
@@ -56,30 +42,30 @@ impl Session {
         &mut self,
         task: Task<'_>,
         structure: &Structure,
-        settings: &Settings,
-    ) -> Result<CoarseStart, SetupError> {
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Solution>, SetupError> {
         let most = intervals(structure);
         if most <= FEW {
-            return Ok(CoarseStart::NONE);
+            return Ok(None);
         }
         let levels = if most <= SOME { SMALL } else { LARGE };
-        self.start_from_coarser(task, structure, levels, &settings.rough())
+        self.start_from_coarser(task, structure, levels, budget)
     }
 
-    /// As [`Session::start_from_coarse`], on known levels, to the tolerance of `settings`.
+    /// As [`Session::start_from_coarse`], on known levels.
     fn start_from_coarser(
         &mut self,
         task: Task<'_>,
         structure: &Structure,
         levels: Levels,
-        settings: &Settings,
-    ) -> Result<CoarseStart, SetupError> {
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Solution>, SetupError> {
         let most = intervals(structure);
         if most <= levels.few || task.guess.is_some_and(Guess::is_near) {
-            return Ok(CoarseStart::NONE);
+            return Ok(None);
         }
         let coarse = coarsened(structure, most.div_ceil(levels.finer));
-        self.coarser.get_or_insert_default().rough_solution(task, &coarse, levels, settings)
+        self.coarser.get_or_insert_default().rough_solution(task, &coarse, levels, budget)
     }
 
     /// A solution to a rough tolerance, to start from, on the mesh of `structure`.
@@ -88,24 +74,21 @@ impl Session {
         task: Task<'_>,
         structure: &Structure,
         levels: Levels,
-        settings: &Settings,
-    ) -> Result<CoarseStart, SetupError> {
-        let earlier = self.start_from_coarser(task, structure, levels, settings)?;
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Solution>, SetupError> {
+        let earlier = self.start_from_coarser(task, structure, levels, budget)?;
+        let Some(settings) = budget.coarse() else { return Ok(None) };
         let mut nlp = self.program(task.problem, structure)?;
-        let (x, from) = match &earlier.solution {
+        let (x, from) = match &earlier {
             Some(solution) => (start(&nlp, Some(&Guess::from(solution)))?, Start::Near),
             None => (start(&nlp, task.guess)?, Start::Cold),
         };
-        nlp.set_scales(&x, settings)?;
-        let mut outcome = self.solve_once(&nlp, FirstPoint { x: &x, from }, settings);
-        if settings.method == Method::Auto {
-            let options = settings.solver_options();
-            outcome = unless_final(outcome, || ipm::solve_with_penalty(&nlp, &x, &options));
-        }
-        let iterations = earlier.iterations + outcome.iterations;
+        nlp.set_scales(&x, &settings)?;
+        let outcome = self.solve_once(&nlp, FirstPoint { x: &x, from }, &settings);
+        budget.spend(outcome.iterations);
         let solution = outcome.status.is_solved().then(|| solution(&nlp, outcome));
         self.kept = Some(nlp.keep());
-        Ok(CoarseStart { solution, iterations })
+        Ok(solution)
     }
 }
 
@@ -114,21 +97,18 @@ impl Session {
 pub(super) fn start_from_fewer(
     task: Task<'_>,
     structure: &Structure,
-    settings: &Settings,
-) -> Result<CoarseStart, SetupError> {
-    let (began, mut iterations) = (Instant::now(), 0);
+    budget: &mut Budget<'_>,
+) -> Result<Option<Solution>, SetupError> {
     let mut most = intervals(structure);
     while most > FEWEST {
         most = most.div_ceil(2);
         let coarse = coarsened(structure, most);
-        let settings = settings.after(began.elapsed()).rough();
-        let found = Session::default().rough_solution(task, &coarse, LARGE, &settings)?;
-        iterations += found.iterations;
-        if found.solution.is_some() {
-            return Ok(CoarseStart { iterations, ..found });
+        let found = Session::default().rough_solution(task, &coarse, LARGE, budget)?;
+        if found.is_some() {
+            return Ok(found);
         }
     }
-    Ok(CoarseStart { solution: None, iterations })
+    Ok(None)
 }
 
 /// The most intervals of any output.

@@ -1,70 +1,99 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
+//!
+//! ```text
+//! interior point -> the same with sizes taken anew -> from fewer knots -> sequential quadratic programming
+//! ```
+//!
+//! What each attempt rescues is counted by `examples/attempts.rs`.
 
+use super::budget::{Budget, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
 use crate::guess::{Guess, start};
-use crate::settings::{Method, Settings};
+use crate::settings::Method;
 use crate::transcribe::{SetupError, Transcription};
-use ntg_nlp::method::{unless_final, unless_final_by_sqp};
-use ntg_nlp::{Outcome, Start, ipm};
-use std::time::Instant;
+use ntg_nlp::{Outcome, Start, method};
+
+/// How an attempt that follows a failed one solves a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Attempt {
+    /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
+    /// what it guesses.
+    SizesAnew,
+    /// From a solution on fewer knots.
+    FewerKnots,
+    /// By sequential quadratic programming from the first point.
+    Sqp,
+}
 
 impl Session {
-    /// Solves by the method of the settings; an automatic one makes further attempts where that fails.
+    /// Solves by the method of the settings; an automatic one makes further attempts where that fails. Iterations are
+    /// those of all attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
-        nlp: &Transcription,
+        nlp: &mut Transcription,
         task: Task<'_>,
         first: FirstPoint<'_>,
-        settings: &Settings,
+        budget: &mut Budget<'_>,
     ) -> Result<Outcome, SetupError> {
-        let began = Instant::now();
-        let left = |settings: &Settings| settings.after(began.elapsed());
-        let mut outcome = self.solve_once(nlp, first, settings);
-        if settings.method != Method::Auto {
-            return Ok(outcome);
+        let Some(settings) = budget.attempt() else {
+            return Ok(Outcome::failed(nlp, first.x, ntg_nlp::Status::IterationLimit));
+        };
+        let spent = budget.spent();
+        let mut outcome = self.solve_once(nlp, first, &settings);
+        budget.spend(outcome.iterations);
+        if settings.method == Method::Auto {
+            for attempt in [Attempt::SizesAnew, Attempt::FewerKnots, Attempt::Sqp] {
+                if outcome.status.is_final() {
+                    break;
+                }
+                if let Some(next) = self.attempt(attempt, nlp, task, first.x, &outcome, budget)? {
+                    outcome = better(outcome, next);
+                }
+            }
         }
-        let x = first.x;
-        let interior_point = Settings { method: Method::InteriorPoint, ..settings.clone() };
-        outcome = self.solve_from_fewer_knots(nlp, task, x, outcome, &left(&interior_point))?;
-        let options = left(settings).solver_options();
-        outcome = unless_final(outcome, || ipm::solve_with_penalty(nlp, x, &options));
-        outcome = self.solve_from_fewer_knots(nlp, task, x, outcome, &left(settings))?;
-        Ok(unless_final_by_sqp(nlp, x, outcome, &left(settings).solver_options()))
+        outcome.iterations = budget.spent() - spent;
+        Ok(outcome)
     }
 
-    /// Where there was no solution from the guess, the one from a start on fewer knots; `failed`, the outcome from the
-    /// first point `x`, where there is none either. An automatic method also tries penalty mode there.
-    fn solve_from_fewer_knots(
+    /// One further attempt after a failed outcome; none where there is no way to begin it.
+    fn attempt(
         &mut self,
-        nlp: &Transcription,
+        attempt: Attempt,
+        nlp: &mut Transcription,
         task: Task<'_>,
         x: &[f64],
-        failed: Outcome,
-        settings: &Settings,
-    ) -> Result<Outcome, SetupError> {
-        if failed.status.is_final() {
-            return Ok(failed);
-        }
-        let began = Instant::now();
-        // Coefficients of this transcription fit no other one; the curves that they are do.
-        let curves = task
-            .guess
-            .filter(|guess| guess.is_near())
-            .map(|_| Guess::from(&solution(nlp, Outcome::failed(nlp, x, failed.status.clone()))));
-        let task = Task { guess: curves.as_ref().or(task.guess), ..task };
-        let found = start_from_fewer(task, &nlp.model.structure, settings)?;
-        let iterations = failed.iterations + found.iterations;
-        let Some(solution) = found.solution else { return Ok(Outcome { iterations, ..failed }) };
-        let x = start(nlp, Some(&Guess::from(&solution)))?;
-        let left = settings.after(began.elapsed());
-        let mut again = self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &left);
-        if settings.method == Method::Auto {
-            let options = settings.after(began.elapsed()).solver_options();
-            again = unless_final(again, || ipm::solve_with_penalty(nlp, &x, &options));
-        }
-        let iterations = iterations + again.iterations;
-        let better = if again.status.is_final() { again } else { failed };
-        Ok(Outcome { iterations, ..better })
+        failed: &Outcome,
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Outcome>, SetupError> {
+        let Some(settings) = budget.attempt() else { return Ok(None) };
+        let next = match attempt {
+            Attempt::SizesAnew => {
+                if failed.x.iter().any(|x| !x.is_finite()) {
+                    return Ok(None);
+                }
+                nlp.set_scales(&failed.x, &settings)?;
+                let next = self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings);
+                nlp.set_scales(x, &settings)?;
+                next
+            }
+            Attempt::FewerKnots => {
+                // Coefficients of this transcription fit no other one; the curves that they are do.
+                let near = task.guess.filter(|guess| guess.is_near());
+                let curves = near.map(|_| Guess::from(&solution(nlp, Outcome::failed(nlp, x, failed.status.clone()))));
+                let task = Task { guess: curves.as_ref().or(task.guess), ..task };
+                let structure = nlp.model.structure.clone();
+                let Some(solution) = start_from_fewer(task, &structure, budget)? else { return Ok(None) };
+                let Some(settings) = budget.attempt() else { return Ok(None) };
+                let x = start(nlp, Some(&Guess::from(&solution)))?;
+                self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
+            }
+            Attempt::Sqp => {
+                let options = ntg_nlp::Options { method: Method::Sqp, ..settings.solver_options() };
+                method::solve(nlp, x, &options)
+            }
+        };
+        budget.spend(next.iterations);
+        Ok(Some(next))
     }
 }

@@ -1,6 +1,7 @@
 //! A solve on the problem's own mesh, step by step of its continuation, each solution the guess of the next
 //! (docs/maths.md, section 8.4).
 
+use super::budget::Budget;
 use super::continuation::{set, steps};
 use super::session::{FirstPoint, Session, Task, record};
 use crate::error::Error;
@@ -17,6 +18,7 @@ impl Session {
     /// Solves a problem from a guess, by continuation where it says so.
     pub(crate) fn solve(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
         let began = Instant::now();
+        let (mut budget, rough) = (Budget::new(settings), settings.rough());
         let Task { problem, guess } = task;
         let mut structure = self.structure_of(problem);
         let steps = steps(&structure);
@@ -29,19 +31,18 @@ impl Session {
             set(&mut structure, step);
             let mut nlp = self.program(problem, &structure)?;
             // The layout is the same in every step: only parameters change.
-            let (mut first, mut spent, mut from) = match &last {
-                Some(last) => (start(&nlp, Some(&Guess::raw(last.x.clone())))?, 0, Start::Cold),
+            let spent = budget.spent();
+            let (mut first, mut from) = match &last {
+                Some(last) => (start(&nlp, Some(&Guess::raw(last.x.clone())))?, Start::Cold),
                 None => {
                     let (first, singular) = self.first_point(&nlp, guess)?;
                     at_guess = singular;
-                    (first, 0, Start::Cold)
+                    (first, Start::Cold)
                 }
             };
             if i == 0 {
                 let level = &nlp.model.structure;
-                let coarse = self.start_from_coarse(task, level, &settings.after(began.elapsed()))?;
-                spent = coarse.iterations;
-                if let Some(solution) = &coarse.solution {
+                if let Some(solution) = &self.start_from_coarse(task, level, &mut budget)? {
                     first = start(&nlp, Some(&Guess::from(solution)))?;
                     from = Start::Near;
                 }
@@ -50,12 +51,10 @@ impl Session {
             if let Some(last) = last.as_ref().filter(|last| last.status.is_solved()) {
                 from = Start::Warm(last.multipliers());
             }
-            let mut left = settings.after(began.elapsed());
-            if !is_last {
-                left = left.rough();
-            }
-            let mut outcome = self.solve_with_fallback(&nlp, task, FirstPoint { x: &first, from }, &left)?;
-            outcome.iterations += spent;
+            budget.set_settings(if is_last { settings } else { &rough });
+            let first_point = FirstPoint { x: &first, from };
+            let mut outcome = self.solve_with_fallback(&mut nlp, task, first_point, &mut budget)?;
+            outcome.iterations = budget.spent() - spent;
             history.push(record(&nlp, step, &outcome, step_began));
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
                 let mut report = self.report(nlp, outcome, history, settings)?;

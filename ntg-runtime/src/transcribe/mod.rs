@@ -29,6 +29,7 @@ pub(crate) mod rows;
 mod scale;
 pub(crate) mod shape;
 mod singular;
+mod sizes;
 pub(crate) mod slots;
 mod tables;
 pub(crate) mod times;

@@ -39,14 +39,16 @@ impl Transcription<'_> {
         Ok(())
     }
 
-    /// Equation 5.5: the largest guessed coefficient, guess or bound; else the unit.
+    /// Equation 5.5: the largest guessed coefficient or guess; else what balances constraints; else the unit.
     fn automatic(&self, guess: &[f64], scale: &mut [f64]) {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
+        let mut outputs = vec![];
         for agent in &layout.agents {
             for output in self.outputs_of(agent.phases.clone()) {
                 let guessed = output.coefficients.iter().map(|v| guess[*v as usize].abs());
                 let size = usable(guessed.fold(0.0, f64::max), output.unit);
                 output.coefficients.iter().for_each(|v| scale[*v as usize] = size);
+                outputs.push(output.coefficients);
             }
         }
         let size = |variable: usize, unit: &Unit| match guess[variable].abs() {
@@ -61,6 +63,7 @@ impl Transcription<'_> {
                 scale[variable] = size(variable, &declared.unit);
             }
         }
+        self.balance_sizes(&outputs, guess, scale);
     }
 
     /// Every output of some phases once, with the coefficients of all of them.

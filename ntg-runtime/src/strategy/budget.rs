@@ -1,0 +1,71 @@
+//! One budget of time and iterations for everything that a call does: coarse starts, steps of a continuation and all
+//! attempts (docs/maths.md, section 11.9).
+
+use crate::settings::Settings;
+use ntg_nlp::Outcome;
+use std::time::Instant;
+
+/// Most iterations of one attempt, where more are left. A fit: of the specs of the gallery that an attempt solves, all
+/// but one take fewer.
+const ATTEMPT: usize = 500;
+/// Most iterations of a start on coarser knots. A fit to the gallery: where it takes more, it does not help.
+const COARSE: usize = 150;
+
+/// What is left of the settings' limits.
+pub(super) struct Budget<'a> {
+    settings: &'a Settings,
+    began: Instant,
+    spent: usize,
+}
+
+impl<'a> Budget<'a> {
+    pub(super) fn new(settings: &'a Settings) -> Self {
+        Self { settings, began: Instant::now(), spent: 0 }
+    }
+
+    /// Other settings with the same limits, from now on.
+    pub(super) fn set_settings(&mut self, settings: &'a Settings) {
+        self.settings = settings;
+    }
+
+    /// Notes iterations that were made.
+    pub(super) fn spend(&mut self, iterations: usize) {
+        self.spent += iterations;
+    }
+
+    /// Iterations that were made.
+    pub(super) fn spent(&self) -> usize {
+        self.spent
+    }
+
+    /// Settings of the next attempt; none where nothing is left.
+    pub(super) fn attempt(&self) -> Option<Settings> {
+        self.at_most(ATTEMPT)
+    }
+
+    /// Settings of a start on coarser knots, which is solved roughly.
+    pub(super) fn coarse(&self) -> Option<Settings> {
+        self.at_most(COARSE).map(|settings| settings.rough())
+    }
+
+    fn at_most(&self, iterations: usize) -> Option<Settings> {
+        let elapsed = self.began.elapsed();
+        let left = self.settings.max_iterations.saturating_sub(self.spent);
+        let in_time = self.settings.time_limit.is_none_or(|limit| elapsed < limit);
+        (left > 0 && in_time).then(|| Settings { max_iterations: left.min(iterations), ..self.settings.after(elapsed) })
+    }
+}
+
+/// The better of two outcomes of one program: a solution, else less violation.
+pub(super) fn better(first: Outcome, second: Outcome) -> Outcome {
+    let violation = |outcome: &Outcome| match outcome.x.iter().all(|x| x.is_finite()) {
+        true => outcome.residuals.scaled.primal,
+        false => f64::INFINITY,
+    };
+    match (first.status.is_final(), second.status.is_final()) {
+        (true, _) => first,
+        (_, true) => second,
+        _ if violation(&second) < violation(&first) => second,
+        _ => first,
+    }
+}

@@ -1,0 +1,177 @@
+//! Typical sizes of what is guessed to be 0 (docs/maths.md, equations 5.5 and 5.7).
+//!
+//! Takes a guess, the first derivatives there, and bounds; gives sizes by *propagation*: what is not 0 in the guess has
+//! its own size, a row is as large as its largest term, and what is 0 in the guess is so large that it balances the rows
+//! in which it stands. Units cannot matter, because a slope of a row times a size has the unit of the row.
+
+use super::Transcription;
+use super::rows::{RowKind, bound_size};
+use ntg_nlp::{Evaluation, Nlp, Target};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Sizes below this fraction of what balances their constraints are rounding.
+const ROUNDING: f64 = 1e-10;
+
+/// What shares a size (an output in all phases of an agent, a variable, a duration), and all constraints in which it
+/// stands.
+#[derive(Debug, Default)]
+pub(super) struct Balance {
+    /// The group of each variable.
+    group: Vec<usize>,
+    /// The size of each group; none where it is not known yet.
+    size: Vec<Option<f64>>,
+    /// A bound of the group's own variables; 0 where there is none.
+    own_bound: Vec<f64>,
+    /// For each group the constraints in which it stands, with the largest slope by a slot of the group.
+    constraints: Vec<Vec<(usize, f64)>>,
+    /// For each constraint the groups in it, with slopes.
+    groups: Vec<Vec<(usize, f64)>>,
+    /// For each constraint its largest finite bound; 0 where there is none.
+    bound: Vec<f64>,
+}
+
+impl Transcription<'_> {
+    /// Replaces the sizes of all groups that are 0 in the guess. `groups` are variables that share a size; every other
+    /// variable is a group of its own.
+    pub(super) fn balance_sizes(&self, groups: &[Vec<u32>], guess: &[f64], scale: &mut [f64]) {
+        let mut balance = self.balance(groups, guess);
+        let (mut workspace, mut at) = self.workspace();
+        let multipliers = vec![0.0; self.elements.rows.len()];
+        if self.derivatives(guess, 1.0, &multipliers, &mut workspace, &mut at).is_err() {
+            return;
+        }
+        self.collect_slopes(&at, &mut balance);
+        balance.forget_rounding();
+        let known = balance.size.clone();
+        balance.propagate();
+        for (scale, group) in scale.iter_mut().zip(&balance.group) {
+            if known[*group].is_none()
+                && let Some(size) = balance.size[*group]
+            {
+                *scale = size;
+            }
+        }
+    }
+
+    /// Groups with the sizes that the guess gives.
+    fn balance(&self, groups: &[Vec<u32>], guess: &[f64]) -> Balance {
+        let mut balance = Balance { group: vec![usize::MAX; guess.len()], ..Balance::default() };
+        let alone = |variables: Range<usize>| variables.map(|variable| vec![variable as u32]);
+        let others = alone(self.model.layout.coefficients..guess.len());
+        // An integral has no guess of its own.
+        let integrals = self.model.layout.integral_first.first().map_or(guess.len(), |first| *first as usize);
+        for variables in groups.iter().cloned().chain(others) {
+            let largest = variables.iter().map(|v| guess[*v as usize].abs()).fold(0.0, f64::max);
+            let is_known = largest > f64::MIN_POSITIVE && (variables[0] as usize) < integrals;
+            variables.iter().for_each(|v| balance.group[*v as usize] = balance.size.len());
+            let bounds = variables.iter().map(|v| {
+                let v = *v as usize;
+                bound_size((self.limits.lower[v], self.limits.upper[v]))
+            });
+            balance.own_bound.push(bounds.filter(|bound| bound.is_finite()).fold(0.0, f64::max));
+            balance.size.push(is_known.then_some(largest));
+        }
+        balance
+    }
+
+    /// Slopes and bounds of all constraints: of each the largest over its points and members.
+    fn collect_slopes(&self, at: &Evaluation, balance: &mut Balance) {
+        let mut numbers: BTreeMap<(bool, usize), usize> = BTreeMap::new();
+        let mut constraint_of = vec![];
+        for info in &self.elements.rows {
+            let kind = match info.kind {
+                RowKind::Constraint(constraint) => (false, constraint),
+                RowKind::Integral(integral) => (true, integral),
+            };
+            let next = numbers.len();
+            constraint_of.push(*numbers.entry(kind).or_insert(next));
+        }
+        balance.bound = vec![0.0; numbers.len()];
+        for (row, &constraint) in constraint_of.iter().enumerate() {
+            let bound = bound_size((self.limits.row_lower[row], self.limits.row_upper[row]));
+            if bound.is_finite() {
+                balance.bound[constraint] = balance.bound[constraint].max(bound);
+            }
+        }
+        let mut slopes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let mut add = |key, slope: f64| {
+            let largest = slopes.entry(key).or_insert(0.0);
+            *largest = largest.max(slope);
+        };
+        for (block, values) in self.elements.blocks.iter().zip(&at.blocks) {
+            for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                // Elements of one block mostly have the same constraint and group.
+                let mut run: Option<((usize, usize), f64)> = None;
+                for e in 0..block.elements {
+                    let Target::Row(target) = block.target[row * block.elements + e] else { continue };
+                    let variables = block.variables(e);
+                    let coefficients = &block.map(e)[slot * variables.len()..][..variables.len()];
+                    let Some(first) = coefficients.iter().position(|c| *c != 0.0) else { continue };
+                    let weight = block.weight[row * block.elements + e];
+                    let slope = (weight * values.jacobian[entry * block.elements + e]).abs();
+                    let key = (constraint_of[target as usize], balance.group[variables[first] as usize]);
+                    run = match run {
+                        Some((same, largest)) if same == key => Some((key, largest.max(slope))),
+                        other => {
+                            other.into_iter().for_each(|(key, largest)| add(key, largest));
+                            Some((key, slope))
+                        }
+                    };
+                }
+                run.into_iter().for_each(|(key, largest)| add(key, largest));
+            }
+        }
+        balance.groups = vec![vec![]; numbers.len()];
+        balance.constraints = vec![vec![]; balance.size.len()];
+        for ((constraint, group), slope) in slopes.into_iter().filter(|(_, slope)| *slope > 0.0) {
+            balance.groups[constraint].push((group, slope));
+            balance.constraints[group].push((constraint, slope));
+        }
+    }
+}
+
+impl Balance {
+    /// Forgets sizes that are so small beside those of constraints that they are rounding of a guess of 0.
+    fn forget_rounding(&mut self) {
+        let is_rounding = |group: &usize| {
+            let balanced = self.candidate(*group, false).unwrap_or(0.0);
+            self.size[*group].is_some_and(|size| size < ROUNDING * balanced)
+        };
+        let rounding: Vec<usize> = (0..self.size.len()).filter(is_rounding).collect();
+        rounding.into_iter().for_each(|group| self.size[group] = None);
+    }
+
+    /// Gives sizes to groups, those first whose constraints have no other group without one.
+    fn propagate(&mut self) {
+        for _ in 0..self.size.len() {
+            let without = || (0..self.size.len()).filter(|group| self.size[*group].is_none());
+            let sizes = |group, partly| Some((group, self.candidate(group, partly)?));
+            let mut found: Vec<(usize, f64)> = without().filter_map(|group| sizes(group, false)).collect();
+            if found.is_empty() {
+                found = without().filter_map(|group| sizes(group, true)).take(1).collect();
+            }
+            if found.is_empty() {
+                return;
+            }
+            found.into_iter().for_each(|(group, size)| self.size[group] = Some(size));
+        }
+    }
+
+    /// The least size with which a group balances one of its constraints or reaches its own bound: a larger one would
+    /// make it the largest term of that constraint. `partly`: of constraints in which other groups have no size either
+    /// the known terms count.
+    fn candidate(&self, group: usize, partly: bool) -> Option<f64> {
+        let own = Some(self.own_bound[group]).filter(|bound| *bound > 0.0);
+        let balanced = self.constraints[group].iter().filter_map(|&(constraint, slope)| {
+            let others = self.groups[constraint].iter().filter(|(other, _)| *other != group);
+            if !partly && others.clone().any(|(other, _)| self.size[*other].is_none()) {
+                return None;
+            }
+            let terms = others.filter_map(|(other, slope)| Some(self.size[*other]? * slope));
+            let row = terms.fold(self.bound[constraint], f64::max);
+            Some(row / slope).filter(|size| size.is_normal())
+        });
+        own.into_iter().chain(balanced).reduce(f64::min)
+    }
+}
