@@ -358,7 +358,7 @@ fn guesses_keep_their_order_and_their_targets() {
     let route: Vec<Vec<f64>> = points.iter().map(|q| q.iter().map(|c| value(&p, *c, world)).collect()).collect();
     assert_eq!(route, [[0.0, 0.0], [3e3, 4e3], [1e3, 2e3]]);
     assert!(matches!(p.guesses[1].kind, GuessKind::Duration(_)));
-    assert!(matches!(p.guesses[2].kind, GuessKind::Variable(0, _)));
+    assert!(matches!(p.guesses[2].kind, GuessKind::Variable(0, None, _)));
     let GuessKind::Output { output, value: node, .. } = &p.guesses[3].kind else { panic!("an output") };
     assert_eq!(output, "x");
     close(value(&p, *node, world), 3e3 * 0.4 * 2.0 / 5.0);

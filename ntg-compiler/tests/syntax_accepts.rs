@@ -39,6 +39,7 @@ fn brackets(expr: &Expr) -> String {
         ExprKind::Time => "t".into(),
         ExprKind::ScaledTime => "tau".into(),
         ExprKind::Path(path) => shown(path),
+        ExprKind::Tuple(elements) => format!("<{}>", all(elements)),
         ExprKind::Neg(inner) => format!("(-{})", brackets(inner)),
         ExprKind::Sum(terms) => {
             let terms =
@@ -84,9 +85,17 @@ fn of_path(path: Option<&Path>) -> String {
 fn shown(path: &Path) -> String {
     let segment = |segment: &Segment| match segment.indices.is_empty() {
         true => segment.name.text.clone(),
-        false => format!("{}[{}]", segment.name.text, all(&segment.indices)),
+        false => format!("{}[{}]", segment.name.text, indices(&segment.indices)),
     };
     path.segments.iter().map(segment).collect::<Vec<_>>().join(".")
+}
+
+fn indices(list: &[Index]) -> String {
+    let one = |index: &Index| match &index.last {
+        None => brackets(&index.first),
+        Some(last) => format!("{} .. {}", brackets(&index.first), brackets(last)),
+    };
+    list.iter().map(one).collect::<Vec<_>>().join(",")
 }
 
 fn all(list: &[Expr]) -> String {
@@ -247,7 +256,7 @@ fn outputs_without_a_unit_take_the_last_one_of_their_list() {
         .map(|name| name.unit.as_ref().map(|unit| symbols(&unit.factors)).unwrap_or_default())
         .collect();
     assert_eq!(units, ["*m^1", "*rad^1", "*rad^1", "*rad^1"]);
-    assert!(output.names[2].size.is_some() && output.names[3].size.is_none());
+    assert!(output.names[2].shape.is_some() && output.names[3].shape.is_none());
 }
 
 #[test]

@@ -137,8 +137,9 @@ impl Writer<'_> {
                 let name = self.problem.parameters.get(*parameter).map_or("param", |p| p.name.as_str());
                 member(name, index.as_ref())
             }
-            Leaf::Variable { variable } => {
-                self.problem.variables.get(*variable).map_or_else(|| "variable".to_owned(), |v| v.name.clone())
+            Leaf::Variable { variable, index } => {
+                let name = self.problem.variables.get(*variable).map_or("variable", |v| v.name.as_str());
+                member(name, index.as_ref())
             }
             Leaf::Index(index) => form(index),
             Leaf::Integral { .. } => "integral(...)".to_owned(),

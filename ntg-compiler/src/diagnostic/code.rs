@@ -86,6 +86,9 @@ codes! {
     WildExponent "E043" "an exponent that leaves no dimension";
     WrongUnit "E044" "a declared unit of another dimension";
     UnusableUnit "E045" "a unit too large or too small";
+    ShapeMismatch "E046" "shapes that do not fit";
+    NoNumber "E047" "a vector or matrix where one number is needed";
+    MixedVector "E048" "a vector of different kinds of quantities";
     VariesAlong "E050" "a trajectory quantity where a single number stands";
     TimeOutOfPlace "E051" "`t` or `tau` where it has no value";
     EventAlong "E052" "an event time or integral where an expression belongs to a point";

@@ -17,7 +17,7 @@ use super::scope::{Allow, Context, Meaning};
 use super::value::{Value, What};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{Expr, ExprKind, IndexRange, MulOp, Sign};
+use crate::syntax::ast::{Expr, ExprKind, Ident, IndexRange, MulOp, Sign};
 
 /// A number that the compiler knows, in SI units.
 pub(super) struct Constant {
@@ -46,7 +46,7 @@ impl Form {
     }
 
     /// `self + factor * other`, if it does not overflow.
-    fn plus(&self, factor: i64, other: &Self) -> Option<Self> {
+    pub(super) fn plus(&self, factor: i64, other: &Self) -> Option<Self> {
         let constant = self.constant.checked_add(other.constant.checked_mul(factor)?)?;
         let mut terms = self.terms.clone();
         for (index, coefficient) in &other.terms {
@@ -77,7 +77,18 @@ impl Form {
 impl<'a> Elaborator<'a> {
     /// A number that the compiler knows; `what` says for what it is needed.
     pub(super) fn constant(&mut self, cx: &Context<'a>, expr: &'a Expr, what: &str) -> Option<Constant> {
-        let value = self.value(&cx.allowing(Allow::Constants), expr);
+        self.constant_element(cx, expr, &[], what)
+    }
+
+    /// The same for one element of an expression.
+    pub(super) fn constant_element(
+        &mut self,
+        cx: &Context<'a>,
+        expr: &'a Expr,
+        at: &[Form],
+        what: &str,
+    ) -> Option<Constant> {
+        let value = self.element(&cx.allowing(Allow::Constants), expr, at);
         let value = self.settle_constant(value, what)?;
         let value = self.finite(value)?;
         let number = self.problem.dag.is_constant(value.node)?;
@@ -183,7 +194,7 @@ impl<'a> Elaborator<'a> {
     pub(super) fn index_in_sight(&self, cx: &Context<'a>, name: &str) -> Option<Form> {
         match cx.local(name) {
             Some(Meaning::Index(form)) => return Some(form.clone()),
-            Some(Meaning::Argument(_)) => return None,
+            Some(Meaning::Argument(_) | Meaning::Lazy(_) | Meaning::Shaped(_)) => return None,
             None => {}
         }
         let mut next = Some(cx.scope);
@@ -205,23 +216,29 @@ impl<'a> Elaborator<'a> {
     /// A loop and the context inside it.
     pub(super) fn range(&mut self, cx: &Context<'a>, range: &'a IndexRange) -> Option<(Loop, Context<'a>)> {
         let name = range.index.text.as_str();
-        self.index_names.entry(name).or_insert(range.index.span);
-        let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
-        let declared = super::scope::look_up(&self.scopes, cx.lexical, name).map(|(_, declared)| declared);
-        if hidden || declared.is_some() {
-            let mut finding =
-                Diagnostic::new(Code::DeclaredTwice, range.index.span, format!("`{name}` is declared twice"))
-                    .label(range.index.span, "declared again as an index here");
-            if let Some(declared) = declared.filter(|_| !hidden) {
-                finding = finding.label(declared.span, "first declared here");
-            }
-            self.report(finding.help("give the index another name"));
-        }
+        self.bind_index(cx, &range.index);
         let first = self.form(cx, &range.first);
         let last = self.form(cx, &range.last);
         let over = self.new_index(first?, last?);
         let meaning = Meaning::Index(Form::index(over.index));
         Some((over.clone(), cx.inside(over).with(name, meaning)))
+    }
+
+    /// Tells of an index that hides another name.
+    pub(super) fn bind_index(&mut self, cx: &Context<'a>, index: &'a Ident) {
+        let name = index.text.as_str();
+        self.index_names.entry(name).or_insert(index.span);
+        let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
+        let declared = super::scope::look_up(&self.scopes, cx.lexical, name).map(|(_, declared)| declared);
+        if hidden || declared.is_some() {
+            let mut finding =
+                Diagnostic::new(Code::DeclaredTwice, index.span, format!("`{name}` is declared twice"))
+                    .label(index.span, "declared again as an index here");
+            if let Some(declared) = declared.filter(|_| !hidden) {
+                finding = finding.label(declared.span, "first declared here");
+            }
+            self.report(finding.help("give the index another name"));
+        }
     }
 
     /// An index as a number.
@@ -246,6 +263,11 @@ impl<'a> Elaborator<'a> {
         name: &str,
         span: Span,
     ) -> bool {
+        // While only shapes are looked for, indices of sums have no range.
+        let unknown = |index: &IndexId| index.0 >= u32::MAX - self.unknown_indices;
+        if self.unknown_indices > 0 && form.terms.iter().any(|(index, _)| unknown(index)) {
+            return true;
+        }
         let Some((least, most)) = extremes(form, &cx.loops) else { return true };
         let (first, last) = ends;
         let outside = if least < first { least } else { most };

@@ -9,13 +9,22 @@ use ntg_structure::{Block, Unit};
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
-use super::problem::{Bounds, Constraint, Domain};
+use super::problem::{Bounds, Constraint, Domain, Form};
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
 use super::units;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{self, BlockPlace, Comparison, Expr, ItemKind, Relation, Statement};
+
+/// `[2]`, `[2, 1]`: the members that are made by themselves.
+fn member_text(members: &[i64]) -> String {
+    if members.is_empty() {
+        return String::new();
+    }
+    let list: Vec<String> = members.iter().map(i64::to_string).collect();
+    format!("[{}]", list.join(", "))
+}
 
 /// Where the constraints of a block are given a meaning.
 #[derive(Clone)]
@@ -45,6 +54,11 @@ impl<'a> Elaborator<'a> {
     }
 
     fn block(&mut self, scope: usize, block: &'a ast::Block) {
+        self.block_at_its_place(scope, block);
+        self.settle_open();
+    }
+
+    fn block_at_its_place(&mut self, scope: usize, block: &'a ast::Block) {
         let agent = self.scopes[scope].agent;
         let phase = self.scopes[scope].phase;
         match (block.place, agent) {
@@ -98,17 +112,29 @@ impl<'a> Elaborator<'a> {
             match statement {
                 Statement::One(constraint) => self.constraint(cx, constraint, site),
                 Statement::For(inner) => {
-                    if let Some((_, inside)) = self.range(cx, &inner.over) {
-                        self.statements(&inside, &inner.body, site);
+                    if let Some((over, _)) = self.range(cx, &inner.over) {
+                        let name = Some(inner.over.index.text.as_str());
+                        self.repeat(cx, name, &over, &mut |this, cx, _| this.statements(cx, &inner.body, site));
                     }
                 }
             }
         }
     }
 
+    /// A constraint between numbers, or one for each element of its vectors.
     fn constraint(&mut self, cx: &Context<'a>, constraint: &'a ast::Constraint, site: &Site) {
+        let Some(shape) = self.sides(cx, &constraint.relation.sides()) else { return };
+        if shape.is_number() {
+            return self.element_constraint(cx, constraint, site, &[]);
+        }
+        self.for_elements(cx, shape.axes(), &[], &mut |this, cx, at| {
+            this.element_constraint(cx, constraint, site, at);
+        });
+    }
+
+    fn element_constraint(&mut self, cx: &Context<'a>, constraint: &'a ast::Constraint, site: &Site, at: &[Form]) {
         self.event = None;
-        let bodies = self.relation(cx, &constraint.relation, site);
+        let bodies = self.relation(cx, &constraint.relation, site, at);
         let event = self.event.take();
         match site.block {
             Block::Trajectory => {
@@ -119,7 +145,7 @@ impl<'a> Elaborator<'a> {
             Block::Initial | Block::Final if event.as_ref().is_some_and(|mark| !mark.is_time) => {
                 let mission = if cx.point == Point::Start { Point::MissionStart } else { Point::MissionEnd };
                 let moved = cx.at(mission);
-                let bodies = self.relation(&moved, &constraint.relation, site);
+                let bodies = self.relation(&moved, &constraint.relation, site, at);
                 self.event = None;
                 return self.push_all(&moved, constraint, site, bodies);
             }
@@ -129,9 +155,9 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The bodies with their bounds that a relation demands.
-    fn relation(&mut self, cx: &Context<'a>, relation: &'a Relation, site: &Site) -> Vec<Body> {
+    fn relation(&mut self, cx: &Context<'a>, relation: &'a Relation, site: &Site, at: &[Form]) -> Vec<Body> {
         let place = if site.block == Block::Temporal { Use::Temporal } else { Use::Point };
-        let value = |this: &mut Self, expr: &'a Expr| this.usable(cx, expr, place);
+        let value = |this: &mut Self, expr: &'a Expr| this.usable_side(cx, expr, at, place);
         match relation {
             Relation::Compare { left, comparison, right, .. } => {
                 let (left, right) = (value(self, left), value(self, right));
@@ -253,9 +279,10 @@ impl<'a> Elaborator<'a> {
                 continue; // Decided, and told.
             }
             let domain = self.domain(cx);
+            let member = member_text(&cx.members);
             let name = constraint.name.as_ref().map(|name| match site.agent {
-                Some(agent) => self.path_name(agent, site.phase, &name.text),
-                None => name.text.clone(),
+                Some(agent) => self.path_name(agent, site.phase, &name.text) + &member,
+                None => name.text.clone() + &member,
             });
             self.origin(body.node, constraint.span);
             self.problem.constraints.push(Constraint {

@@ -123,15 +123,17 @@ impl<'a> Elaborator<'a> {
         let family = outputs[output].family;
         match (family, segment.indices.as_slice()) {
             (_, []) => Some((output, None)),
-            (Some(ends), [index]) => {
+            (Some(ends), [index]) if self.output_axes[phase][output].len() == 1 => {
+                let index = self.one_index(index)?;
                 let form = self.form(cx, index)?;
                 if !self.check_index(cx, &form, ends, name, index.span) {
                     return None;
                 }
                 Some((output, Some(form.as_number()?)))
             }
-            (family, _) => {
-                self.wrong_indices(segment, family.is_some());
+            (_, _) => {
+                let axes = self.output_axes[phase][output].len();
+                self.wrong_indices(segment, axes);
                 None
             }
         }

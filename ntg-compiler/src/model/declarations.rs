@@ -67,16 +67,16 @@ impl<'a> Elaborator<'a> {
             ItemKind::Const(c) => {
                 let entity = Entity::Definition(self.definitions.len());
                 self.declare(scope, &c.name, Declared { entity, span: c.name.span });
-                let (unit, family, is_const) = (None, None, true);
+                let (unit, shape, is_const) = (None, c.shape.as_ref(), true);
                 let (name, value, span) = (&c.name, &c.value, item.span);
-                self.definitions.push(Definition { name, doc, unit, family, value, scope, is_const, span });
+                self.definitions.push(Definition { name, doc, unit, shape, value, scope, is_const, span });
             }
             ItemKind::Let(l) => {
                 let entity = Entity::Definition(self.definitions.len());
                 self.declare(scope, &l.name, Declared { entity, span: l.name.span });
-                let (unit, family, is_const) = (l.unit.as_ref(), l.family.as_ref(), false);
+                let (unit, shape, is_const) = (l.unit.as_ref(), l.shape.as_ref(), false);
                 let (name, value, span) = (&l.name, &l.value, item.span);
-                self.definitions.push(Definition { name, doc, unit, family, value, scope, is_const, span });
+                self.definitions.push(Definition { name, doc, unit, shape, value, scope, is_const, span });
             }
             ItemKind::Param(p) => self.parameter_name(&p.name),
             ItemKind::Continuation(c) => {

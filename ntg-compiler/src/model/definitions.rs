@@ -11,10 +11,10 @@ use super::elaborator::{Definition, Elaborator};
 use super::mention::mentioned;
 use super::problem::Form;
 use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up};
-use super::value::{Flaw, Misplaced, Value};
+use super::value::{Flaw, Misplaced, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::Segment;
+use crate::syntax::ast::{self, Segment};
 
 /// Everything on which the value of a definition depends.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -25,7 +25,8 @@ pub(super) struct MemoKey {
     phase: Option<Form>,
     point: Point,
     allow: Allow,
-    argument: Option<Form>,
+    /// The indices of its family, then those of the element.
+    place: Vec<Form>,
 }
 
 /// What is known of a definition in one context.
@@ -42,33 +43,20 @@ impl<'a> Elaborator<'a> {
         cx: &Context<'a>,
         definition: usize,
         segment: &'a Segment,
-        span: Span,
+        (span, at): (Span, &[Form]),
     ) -> Value {
-        let family = self.definitions[definition].family;
-        let argument = match (family, segment.indices.as_slice()) {
-            (Some(_), [index]) => {
-                let Some(form) = self.form(cx, index) else { return self.poison(span) };
-                let ends = self.family_ends(cx, definition);
-                if let Some((Some(first), Some(last))) = ends.map(|(a, b)| (a.as_number(), b.as_number()))
-                    && !self.check_index(cx, &form, (first, last), &segment.name.text, index.span)
-                {
-                    return self.poison(span);
-                }
-                Some(form)
-            }
-            (None, []) => None,
-            (family, _) => return self.wrong_indices(segment, family.is_some()),
-        };
-        self.definition(cx, definition, argument, span)
-    }
-
-    /// The ends of a family of definitions.
-    pub(super) fn family_ends(&mut self, cx: &Context<'a>, definition: usize) -> Option<(Form, Form)> {
-        let range = self.definitions[definition].family?;
-        let cx = Context { locals: None, ..cx.clone() };
-        let first = self.form(&cx, &range.first);
-        let last = self.form(&cx, &range.last);
-        Some((first?, last?))
+        let Some(axes) = self.definition_axes(cx, definition) else { return self.poison(span) };
+        let Some(place) = self.place(cx, segment, &axes, at) else { return self.poison(span) };
+        // Elements are counted from 1 inside, whatever the first index of a stated size is.
+        let family = self.definitions[definition].indices().count();
+        let counted = place.iter().zip(&axes).enumerate().map(|(k, (form, ends))| match k < family {
+            true => Some(form.clone()),
+            false => form.plus(-1, &ends.first)?.plus(1, &Form::number(1)),
+        });
+        match counted.collect() {
+            Some(place) => self.definition(cx, definition, place, span),
+            None => self.poison(span),
+        }
     }
 
     /// The value of a definition in a context, as used at `span`.
@@ -76,7 +64,7 @@ impl<'a> Elaborator<'a> {
         &mut self,
         cx: &Context<'a>,
         definition: usize,
-        argument: Option<Form>,
+        place: Vec<Form>,
         span: Span,
     ) -> Value {
         let allow = if self.definitions[definition].is_const { Allow::Constants } else { cx.allow };
@@ -87,20 +75,26 @@ impl<'a> Elaborator<'a> {
             phase: cx.phase.clone(),
             point: cx.point,
             allow,
-            argument: argument.clone(),
+            place: place.clone(),
         };
         match self.memo.get(&key) {
             Some(Memo::Done(value, event)) => {
                 let (value, event) = (value.clone(), *event);
                 return self.used(value, event, span);
             }
-            Some(Memo::InProgress) => return self.cycle(cx, definition, span),
+            Some(Memo::InProgress) if place.is_empty() => return self.cycle(cx, definition, span),
+            Some(Memo::InProgress) => return self.member_cycle(definition, &place, span),
             None => {}
+        }
+        if let Some(open) = self.recurrence(definition, &place, span) {
+            return open;
         }
         self.memo.insert(key.clone(), Memo::InProgress);
         self.warm(cx, definition);
         let outer_event = self.event.take();
-        let value = self.elaborate_definition(cx, definition, argument, allow);
+        self.members.push((definition, place.clone()));
+        let value = self.elaborate_definition(cx, definition, &place, allow);
+        self.members.pop();
         let event = std::mem::replace(&mut self.event, outer_event).is_some_and(|mark| !mark.is_time);
         self.memo.insert(key, Memo::Done(value.clone(), event));
         self.used(value, event, span)
@@ -110,16 +104,23 @@ impl<'a> Elaborator<'a> {
         &mut self,
         cx: &Context<'a>,
         definition: usize,
-        argument: Option<Form>,
+        place: &[Form],
         allow: Allow,
     ) -> Value {
-        let Definition { value: expr, scope, unit, family, is_const, name, .. } = &self.definitions[definition];
-        let (expr, lexical, unit, family, is_const, name) = (*expr, *scope, *unit, *family, *is_const, *name);
+        let Definition { value: expr, scope, unit, is_const, name, .. } = &self.definitions[definition];
+        let (expr, lexical, unit, is_const, name) = (*expr, *scope, *unit, *is_const, *name);
+        let indices: Vec<&'a ast::Ident> = self.definitions[definition].indices().collect();
         let mut inner = Context { locals: None, lexical, allow, ..cx.clone() };
-        if let (Some(form), Some(range)) = (argument, family) {
-            inner = inner.with(&range.index.text, Meaning::Index(form));
+        for (index, form) in indices.iter().zip(place) {
+            inner = inner.with(&index.text, Meaning::Index(form.clone()));
         }
-        let mut value = self.value(&inner, expr);
+        let at = &place[indices.len().min(place.len())..];
+        // One number of a constant stands for every element, as in a `param`.
+        let spread = is_const && !at.is_empty() && self.shape(&inner, expr).is_some_and(|shape| shape.is_number());
+        let mut value = if spread { self.value(&inner, expr) } else { self.element_or_zero(&inner, expr, at) };
+        if matches!(value.flaw, Some(Flaw::Open(_))) {
+            return value;
+        }
         if is_const {
             let what = format!("the constant `{}`", name.text);
             match self.settle_constant(value, &what).and_then(|value| self.finite(value)) {
@@ -134,7 +135,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Holds a value against the unit declared for it.
-    pub(super) fn declared_unit(&mut self, mut value: Value, unit: &crate::syntax::ast::Unit, what: &str) -> Value {
+    pub(super) fn declared_unit(&mut self, mut value: Value, unit: &ast::Unit, what: &str) -> Value {
         let Some((quantity, shown)) = self.unit(unit) else { return self.poison(value.span) };
         if let Some(dimension) = value.dimension
             && dimension != quantity.dimension
@@ -169,6 +170,31 @@ impl<'a> Elaborator<'a> {
             self.mark_event(span, name, false);
         }
         value.at(span)
+    }
+
+    /// A member for an open index of a definition that is being elaborated for another member: each member is then
+    /// made by itself.
+    fn recurrence(&mut self, definition: usize, place: &[Form], span: Span) -> Option<Value> {
+        let (index, _) = place.iter().find_map(|form| form.terms.first())?;
+        let recurs = self.members.iter().any(|(other, _)| *other == definition);
+        recurs.then(|| self.open(OpenIndex { index: *index, cut: None, span }))
+    }
+
+    /// Tells of a member that needs itself.
+    fn member_cycle(&mut self, definition: usize, place: &[Form], span: Span) -> Value {
+        let words = |this: &Self, (definition, place): &(usize, Vec<Form>)| {
+            let indices: Vec<String> = place.iter().map(|form| form.constant.to_string()).collect();
+            format!("{}[{}]", this.definitions[*definition].name.text, indices.join(", "))
+        };
+        let own = (definition, place.to_vec());
+        let from = self.members.iter().position(|member| *member == own).unwrap_or(0);
+        let mut chain: Vec<String> = self.members[from..].iter().map(|member| words(self, member)).collect();
+        chain.push(words(self, &own));
+        let name = self.definitions[definition].name.span;
+        let message = format!("member `{}` needs itself: {}", words(self, &own), chain.join(", "));
+        let finding = Diagnostic::new(Code::Circle, name, message).label(span, "needed here");
+        let help = "let each member need only those before it, or only those behind it: `if i == 1 { ... } else { ... }`";
+        self.refuse(finding.help(help), span)
     }
 
     fn cycle(&mut self, cx: &Context<'a>, definition: usize, span: Span) -> Value {
@@ -224,7 +250,7 @@ impl<'a> Elaborator<'a> {
             let span = self.definitions[next].name.span;
             if expanded {
                 if next != definition {
-                    self.definition(cx, next, None, span);
+                    self.definition(cx, next, Vec::new(), span);
                 }
                 continue;
             }
@@ -232,8 +258,33 @@ impl<'a> Elaborator<'a> {
             for name in mentioned(self.definitions[next].value) {
                 if let Some((_, declared)) = look_up(&self.scopes, cx.scope, name)
                     && let Entity::Definition(inner) = declared.entity
-                    && self.definitions[inner].family.is_none()
+                    && self.definitions[inner].shape.is_none()
+                    && self.member_shape(cx, inner).is_some_and(|shape| shape.is_number())
                     && !self.is_known(cx, inner)
+                    && seen.insert(inner)
+                {
+                    open.push((inner, false));
+                }
+            }
+        }
+    }
+
+    /// Finds the shapes of what a definition is made of, the innermost first, for the same reason.
+    pub(super) fn warm_shapes(&mut self, cx: &Context<'a>, definition: usize) {
+        let mut seen: HashSet<usize> = HashSet::from([definition]);
+        let mut open = vec![(definition, false)];
+        while let Some((next, expanded)) = open.pop() {
+            if expanded {
+                if next != definition {
+                    self.member_shape(cx, next);
+                }
+                continue;
+            }
+            open.push((next, true));
+            for name in mentioned(self.definitions[next].value) {
+                if let Some((_, declared)) = look_up(&self.scopes, cx.scope, name)
+                    && let Entity::Definition(inner) = declared.entity
+                    && !self.member_shapes.contains_key(&(inner, cx.scope))
                     && seen.insert(inner)
                 {
                     open.push((inner, false));
@@ -246,6 +297,6 @@ impl<'a> Elaborator<'a> {
     fn is_known(&self, cx: &Context<'a>, definition: usize) -> bool {
         let allow = if self.definitions[definition].is_const { Allow::Constants } else { cx.allow };
         let (scope, agent, phase, point) = (cx.scope, cx.agent.clone(), cx.phase.clone(), cx.point);
-        self.memo.contains_key(&MemoKey { definition, scope, agent, phase, point, allow, argument: None })
+        self.memo.contains_key(&MemoKey { definition, scope, agent, phase, point, allow, place: Vec::new() })
     }
 }

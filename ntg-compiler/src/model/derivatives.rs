@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use super::dimension::Ratio;
 use super::elaborator::Elaborator;
 use super::problem::{Form, IndexId, Leaf, Leaves, Loop, PhaseAt, Problem};
-use super::scope::{Context, Entity, look_up};
+use super::scope::{Context, Entity, Meaning, look_up};
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Again, Dag, InputId, NodeId, SecondIndex, forward};
@@ -107,14 +107,20 @@ impl Again for MoreIndices<'_> {
 
 impl<'a> Elaborator<'a> {
     /// `der(e)`, `der(e, j)`.
-    pub(super) fn derivative(&mut self, cx: &Context<'a>, of: &'a Expr, order: Option<&'a Expr>, span: Span) -> Value {
+    pub(super) fn derivative(
+        &mut self,
+        cx: &Context<'a>,
+        (of, at): (&'a Expr, &[Form]),
+        order: Option<&'a Expr>,
+        span: Span,
+    ) -> Value {
         let times = match order {
             None => Some(1),
             Some(order) => self.derivative_order(cx, order),
         };
         let within = times.map_or(0, |times| times as usize);
         self.derivatives_around += within;
-        let value = self.value(cx, of);
+        let value = self.element_or_zero(cx, of, at);
         self.derivatives_around -= within;
         let Some(times) = times else { return self.poison(span) };
         if !value.is_sound() {
@@ -261,7 +267,7 @@ impl<'a> Elaborator<'a> {
 
     /// `partial(f(s, w), s)`.
     pub(super) fn partial(&mut self, cx: &Context<'a>, of: &'a Call, argument: &'a Expr, span: Span) -> Value {
-        let arguments: Vec<Value> = of.arguments.iter().map(|argument| self.value(cx, argument)).collect();
+        let Some(arguments) = self.arguments(cx, of) else { return self.poison(span) };
         let entity = look_up(&self.scopes, cx.scope, &of.function.text).map(|(_, declared)| declared.entity);
         let formal: Vec<String> = match entity {
             Some(Entity::Function(f)) => self.functions[f].function.parameters.iter().map(|p| p.text.clone()).collect(),
@@ -275,7 +281,14 @@ impl<'a> Elaborator<'a> {
         };
         let Some(k) = self.which_argument(of, argument, &formal) else { return self.poison(span) };
         match entity {
-            Some(Entity::Table(table)) => self.apply_table(cx, table, of, &arguments, Some(k)).at(span),
+            Some(Entity::Table(table)) => {
+                let mut values = Vec::new();
+                for argument in arguments {
+                    let Meaning::Argument(value) = argument else { return self.poison(span) };
+                    values.push(value);
+                }
+                self.apply_table(cx, table, of, &values, Some(k)).at(span)
+            }
             Some(Entity::Function(function)) => self.partial_function(cx, function, of, arguments, k, span),
             _ => self.poison(span),
         }
@@ -306,7 +319,7 @@ impl<'a> Elaborator<'a> {
         cx: &Context<'a>,
         function: usize,
         of: &'a Call,
-        mut arguments: Vec<Value>,
+        mut arguments: Vec<Meaning<'a>>,
         k: usize,
         span: Span,
     ) -> Value {
@@ -314,9 +327,13 @@ impl<'a> Elaborator<'a> {
         self.next_symbol += 1;
         let placeholder = self.leaf(symbol.clone());
         let id = self.problem.leaves.id(symbol);
-        let argument = arguments[k].clone();
-        arguments[k].node = placeholder;
-        let value = self.inline(cx, function, of, arguments);
+        let Meaning::Argument(argument) = arguments[k].clone() else {
+            let message = format!("one number is needed here, `{}` is a vector", self.text(of.arguments[k].span));
+            let finding = Diagnostic::new(Code::NoNumber, of.arguments[k].span, message);
+            return self.refuse(finding.help("differentiate with respect to one number"), span);
+        };
+        arguments[k] = Meaning::Argument(Value { node: placeholder, ..argument.clone() });
+        let value = self.inline(cx, function, of, arguments, &[]);
         if !value.is_sound() {
             return value.at(span);
         }

@@ -17,8 +17,9 @@ use super::dimension::Dimension;
 use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
 use super::scope::{Declared, Entity, Scope, ScopeId};
+use super::shape::{Ends, FunctionKey, Shape};
 use super::units::{self, Quantity};
-use super::value::{Flaw, Value};
+use super::value::{Flaw, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::NodeId;
 use crate::source::{Source, Span};
@@ -29,11 +30,24 @@ pub(super) struct Definition<'a> {
     pub(super) name: &'a ast::Ident,
     pub(super) doc: String,
     pub(super) unit: Option<&'a ast::Unit>,
-    pub(super) family: Option<&'a ast::IndexRange>,
+    /// The indices of its family, then the stated size of its members.
+    pub(super) shape: Option<&'a ast::Shape>,
     pub(super) value: &'a ast::Expr,
     pub(super) scope: ScopeId,
     pub(super) is_const: bool,
     pub(super) span: Span,
+}
+
+impl<'a> Definition<'a> {
+    /// The names of the indices of its family.
+    pub(super) fn indices(&self) -> impl Iterator<Item = &'a ast::Ident> + use<'a> {
+        self.shape.into_iter().flat_map(|shape| shape.axes.iter().filter_map(|axis| axis.index.as_ref()))
+    }
+
+    /// Whether the size of its members is stated.
+    pub(super) fn is_sized(&self) -> bool {
+        self.shape.is_some_and(|shape| shape.axes.iter().any(|axis| axis.index.is_none()))
+    }
 }
 
 /// A `fn` and where it stands.
@@ -121,6 +135,20 @@ pub(super) struct Elaborator<'a> {
     /// The functions being inlined.
     pub(super) inlining: Vec<usize>,
     pub(super) memo: HashMap<MemoKey, Memo>,
+    /// The members of definitions that are being elaborated, each inside the one before.
+    pub(super) members: Vec<(usize, Vec<Form>)>,
+    /// Axes of parameters, of variables, and of the outputs of each phase.
+    pub(super) parameter_axes: Vec<Vec<Ends>>,
+    pub(super) variable_axes: Vec<Vec<Ends>>,
+    pub(super) output_axes: Vec<Vec<Vec<Ends>>>,
+    /// Shapes of the members of definitions in each scope, and of functions.
+    pub(super) member_shapes: HashMap<(usize, ScopeId), Option<Shape>>, // Looked up, never iterated.
+    pub(super) function_shapes: HashMap<FunctionKey, Option<Shape>>, // Looked up, never iterated.
+    pub(super) unknown_indices: u32,
+    /// The sums of squares of which nodes are the roots.
+    pub(super) squares: HashMap<NodeId, NodeId>, // Looked up, never iterated.
+    /// An index that something settled must know.
+    pub(super) opened: Option<OpenIndex>,
     pub(super) kinds: Kinds,
     pub(super) found: Vec<Diagnostic>,
     /// Derivatives that splines do not have.
@@ -167,6 +195,15 @@ impl<'a> Elaborator<'a> {
             time: Dimension::TIME,
             inlining: Vec::new(),
             memo: HashMap::new(),
+            members: Vec::new(),
+            parameter_axes: Vec::new(),
+            variable_axes: Vec::new(),
+            output_axes: Vec::new(),
+            member_shapes: HashMap::new(),
+            function_shapes: HashMap::new(),
+            unknown_indices: 0,
+            squares: HashMap::new(),
+            opened: None,
             kinds: Kinds::default(),
             found: Vec::new(),
             lacking: Vec::new(),

@@ -8,16 +8,23 @@ use std::rc::Rc;
 
 use super::dimension::{Dimension, Ratio};
 use super::elaborator::Elaborator;
+use super::problem::Form;
 use super::scope::Context;
 use super::value::{Flaw, Value};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::NodeId;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, MulOp, Number, Sign};
 
 impl<'a> Elaborator<'a> {
-    /// The meaning of an expression.
+    /// The meaning of an expression that is one number.
     pub(super) fn value(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Value {
-        let value = if self.enter(expr.span) { self.kind(cx, expr) } else { self.poison(expr.span) };
+        self.element(cx, expr, &[])
+    }
+
+    /// The meaning of one element of an expression: `at` has an index for each axis of its shape.
+    pub(super) fn element(&mut self, cx: &Context<'a>, expr: &'a Expr, at: &[Form]) -> Value {
+        let value = if self.enter(expr.span) { self.kind(cx, expr, at) } else { self.poison(expr.span) };
         self.leave();
         if value.is_sound() {
             self.origin(value.node, expr.span);
@@ -25,7 +32,7 @@ impl<'a> Elaborator<'a> {
         value.at(expr.span)
     }
 
-    fn kind(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Value {
+    fn kind(&mut self, cx: &Context<'a>, expr: &'a Expr, at: &[Form]) -> Value {
         let span = expr.span;
         match &expr.kind {
             ExprKind::Number(number) => self.number(number, span),
@@ -35,22 +42,24 @@ impl<'a> Elaborator<'a> {
             }
             ExprKind::Time => self.mission_time(cx, span),
             ExprKind::ScaledTime => self.scaled_time(cx, span),
-            ExprKind::Path(path) => self.path(cx, path),
+            ExprKind::Path(path) => self.path(cx, path, at),
+            ExprKind::Tuple(elements) => self.tuple_element(cx, elements, at, span),
             ExprKind::Neg(inner) => {
-                let value = self.value(cx, inner);
+                let value = self.element(cx, inner, at);
                 let node = self.problem.dag.neg(value.node);
                 value.map(node, value.dimension, span).shown_in(value.unit.clone())
             }
-            ExprKind::Sum(terms) => self.sum(cx, terms, span),
+            ExprKind::Sum(terms) => self.sum(cx, terms, at, span),
+            ExprKind::Product(factors) if !at.is_empty() => self.product_element(cx, factors, at, span),
             ExprKind::Product(factors) => self.product(cx, factors, span),
             ExprKind::Power(base, exponent) => self.power(cx, base, exponent, span),
-            ExprKind::Call(call) => self.call(cx, call),
-            ExprKind::Der { of, order } => self.derivative(cx, of, order.as_deref(), span),
+            ExprKind::Call(call) => self.call(cx, call, at),
+            ExprKind::Der { of, order } => self.derivative(cx, (of, at), order.as_deref(), span),
             ExprKind::Partial { of, argument } => self.partial(cx, of, argument, span),
-            ExprKind::Integral { path, of } => self.integral(cx, path.as_ref(), of, span),
-            ExprKind::Boundary { boundary, path, of } => self.boundary(cx, *boundary, path.as_ref(), of, span),
+            ExprKind::Integral { path, of } => self.integral(cx, path.as_ref(), (of, at), span),
+            ExprKind::Boundary { boundary, path, of } => self.boundary(cx, *boundary, path.as_ref(), (of, at), span),
             ExprKind::Event { event, path } => self.event_time(cx, *event, path, span),
-            ExprKind::Reduce(reduction) => self.reduction(cx, reduction, span),
+            ExprKind::Reduce(reduction) => self.reduction(cx, reduction, at, span),
         }
     }
 
@@ -74,10 +83,10 @@ impl<'a> Elaborator<'a> {
         Value::new(node, quantity.dimension, span).shown_in(Some(Rc::new(shown)))
     }
 
-    fn sum(&mut self, cx: &Context<'a>, terms: &'a [(Sign, Expr)], span: Span) -> Value {
+    fn sum(&mut self, cx: &Context<'a>, terms: &'a [(Sign, Expr)], at: &[Form], span: Span) -> Value {
         let mut total: Option<Value> = None;
         for (sign, term) in terms {
-            let value = self.value(cx, term);
+            let value = if at.is_empty() { self.value(cx, term) } else { self.element_or_zero(cx, term, at) };
             let Some(so_far) = total else {
                 total = Some(value);
                 continue;
@@ -93,7 +102,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Joins two values that must have one dimension; the result stands where both do.
-    pub(super) fn alike(&mut self, verb: &str, a: Value, b: &Value, node: crate::expr::NodeId) -> Value {
+    pub(super) fn alike(&mut self, verb: &str, a: Value, b: &Value, node: NodeId) -> Value {
         let span = a.span.to(b.span);
         let mut flaw = Flaw::join(&a.flaw, &b.flaw);
         if self.clash(verb, &a, b) {
@@ -168,7 +177,7 @@ impl<'a> Elaborator<'a> {
         total.unwrap_or_else(|| self.poison(span))
     }
 
-    fn multiplied(&mut self, op: MulOp, a: Value, b: &Value) -> Value {
+    pub(super) fn multiplied(&mut self, op: MulOp, a: Value, b: &Value) -> Value {
         let span = a.span.to(b.span);
         let mut flaw = Flaw::join(&a.flaw, &b.flaw);
         let (node, dimension) = match op {
@@ -205,7 +214,7 @@ impl<'a> Elaborator<'a> {
         let base = self.value(cx, base);
         let exponent = self.value(cx, exponent);
         let flaw = Flaw::join(&base.flaw, &exponent.flaw);
-        let node = self.problem.dag.pow(base.node, exponent.node);
+        let node = self.power_node(base.node, exponent.node);
         if matches!(flaw, Some(Flaw::Reported)) {
             return self.poison(span);
         }
@@ -227,6 +236,18 @@ impl<'a> Elaborator<'a> {
         // A zero raised to zero or less is no zero any more.
         let dimension = dimension.or_else(|| (!self.problem.dag.is(node, 0.0)).then_some(Dimension::NONE));
         Value { node, dimension, unit: None, span, flaw }
+    }
+
+    /// A power; an even one of the length of a vector has no root.
+    fn power_node(&mut self, base: NodeId, exponent: NodeId) -> NodeId {
+        let even = self.problem.dag.is_constant(exponent).filter(|exponent| exponent.rem_euclid(2.0) == 0.0);
+        match (even, self.squares.get(&base).copied()) {
+            (Some(exponent), Some(square)) => {
+                let half = self.problem.dag.constant(exponent / 2.0);
+                self.problem.dag.pow(square, half)
+            }
+            _ => self.problem.dag.pow(base, exponent),
+        }
     }
 
     /// The exponent as a small rational number, if the compiler knows it.

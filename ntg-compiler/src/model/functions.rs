@@ -6,12 +6,18 @@
 //! User functions are inlined: their arguments are values, their bodies are elaborated anew for
 //! every use, so they are generic in dimensions.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use super::dimension::{Dimension, Ratio};
 use super::elaborator::Elaborator;
+use super::element::Lazy;
 use super::kinds::Kind;
+use super::problem::Form;
 use super::scope::{Allow, Context, Entity, Meaning, look_up, visible};
 use super::suggest::nearest;
 use super::value::{Flaw, Misplaced, Value, What};
+use super::vectors::{VECTOR_FUNCTIONS, vector_function};
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{NodeId, Unary};
 use crate::syntax::ast::Call;
@@ -80,7 +86,6 @@ const HABITS: &[(&str, &str)] = &[
     ("log10", "log(x) / log(10)"),
     ("log2", "log(x) / log(2)"),
     ("pow", "x ^ y"),
-    ("norm", "hypot(x, y)"),
     ("arctan", "atan(x)"),
     ("arctan2", "atan2(y, x)"),
     ("arcsin", "asin(x)"),
@@ -107,6 +112,11 @@ impl Builtin {
         self.name
     }
 
+    /// Whether vectors stand for their elements among its arguments.
+    pub(super) fn takes_vectors(&self) -> bool {
+        matches!(self.rule, Rule::Hypot | Rule::Min | Rule::Max)
+    }
+
     /// Least and greatest number of arguments.
     fn arity(&self) -> (usize, usize) {
         match self.rule {
@@ -125,20 +135,83 @@ pub(super) fn builtin(name: &str) -> Option<Builtin> {
 
 impl<'a> Elaborator<'a> {
     /// The application of anything.
-    pub(super) fn call(&mut self, cx: &Context<'a>, call: &'a Call) -> Value {
+    pub(super) fn call(&mut self, cx: &Context<'a>, call: &'a Call, at: &[Form]) -> Value {
         let name = call.function.text.as_str();
-        let arguments: Vec<Value> = call.arguments.iter().map(|argument| self.value(cx, argument)).collect();
         match look_up(&self.scopes, cx.scope, name).map(|(_, declared)| declared.entity) {
-            Some(Entity::Function(function)) => self.inline(cx, function, call, arguments),
-            Some(Entity::Table(table)) => self.apply_table(cx, table, call, &arguments, None),
-            other => match builtin(name) {
-                Some(builtin) => self.apply(builtin, call, arguments),
-                None => self.no_function(cx, call, other),
+            Some(Entity::Function(function)) => {
+                let Some(arguments) = self.arguments(cx, call) else { return self.poison(call.span) };
+                self.inline(cx, function, call, arguments, at)
+            }
+            Some(Entity::Table(table)) => {
+                let arguments = self.plain_arguments(cx, call);
+                self.apply_table(cx, table, call, &arguments, None)
+            }
+            other => match (builtin(name), vector_function(name)) {
+                (Some(builtin), _) if builtin.takes_vectors() => self.spread(cx, builtin, call),
+                (Some(builtin), _) => {
+                    let arguments = self.plain_arguments(cx, call);
+                    self.apply(builtin, call, arguments)
+                }
+                (None, Some(function)) if other.is_none() => self.vector_call(cx, function, call, at),
+                _ => {
+                    for argument in &call.arguments {
+                        if self.shape(cx, argument).is_some_and(|shape| shape.is_number()) {
+                            self.value(cx, argument);
+                        }
+                    }
+                    self.no_function(cx, call, other)
+                }
             },
         }
     }
 
-    fn no_function(&mut self, cx: &Context<'a>, call: &Call, entity: Option<Entity>) -> Value {
+    /// The arguments of a call as numbers.
+    fn plain_arguments(&mut self, cx: &Context<'a>, call: &'a Call) -> Vec<Value> {
+        call.arguments.iter().map(|argument| self.value(cx, argument)).collect()
+    }
+
+    /// The arguments of a function of the spec: numbers at once, vectors as rules.
+    pub(super) fn arguments(&mut self, cx: &Context<'a>, call: &'a Call) -> Option<Vec<Meaning<'a>>> {
+        let mut arguments = Vec::with_capacity(call.arguments.len());
+        for argument in &call.arguments {
+            let shape = self.shape(cx, argument)?;
+            arguments.push(if shape.is_number() {
+                Meaning::Argument(self.value(cx, argument))
+            } else {
+                Meaning::Lazy(Rc::new(Lazy { cx: cx.clone(), expr: argument, shape, known: RefCell::default() }))
+            });
+        }
+        Some(arguments)
+    }
+
+    /// `hypot`, `min` and `max` of numbers and of the elements of vectors.
+    fn spread(&mut self, cx: &Context<'a>, builtin: Builtin, call: &'a Call) -> Value {
+        let mut arguments = Vec::new();
+        for argument in &call.arguments {
+            match self.shape(cx, argument) {
+                Some(shape) if shape.is_number() => arguments.push(self.value(cx, argument)),
+                Some(shape) => {
+                    let n = shape.axes().first().copied().unwrap_or(0);
+                    arguments.extend(self.elements(cx, argument, n));
+                }
+                None => return self.poison(call.span),
+            }
+        }
+        if let [_, _, ..] = call.arguments.as_slice()
+            && !self.arity(call, 1, usize::MAX)
+        {
+            return self.poison(call.span);
+        }
+        let flaw = arguments.iter().fold(None, |flaw, value| Flaw::join(&flaw, &value.flaw));
+        if matches!(flaw, Some(Flaw::Reported)) {
+            return self.poison(call.span);
+        }
+        let mut result = self.applied(builtin, call, &arguments);
+        result.flaw = Flaw::join(&result.flaw, &flaw);
+        result
+    }
+
+    pub(super) fn no_function(&mut self, cx: &Context<'a>, call: &Call, entity: Option<Entity>) -> Value {
         let name = call.function.text.as_str();
         let span = call.function.span;
         if let Some(entity) = entity {
@@ -150,7 +223,7 @@ impl<'a> Elaborator<'a> {
         let names = visible(&self.scopes, cx.scope);
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
         let habit = HABITS.iter().find(|(habit, _)| *habit == name).map(|(_, right)| *right);
-        let finding = match (habit, nearest(name, own.chain(BUILTINS.iter().map(|b| b.name)))) {
+        let finding = match (habit, nearest(name, own.chain(BUILTINS.iter().map(|b| b.name)).chain(VECTOR_FUNCTIONS.iter().map(|(name, _)| *name)))) {
             (Some(right), _) => finding.help(format!("write `{right}`")),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
             (None, None) => finding.help("declare it by `fn` or `table`"),
@@ -297,7 +370,14 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A user function applied to values.
-    pub(super) fn inline(&mut self, cx: &Context<'a>, function: usize, call: &'a Call, arguments: Vec<Value>) -> Value {
+    pub(super) fn inline(
+        &mut self,
+        cx: &Context<'a>,
+        function: usize,
+        call: &'a Call,
+        arguments: Vec<Meaning<'a>>,
+        at: &[Form],
+    ) -> Value {
         let (declared, scope) = (self.functions[function].function, self.functions[function].scope);
         let count = declared.parameters.len();
         if !self.arity(call, count, count) {
@@ -313,12 +393,12 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding, call.span);
         }
         let mut inner = Context { locals: None, lexical: scope, ..cx.clone() };
-        for (parameter, value) in declared.parameters.iter().zip(arguments) {
-            inner = inner.with(&parameter.text, Meaning::Argument(value));
+        for (parameter, argument) in declared.parameters.iter().zip(arguments) {
+            inner = inner.with(&parameter.text, argument);
         }
         let before = self.found.len();
         self.inlining.push(function);
-        let mut value = self.value(&inner, &declared.body);
+        let mut value = self.element_or_zero(&inner, &declared.body, at);
         self.inlining.pop();
         self.tell_use(before, call);
         if let Some(Flaw::Misplaced(inside)) = &value.flaw
@@ -328,13 +408,13 @@ impl<'a> Elaborator<'a> {
             let because = Some(inside.because.clone().unwrap_or(because));
             let text = self.text(call.span);
             let misplaced = Misplaced { span: call.span, what: inside.what, text, because };
-            value.flaw = Some(Flaw::Misplaced(std::rc::Rc::new(misplaced)));
+            value.flaw = Some(Flaw::Misplaced(Rc::new(misplaced)));
         }
         value.at(call.span)
     }
 
     /// Findings inside a function's body say in which use of it they were made.
-    fn tell_use(&mut self, before: usize, call: &Call) {
+    pub(super) fn tell_use(&mut self, before: usize, call: &Call) {
         for finding in &mut self.found[before..] {
             let told = finding.labels.iter().any(|(_, label)| label.starts_with("in this use"));
             if !told && finding.severity == Severity::Error && !call.span.contains(finding.span) {
@@ -396,7 +476,7 @@ impl<'a> Elaborator<'a> {
         }
         let number = u32::try_from(table).expect("fewer than 2^32 tables fit in memory");
         let node = self.problem.dag.table(number, &orders, &nodes);
-        let unit = (derivative.is_none() && !unit.symbol.is_empty()).then(|| std::rc::Rc::new(unit));
+        let unit = (derivative.is_none() && !unit.symbol.is_empty()).then(|| Rc::new(unit));
         Value { node, dimension, unit, span: call.span, flaw }
     }
 }

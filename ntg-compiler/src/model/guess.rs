@@ -10,23 +10,22 @@ use super::elaborator::Elaborator;
 use super::problem::{Form, Guess, GuessKind, GuessScope};
 use super::scope::{Allow, Context, Entity, Point, look_up};
 use super::settle::Use;
+use super::shape::Shape;
 use super::suggest::nearest;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::NodeId;
 use crate::source::Span;
-use crate::syntax::ast::{
-    self, Assign, Event, Expr, GuessKind as Kind, ItemKind, Path, Route, Segment, Statement, Target,
-};
+use crate::syntax::ast::{Assign, Event, Expr, GuessKind as Kind, ItemKind, Path, Segment, Statement, Target};
 
 /// An output that is guessed.
-struct Guessed<'a> {
-    name: String,
-    index: Option<Form>,
-    dimension: Dimension,
+pub(super) struct Guessed<'a> {
+    pub(super) name: String,
+    pub(super) index: Option<Form>,
+    pub(super) dimension: Dimension,
     /// The context inside the scope that the output belongs to.
-    cx: Context<'a>,
-    span: Span,
+    pub(super) cx: Context<'a>,
+    pub(super) span: Span,
 }
 
 impl<'a> Elaborator<'a> {
@@ -41,6 +40,7 @@ impl<'a> Elaborator<'a> {
             for item in self.items[scope] {
                 if let ItemKind::Guess(guess) = &item.kind {
                     self.guess_statements(&cx, &guess.statements);
+                    self.settle_open();
                 }
             }
         }
@@ -56,8 +56,9 @@ impl<'a> Elaborator<'a> {
                     self.route(cx, route);
                 }
                 Statement::For(inner) => {
-                    if let Some((_, inside)) = self.range(cx, &inner.over) {
-                        self.guess_statements(&inside, &inner.body);
+                    if let Some((over, _)) = self.range(cx, &inner.over) {
+                        let name = Some(inner.over.index.text.as_str());
+                        self.repeat(cx, name, &over, &mut |this, cx, _| this.guess_statements(cx, &inner.body));
                     }
                 }
             }
@@ -76,18 +77,18 @@ impl<'a> Elaborator<'a> {
         let (inner, entity) = self.target(cx, outer, last)?;
         match entity {
             Entity::Output => {
-                let guessed = self.guessed_output(&inner, last, path.span)?;
-                let node = self.guess_value(&guessed.cx, value, guessed.dimension, path.span)?;
-                let scope = self.guess_scope(&guessed.cx)?;
-                let kind = GuessKind::Output { output: guessed.name, index: guessed.index, value: node };
-                self.push_guess(cx, scope, kind);
+                let shape = self.guessed_shape(&inner, entity, last, value)?;
+                self.for_elements(cx, shape.axes(), &[], &mut |this, cx, at| {
+                    let inner = Context { loops: cx.loops.clone(), ..inner.clone() };
+                    let _ = this.assign_output(cx, &inner, (last, path.span), value, at);
+                });
             }
             Entity::Variable(variable) => {
-                self.no_index(last, "a variable");
-                let dimension = self.variables[variable].1.unwrap_or(Dimension::NONE);
-                let node = self.guess_value(&inner, value, dimension, path.span)?;
-                let scope = self.any_scope(&inner);
-                self.push_guess(cx, scope, GuessKind::Variable(variable, node));
+                let shape = self.guessed_shape(&inner, entity, last, value)?;
+                self.for_elements(cx, shape.axes(), &[], &mut |this, cx, at| {
+                    let inner = Context { loops: cx.loops.clone(), ..inner.clone() };
+                    let _ = this.assign_variable(cx, &inner, variable, (last, path.span), value, at);
+                });
             }
             Entity::Duration(home) => {
                 self.no_index(last, "a duration");
@@ -97,7 +98,7 @@ impl<'a> Elaborator<'a> {
                     at.phase = None;
                 }
                 at.scope = home;
-                let node = self.guess_value(&at, value, self.time, path.span)?;
+                let node = self.guess_value(&at, value, &[], self.time, path.span)?;
                 let scope = self.guess_scope(&at)?;
                 self.push_guess(cx, scope, GuessKind::Duration(node));
             }
@@ -111,7 +112,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What a target names, and the context inside its path.
-    fn target(&mut self, cx: &Context<'a>, outer: &'a [Segment], last: &'a Segment) -> Option<(Context<'a>, Entity)> {
+    pub(super) fn target(&mut self, cx: &Context<'a>, outer: &'a [Segment], last: &'a Segment) -> Option<(Context<'a>, Entity)> {
         let inner = if outer.is_empty() { cx.clone() } else { self.enter_path(cx, outer)? };
         let inner = Context { lexical: inner.scope, ..inner };
         let name = last.name.text.as_str();
@@ -138,32 +139,92 @@ impl<'a> Elaborator<'a> {
         None
     }
 
-    fn guessed_output(&mut self, cx: &Context<'a>, segment: &'a Segment, span: Span) -> Option<Guessed<'a>> {
+    /// The shape of what is guessed, which its value has too, or is one number for every element.
+    fn guessed_shape(
+        &mut self,
+        cx: &Context<'a>,
+        entity: Entity,
+        segment: &'a Segment,
+        value: &'a Expr,
+    ) -> Option<Shape> {
+        let axes = self.axes_of(cx, entity, &segment.name.text)?;
+        let shape = self.indexed_shape(cx, segment, &axes, Shape::NUMBER)?;
+        let given = self.shape(cx, value)?;
+        if given.is_number() || given == shape {
+            return Some(shape);
+        }
+        let help = "give each element a value, or one number for all of them";
+        self.misfit_shapes((segment.span, &shape), (value.span, &given), help);
+        None
+    }
+
+    fn assign_output(
+        &mut self,
+        cx: &Context<'a>,
+        inner: &Context<'a>,
+        (segment, span): (&'a Segment, Span),
+        value: &'a Expr,
+        at: &[Form],
+    ) -> Option<()> {
+        let guessed = self.guessed_output(inner, segment, at, span)?;
+        let node = self.guess_value(&guessed.cx, value, at, guessed.dimension, span)?;
+        let scope = self.guess_scope(&guessed.cx)?;
+        let kind = GuessKind::Output { output: guessed.name, index: guessed.index, value: node };
+        self.push_guess(cx, scope, kind);
+        Some(())
+    }
+
+    fn assign_variable(
+        &mut self,
+        cx: &Context<'a>,
+        inner: &Context<'a>,
+        variable: usize,
+        (segment, span): (&'a Segment, Span),
+        value: &'a Expr,
+        at: &[Form],
+    ) -> Option<()> {
+        let axes = self.variable_axes.get(variable).cloned().unwrap_or_default();
+        if axes.is_empty() {
+            self.no_index(segment, "a variable");
+        }
+        let index = if axes.is_empty() { None } else { self.array_member(inner, segment, &axes, at)? };
+        let dimension = self.variables[variable].1.unwrap_or(Dimension::NONE);
+        let node = self.guess_value(inner, value, at, dimension, span)?;
+        let scope = self.any_scope(inner);
+        self.push_guess(cx, scope, GuessKind::Variable(variable, index, node));
+        Some(())
+    }
+
+    pub(super) fn guessed_output(
+        &mut self,
+        cx: &Context<'a>,
+        segment: &'a Segment,
+        at: &[Form],
+        span: Span,
+    ) -> Option<Guessed<'a>> {
         let scope = &self.scopes[cx.scope];
         let home = scope.phase.or_else(|| self.agents[scope.agent?].phases.first().copied())?;
         let name = segment.name.text.clone();
         let k = self.problem.phases[home].outputs.iter().position(|output| output.name == name)?;
         let dimension = self.output_dimensions[home][k];
-        let index = match (self.problem.phases[home].outputs[k].family, segment.indices.as_slice()) {
-            (Some(ends), [index]) => {
-                let form = self.form(cx, index)?;
-                if !self.check_index(cx, &form, ends, &name, index.span) {
-                    return None;
-                }
-                Some(form)
-            }
-            (None, []) => None,
-            (family, _) => {
-                self.wrong_indices(segment, family.is_some());
-                return None;
-            }
-        };
+        let axes = self.output_axes[home][k].clone();
+        let index = self.array_member(cx, segment, &axes, at)?;
         Some(Guessed { name, index, dimension, cx: cx.clone(), span })
     }
 
     /// A guessed value of the dimension of its target.
-    fn guess_value(&mut self, cx: &Context<'a>, expr: &'a Expr, dimension: Dimension, target: Span) -> Option<NodeId> {
-        let value = self.usable(cx, expr, Use::Guess)?;
+    pub(super) fn guess_value(
+        &mut self,
+        cx: &Context<'a>,
+        expr: &'a Expr,
+        at: &[Form],
+        dimension: Dimension,
+        target: Span,
+    ) -> Option<NodeId> {
+        let value = match at {
+            [] => self.usable(cx, expr, Use::Guess)?,
+            _ => self.usable_side(cx, expr, at, Use::Guess)?,
+        };
         let zero = self.problem.dag.constant(0.0);
         let target = Value::new(zero, dimension, target);
         if self.clash("compare", &target, &value) {
@@ -173,7 +234,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The stretch of time of a context.
-    fn guess_scope(&mut self, cx: &Context<'a>) -> Option<GuessScope> {
+    pub(super) fn guess_scope(&mut self, cx: &Context<'a>) -> Option<GuessScope> {
         let scope = &self.scopes[cx.scope];
         let agent = scope.agent?;
         match scope.phase {
@@ -188,7 +249,7 @@ impl<'a> Elaborator<'a> {
         self.guess_scope(cx).unwrap_or(GuessScope::Agent(0, first))
     }
 
-    fn push_guess(&mut self, cx: &Context<'a>, scope: GuessScope, kind: GuessKind) {
+    pub(super) fn push_guess(&mut self, cx: &Context<'a>, scope: GuessScope, kind: GuessKind) {
         self.problem.guesses.push(Guess { loops: (*cx.loops).clone(), scope, kind });
     }
 
@@ -209,7 +270,7 @@ impl<'a> Elaborator<'a> {
             self.report(finding.help("name it: `duration(agent) = ...`"));
             return None;
         };
-        let node = self.guess_value(&inner, value, self.time, span)?;
+        let node = self.guess_value(&inner, value, &[], self.time, span)?;
         match (event, &scope) {
             (Event::Duration, _) => self.push_guess(cx, scope, GuessKind::Duration(node)),
             (Event::Start, GuessScope::Agent(..)) => self.push_guess(cx, scope, GuessKind::Start(node)),
@@ -220,64 +281,5 @@ impl<'a> Elaborator<'a> {
             }
         }
         Some(())
-    }
-
-    fn route(&mut self, cx: &Context<'a>, route: &'a Route) -> Option<()> {
-        let mut outputs: Vec<Guessed<'a>> = Vec::new();
-        let mut sound = true;
-        for path in &route.outputs {
-            match self.route_output(cx, path) {
-                Some(guessed) => outputs.push(guessed),
-                None => sound = false,
-            }
-        }
-        let first = outputs.first().filter(|_| sound)?;
-        let scope = self.guess_scope(&first.cx.clone())?;
-        for other in &outputs {
-            if self.guess_scope(&other.cx.clone()).as_ref() != Some(&scope) {
-                let finding = Diagnostic::new(Code::NotGuessable, other.span, "a route is about one phase or agent");
-                self.report(finding.help("write a route for each"));
-                return None;
-            }
-        }
-        let mut points = Vec::new();
-        for point in &route.points {
-            points.push(self.route_point(point, &outputs)?);
-        }
-        if points.len() < 2 {
-            let finding = Diagnostic::new(Code::WrongCount, route.span, "a route has two points at least");
-            self.report(finding.help("write where it begins and where it ends"));
-            return None;
-        }
-        let outputs = outputs.into_iter().map(|guessed| (guessed.name, guessed.index)).collect();
-        self.push_guess(cx, scope, GuessKind::Route { outputs, points });
-        Some(())
-    }
-
-    fn route_output(&mut self, cx: &Context<'a>, path: &'a Path) -> Option<Guessed<'a>> {
-        let (last, outer) = path.segments.split_last()?;
-        let (inner, entity) = self.target(cx, outer, last)?;
-        if entity == Entity::Output {
-            return self.guessed_output(&inner, last, path.span);
-        }
-        let message = format!("`{}` is {}: a route leads through outputs", self.text(path.span), entity.describe());
-        let finding = Diagnostic::new(Code::NotGuessable, path.span, message);
-        self.report(finding.help("write it as a guess of its own: `name = value;`"));
-        None
-    }
-
-    fn route_point(&mut self, point: &'a ast::Point, outputs: &[Guessed<'a>]) -> Option<Vec<NodeId>> {
-        if point.coordinates.len() != outputs.len() {
-            let message = format!(
-                "this point has {} coordinates, but the route is about {} outputs",
-                point.coordinates.len(),
-                outputs.len()
-            );
-            let finding = Diagnostic::new(Code::WrongCount, point.span, message);
-            self.report(finding.help("write one coordinate for each output"));
-            return None;
-        }
-        let pairs = point.coordinates.iter().zip(outputs);
-        pairs.map(|(value, output)| self.guess_value(&output.cx, value, output.dimension, output.span)).collect()
     }
 }

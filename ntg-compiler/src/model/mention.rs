@@ -17,6 +17,7 @@ pub(super) fn mentioned(expr: &Expr) -> Vec<&str> {
                 }
             }
             ExprKind::Neg(inner) | ExprKind::Der { of: inner, .. } => open.push(inner),
+            ExprKind::Tuple(elements) => open.extend(elements),
             ExprKind::Sum(terms) => open.extend(terms.iter().map(|(_, term)| term)),
             ExprKind::Product(factors) => open.extend(factors.iter().map(|(_, factor)| factor)),
             ExprKind::Power(base, exponent) => open.extend([&**base, &**exponent]),

@@ -100,7 +100,7 @@ impl<'a> Elaborator<'a> {
         let cx = self.phase_context(k, Allow::Constants, Point::Nowhere);
         let cx = Context { scope: self.phases[k].scope, ..cx };
         let index = match after.indices.as_slice() {
-            [index] if !same => self.form(&cx, index),
+            [index] if !same => self.form(&cx, &index.first),
             _ => None,
         };
         let means = match (own, &index, self.problem.phases[k].family.clone()) {
@@ -369,7 +369,23 @@ impl<'a> Elaborator<'a> {
 
     /// What an expression is worth that must be usable at a place.
     pub(super) fn usable(&mut self, cx: &Context<'a>, expr: &'a ast::Expr, place: Use<'_>) -> Option<Value> {
+        if !self.is_number(cx, expr) {
+            return None;
+        }
         let value = self.value(cx, expr);
+        self.settle(value, place)
+    }
+
+    /// The same for an element of an expression, or for a number that stands for every element.
+    pub(super) fn usable_side(
+        &mut self,
+        cx: &Context<'a>,
+        expr: &'a ast::Expr,
+        at: &[Form],
+        place: Use<'_>,
+    ) -> Option<Value> {
+        let spread = at.is_empty() || self.shape(cx, expr)?.is_number();
+        let value = self.element(cx, expr, if spread { &[] } else { at });
         self.settle(value, place)
     }
 }

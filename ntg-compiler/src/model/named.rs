@@ -9,13 +9,18 @@
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::kinds::Kind;
-use super::problem::{Domain, Form, Loop, Named};
+use super::problem::{Domain, Form, Leaf, Loop, Named};
 use super::scope::{Allow, Context, Point, ScopeId};
+use super::shape::{Ends, Shape};
 use super::units;
 use super::value::{Flaw, Value};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
+use crate::syntax::ast::Ident;
 use ntg_structure::Unit;
+
+/// The most elements of a vector written one by one that results show: a formula for each is part of every one.
+const MOST_SHOWN: i64 = 32;
 
 /// How the first definition of a name in an agent is shown: the others of that name follow it.
 pub(super) struct Shown {
@@ -40,9 +45,42 @@ impl<'a> Elaborator<'a> {
             if self.definitions[definition].is_const {
                 let scope = self.definitions[definition].scope;
                 let span = self.definitions[definition].span;
-                self.definition(&Context::of(scope, Allow::Constants), definition, None, span);
+                self.unused_constant(&Context::of(scope, Allow::Constants), definition, span);
             }
         }
+    }
+
+    fn unused_constant(&mut self, cx: &Context<'a>, definition: usize, span: Span) {
+        let Some(axes) = self.checked_axes(cx, definition) else { return };
+        let extents: Vec<i64> = axes.iter().filter_map(Ends::extent).collect();
+        self.for_elements(cx, &extents, &[], &mut |this, cx, at| {
+            let value = this.definition(cx, definition, at.to_vec(), span);
+            this.settle(value, super::settle::Use::Point);
+        });
+        self.settle_open();
+    }
+
+    /// The axes of a definition whose stated size was held against its value.
+    fn checked_axes(&mut self, cx: &Context<'a>, definition: usize) -> Option<Vec<Ends>> {
+        let axes = self.definition_axes(cx, definition)?;
+        let declared = &self.definitions[definition];
+        if !declared.is_sized() {
+            return Some(axes);
+        }
+        let (name, is_const) = (declared.name, declared.is_const);
+        let stated: Vec<i64> = axes.iter().skip(declared.indices().count()).filter_map(Ends::extent).collect();
+        let value = self.member_shape(cx, definition)?;
+        let fits = match &value {
+            Shape::Any => true,
+            Shape::Of(found) => *found == stated || (is_const && found.is_empty()),
+        };
+        if !fits {
+            let expr = self.definitions[definition].value;
+            let help = "state the size that the value has, or leave it out";
+            self.misfit_shapes((name.span, &Shape::Of(stated)), (expr.span, &value), help);
+            return None;
+        }
+        Some(axes)
     }
 
     fn named_definition(&mut self, definition: usize, shown: &mut Vec<Shown>) {
@@ -108,14 +146,73 @@ impl<'a> Elaborator<'a> {
     fn in_context(&mut self, cx: &Context<'a>, definition: usize) -> Option<(Context<'a>, Option<Loop>, Value)> {
         let span = self.definitions[definition].name.span;
         self.event = None;
-        let Some(range) = self.definitions[definition].family else {
-            let value = self.definition(cx, definition, None, span);
-            return Some((cx.clone(), None, value));
-        };
-        let (over, inner) = self.range(cx, range)?;
-        let inner = Context { locals: None, ..inner };
-        let value = self.definition(&inner, definition, Some(Form::index(over.index)), span);
-        Some((inner, Some(over), value))
+        let axes = self.checked_axes(cx, definition)?;
+        self.hidden_indices(cx, definition);
+        match axes.as_slice() {
+            [] => {
+                let value = self.definition(cx, definition, Vec::new(), span);
+                Some((cx.clone(), None, value))
+            }
+            [ends] => {
+                let over = self.new_index(ends.first.clone(), ends.last.clone());
+                let inner = Context { locals: None, ..cx.inside(over.clone()) };
+                let mut value = self.definition(&inner, definition, vec![Form::index(over.index)], span);
+                if Self::is_open(&value) {
+                    value = self.by_number(cx, definition, &over);
+                }
+                Some((inner, Some(over), value))
+            }
+            // Matrices and families of vectors are helpers: looked at, but not shown.
+            several => {
+                let extents: Vec<i64> = several.iter().filter_map(Ends::extent).collect();
+                let firsts: Vec<Form> = several.iter().map(|ends| ends.first.clone()).collect();
+                self.for_elements(cx, &extents, &[], &mut |this, cx, at| {
+                    let place = at.iter().zip(&firsts).filter_map(|(form, first)| {
+                        form.plus(1, first)?.plus(-1, &Form::number(1))
+                    });
+                    let value = this.definition(cx, definition, place.collect(), span);
+                    this.settle(value, super::settle::Use::Point);
+                });
+                self.settle_open();
+                None
+            }
+        }
+    }
+
+    /// Tells of indices of a family that hide other names.
+    fn hidden_indices(&mut self, cx: &Context<'a>, definition: usize) {
+        let indices: Vec<&'a Ident> = self.definitions[definition].indices().collect();
+        for index in indices {
+            self.bind_index(cx, index);
+        }
+    }
+
+    /// The members of a vector that are written one by one, as one function of the index: each is chosen by its number.
+    fn by_number(&mut self, cx: &Context<'a>, definition: usize, over: &Loop) -> Value {
+        let span = self.definitions[definition].name.span;
+        let (Some(first), Some(last)) = (over.first.as_number(), over.last.as_number()) else { return self.poison(span) };
+        if last - first >= MOST_SHOWN {
+            return self.poison(span);
+        }
+        let mut chosen: Option<Value> = None;
+        for k in (first..=last).rev() {
+            let value = self.definition(cx, definition, vec![Form::number(k)], span);
+            if !value.is_sound() {
+                return value;
+            }
+            chosen = Some(match chosen {
+                None => value,
+                Some(behind) => {
+                    let index = self.leaf(Leaf::Index(Form::index(over.index)));
+                    let limit = self.problem.dag.constant(k as f64);
+                    let here = self.problem.dag.less_eq(index, limit);
+                    let node = self.problem.dag.select(here, value.node, behind.node);
+                    let (dimension, unit) = (value.dimension.or(behind.dimension), value.unit.clone().or(behind.unit));
+                    Value { node, dimension, unit, span, flaw: None }
+                }
+            });
+        }
+        chosen.unwrap_or_else(|| self.poison(span))
     }
 
     fn push_named(

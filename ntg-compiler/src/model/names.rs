@@ -8,8 +8,9 @@ use std::rc::Rc;
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
-use super::problem::{At, Leaf};
+use super::problem::{At, Form, Leaf};
 use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up, visible};
+use super::shape::Ends;
 use super::suggest::nearest;
 use super::value::{Flaw, Misplaced, Value, What};
 use crate::diagnostic::{Code, Diagnostic};
@@ -18,10 +19,10 @@ use crate::syntax::ast::{Ident, Path, Segment};
 
 impl<'a> Elaborator<'a> {
     /// The meaning of a path as a value.
-    pub(super) fn path(&mut self, cx: &Context<'a>, path: &'a Path) -> Value {
+    pub(super) fn path(&mut self, cx: &Context<'a>, path: &'a Path, at: &[Form]) -> Value {
         let Some((last, outer)) = path.segments.split_last() else { return self.poison(path.span) };
         if outer.is_empty() {
-            return self.name(cx, last);
+            return self.name(cx, last, at);
         }
         if cx.allow < Allow::Guess {
             let text = self.text(path.span);
@@ -31,14 +32,14 @@ impl<'a> Elaborator<'a> {
         // Inside another scope its own names are meant, as numbers of the mission.
         let inner = Context { lexical: inner.scope, point: Point::Nowhere, ..inner };
         match self.inside(inner.scope, last.name.text.as_str()) {
-            Some(entity) => self.entity(&inner, entity, last, path.span),
+            Some(entity) => self.entity(&inner, entity, last, (path.span, at)),
             None => self.unknown(&inner, last, false),
         }
     }
 
     /// What a name means inside a phase or agent that a path leads to: its own names, in a phase also
     /// the definitions and outputs of its agent, which are templates of each phase.
-    fn inside(&self, scope: ScopeId, name: &str) -> Option<Entity> {
+    pub(super) fn inside(&self, scope: ScopeId, name: &str) -> Option<Entity> {
         let own = self.scopes[scope].names.get(name).map(|declared| declared.entity);
         own.or_else(|| {
             let outer = self.scopes[scope].parent.filter(|_| self.scopes[scope].phase.is_some())?;
@@ -52,19 +53,27 @@ impl<'a> Elaborator<'a> {
         })
     }
 
-    fn name(&mut self, cx: &Context<'a>, segment: &'a Segment) -> Value {
+    fn name(&mut self, cx: &Context<'a>, segment: &'a Segment, at: &[Form]) -> Value {
         let (text, span) = (segment.name.text.as_str(), segment.span);
-        if let Some(Meaning::Argument(value)) = cx.local(text) {
-            let value = value.clone().at(span);
-            self.no_index(segment, "an argument");
-            return value;
+        match cx.local(text) {
+            Some(Meaning::Argument(value)) => {
+                let value = value.clone().at(span);
+                self.no_index(segment, "an argument");
+                return value;
+            }
+            Some(Meaning::Lazy(lazy)) => {
+                let lazy = lazy.clone();
+                return self.lazy_element(cx, &lazy, segment, at).at(span);
+            }
+            Some(Meaning::Shaped(_)) => return self.misplaced_value(What::Variable, span, text, None),
+            Some(Meaning::Index(_)) | None => {}
         }
         if let Some(form) = self.index_in_sight(cx, text) {
             self.no_index(segment, "an index");
             return self.index_value(cx, &form, text, span);
         }
         match look_up(&self.scopes, cx.scope, text) {
-            Some((_, declared)) => self.entity(cx, declared.entity, segment, span),
+            Some((_, declared)) => self.entity(cx, declared.entity, segment, (span, at)),
             None => self.unknown(cx, segment, true),
         }
     }
@@ -138,21 +147,31 @@ impl<'a> Elaborator<'a> {
         (!path.is_empty()).then_some((path, scope))
     }
 
-    fn entity(&mut self, cx: &Context<'a>, entity: Entity, segment: &'a Segment, span: Span) -> Value {
+    fn entity(
+        &mut self,
+        cx: &Context<'a>,
+        entity: Entity,
+        segment: &'a Segment,
+        (span, at): (Span, &[Form]),
+    ) -> Value {
         match entity {
-            Entity::Definition(definition) => self.use_definition(cx, definition, segment, span),
-            Entity::Parameter(parameter) => self.parameter(cx, parameter, segment, span),
+            Entity::Definition(definition) => self.use_definition(cx, definition, segment, (span, at)),
+            Entity::Parameter(parameter) => self.parameter(cx, parameter, segment, (span, at)),
             Entity::Variable(variable) => {
-                self.no_index(segment, "a variable");
+                let axes = self.variable_axes.get(variable).cloned().unwrap_or_default();
+                if axes.is_empty() {
+                    self.no_index(segment, "a variable");
+                }
                 let dimension = self.variables[variable].1;
                 if cx.allow < Allow::All {
                     return self.misplaced_value(What::Variable, span, &segment.name.text, dimension);
                 }
-                let node = self.leaf(Leaf::Variable { variable });
+                let Some(index) = self.array_member(cx, segment, &axes, at) else { return self.poison(span) };
+                let node = self.leaf(Leaf::Variable { variable, index });
                 let unit = self.problem.variables.get(variable).map(|v| Rc::new(v.unit.clone()));
                 Value { node, dimension, unit, span, flaw: None }
             }
-            Entity::Output => self.output(cx, segment, span),
+            Entity::Output => self.output(cx, segment, (span, at)),
             Entity::Duration(scope) => {
                 self.no_index(segment, "a duration");
                 self.named_duration(cx, scope, &segment.name.text, span)
@@ -173,7 +192,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn parameter(&mut self, cx: &Context<'a>, parameter: usize, segment: &'a Segment, span: Span) -> Value {
+    fn parameter(&mut self, cx: &Context<'a>, parameter: usize, segment: &'a Segment, (span, at): (Span, &[Form])) -> Value {
         let dimension = self.parameters[parameter].1;
         let text = &segment.name.text;
         if cx.allow == Allow::Constants {
@@ -183,24 +202,14 @@ impl<'a> Elaborator<'a> {
         if declared.name.is_empty() {
             return self.poison(span); // Its declaration was refused.
         }
-        let (array, members) = (declared.array, declared.value.len() as i64);
         let unit = Some(Rc::new(declared.unit.clone()));
-        let index = match (array, segment.indices.as_slice()) {
-            (true, [index]) => {
-                let Some(form) = self.form(cx, index) else { return self.poison(span) };
-                if !self.check_index(cx, &form, (1, members), text, index.span) {
-                    return self.poison(span);
-                }
-                Some(form)
-            }
-            (false, []) => None,
-            _ => return self.wrong_indices(segment, array),
-        };
+        let axes = self.parameter_axes[parameter].clone();
+        let Some(index) = self.array_member(cx, segment, &axes, at) else { return self.poison(span) };
         let node = self.leaf(Leaf::Parameter { parameter, index });
         Value { node, dimension, unit, span, flaw: None }
     }
 
-    fn output(&mut self, cx: &Context<'a>, segment: &'a Segment, span: Span) -> Value {
+    fn output(&mut self, cx: &Context<'a>, segment: &'a Segment, (span, at): (Span, &[Form])) -> Value {
         let text = segment.name.text.as_str();
         let (point, phase) = (cx.point, self.scopes[cx.scope].phase);
         if cx.allow < Allow::All {
@@ -212,19 +221,10 @@ impl<'a> Elaborator<'a> {
         let Some(home) = phase.or_else(agent_phase) else { return self.poison(span) };
         let outputs = self.problem.phases.get(home).map(|phase| phase.outputs.as_slice()).unwrap_or_default();
         let Some(output) = outputs.iter().position(|o| o.name == text) else { return self.poison(span) };
-        let (unit, family) = (outputs[output].unit.clone(), outputs[output].family);
+        let unit = outputs[output].unit.clone();
+        let axes = self.output_axes[home][output].clone();
         let dimension = self.output_dimensions[home][output];
-        let index = match (family, segment.indices.as_slice()) {
-            (Some(ends), [index]) => {
-                let Some(form) = self.form(cx, index) else { return self.poison(span) };
-                if !self.check_index(cx, &form, ends, text, index.span) {
-                    return self.poison(span);
-                }
-                Some(form)
-            }
-            (None, []) => None,
-            _ => return self.wrong_indices(segment, family.is_some()),
-        };
+        let Some(index) = self.array_member(cx, segment, &axes, at) else { return self.poison(span) };
         let at = match point {
             Point::Path | Point::Start | Point::End => At::Here,
             Point::MissionStart => At::Start,
@@ -238,6 +238,19 @@ impl<'a> Elaborator<'a> {
         Value::new(node, dimension, span).shown_in(Some(Rc::new(unit)))
     }
 
+    /// Which member of an array is meant, if it is one; none where something is wrong with the indices.
+    #[expect(clippy::option_option, reason = "the outer one says whether it could be found out")]
+    pub(super) fn array_member(
+        &mut self,
+        cx: &Context<'a>,
+        segment: &'a Segment,
+        axes: &[Ends],
+        at: &[Form],
+    ) -> Option<Option<Form>> {
+        let place = self.place(cx, segment, axes, at)?;
+        if axes.is_empty() { Some(None) } else { self.member(axes, &place).map(Some) }
+    }
+
     /// Tells of an index where none may stand; the value is as without it.
     pub(super) fn no_index(&mut self, segment: &Segment, what: &str) {
         if let Some(index) = segment.indices.first() {
@@ -247,14 +260,19 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    pub(super) fn wrong_indices(&mut self, segment: &Segment, is_array: bool) -> Value {
+    pub(super) fn wrong_indices(&mut self, segment: &Segment, axes: usize) -> Value {
         let name = &segment.name.text;
-        let message = match (is_array, segment.indices.len()) {
-            (true, 0) => format!("`{name}` is an array: say which member"),
-            (true, n) => format!("`{name}` takes one index, not {n}"),
-            (false, _) => format!("`{name}` is no array"),
+        let message = match (axes, segment.indices.len()) {
+            (0, _) => format!("`{name}` is no array"),
+            (_, 0) => format!("`{name}` is an array: say which member"),
+            (1, n) => format!("`{name}` takes one index, not {n}"),
+            (m, n) => format!("`{name}` takes {m} indices, not {n}"),
         };
-        let help = if is_array { format!("write `{name}[1]` or `{name}[i]`") } else { format!("write `{name}` alone") };
+        let help = match axes {
+            0 => format!("write `{name}` alone"),
+            1 => format!("write `{name}[1]` or `{name}[i]`"),
+            _ => format!("write `{name}[1, 1]` or `{name}[i, j]`"),
+        };
         let finding = Diagnostic::new(Code::WrongIndices, segment.span, message).help(help);
         self.refuse(finding, segment.span)
     }

@@ -61,6 +61,7 @@ impl<'a> Elaborator<'a> {
         };
         let mut value = self.usable(&cx, &objective.value, Use::Objective)?;
         self.event = None;
+        self.settle_open();
         if let Some(unit) = &objective.unit {
             let what = objective.name.as_ref().map_or("this term".to_owned(), |name| format!("`{}`", name.text));
             value = self.declared_unit(value, unit, &what);

@@ -11,12 +11,14 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, doc_text};
 use super::problem::Output;
 use super::scope::{Allow, Context, ScopeId};
+use super::shape::Ends;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{self, ItemKind, OutputName};
 
 /// One declared output.
 struct Declared {
     output: Output,
+    axes: Vec<Ends>,
     dimension: Dimension,
     has_unit: bool,
 }
@@ -42,6 +44,7 @@ impl<'a> Elaborator<'a> {
                 self.report(finding.help("declare one: `output x: spline(order = 5, intervals = 8);`"));
             }
             self.output_dimensions.push(all.iter().map(|declared| declared.dimension).collect());
+            self.output_axes.push(all.iter().map(|declared| declared.axes.clone()).collect());
             self.problem.phases[phase].outputs = all.into_iter().map(|declared| declared.output).collect();
         }
     }
@@ -58,7 +61,7 @@ impl<'a> Elaborator<'a> {
                     .help("leave the unit out: the phase only replaces the spline");
             self.report(finding);
         }
-        if own.output.family != known.output.family {
+        if own.axes != known.axes {
             let message = format!("`{name}` has another size outside the phase");
             let finding = Diagnostic::new(Code::WrongCount, own.output.span, message)
                 .label(known.output.span, "declared here")
@@ -89,11 +92,8 @@ impl<'a> Elaborator<'a> {
 
     fn output_declaration(&mut self, scope: ScopeId, name: &'a OutputName, doc: String, spline: &Spline) -> Declared {
         let cx = Context::of(scope, Allow::Constants);
-        let family = name.size.as_ref().map(|size| {
-            let first = self.whole(&cx, &size.first, "the first index of an array");
-            let last = self.whole(&cx, &size.last, "the last index of an array");
-            (first.unwrap_or(1), last.unwrap_or(0))
-        });
+        let axes = name.shape.as_ref().map_or(Vec::new(), |shape| self.declared_axes(&cx, shape));
+        let family = self.family_of(&axes);
         let unit = name.unit.as_ref().and_then(|unit| self.unit(unit));
         let has_unit = name.unit.is_some();
         let (dimension, unit) = match unit {
@@ -102,7 +102,33 @@ impl<'a> Elaborator<'a> {
         };
         let output =
             Output { name: name.name.text.clone(), doc, unit, family, spline: spline.clone(), span: name.name.span };
-        Declared { output, dimension, has_unit }
+        Declared { output, axes, dimension, has_unit }
+    }
+
+    /// The axes of something that is declared with a size; empty ones where the size is wrong.
+    pub(super) fn declared_axes(&mut self, cx: &Context<'a>, shape: &'a ast::Shape) -> Vec<Ends> {
+        let mut axes = Vec::new();
+        for axis in &shape.axes {
+            let first = match &axis.first {
+                Some(first) => self.whole(cx, first, "the first index of an array"),
+                None => Some(1),
+            };
+            let last = self.whole(cx, &axis.last, "the last index of an array");
+            axes.push(Ends::between(first.unwrap_or(1), last.unwrap_or(0)));
+        }
+        axes
+    }
+
+    /// The members of an array: those of its one axis, or as many as it has elements, by rows.
+    pub(super) fn family_of(&self, axes: &[Ends]) -> Option<(i64, i64)> {
+        match axes {
+            [] => None,
+            [only] => only.numbers(),
+            _ => {
+                let extents = axes.iter().map(|ends| ends.extent().unwrap_or(0));
+                Some((1, extents.fold(1, i64::saturating_mul)))
+            }
+        }
     }
 
     /// The spline as written; a stand-in where it is wrong.

@@ -10,7 +10,7 @@ use super::suggest::nearest;
 use super::time::Stretch;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{Path, Segment};
+use crate::syntax::ast::{Expr, Index, Path, Segment};
 
 impl<'a> Elaborator<'a> {
     /// The context inside a path, `uav[2].strike`; what is wrong with it is told.
@@ -66,6 +66,7 @@ impl<'a> Elaborator<'a> {
         match (family, segment.indices.as_slice()) {
             (None, []) => Some(None),
             (Some(family), [index]) => {
+                let index = self.one_index(index)?;
                 let form = self.form(cx, index)?;
                 if let (Some(first), Some(last)) = (family.first.as_number(), family.last.as_number())
                     && !self.check_index(cx, &form, (first, last), name, index.span)
@@ -90,6 +91,16 @@ impl<'a> Elaborator<'a> {
                 None
             }
         }
+    }
+
+    /// An index that names one member; told where it is a slice.
+    pub(super) fn one_index(&mut self, index: &'a Index) -> Option<&'a Expr> {
+        if index.last.is_some() {
+            let message = format!("one member is meant here, `{}` are several", self.text(index.span));
+            self.report(Diagnostic::new(Code::WrongIndices, index.span, message).help("write one index"));
+            return None;
+        }
+        Some(&index.first)
     }
 
     /// Tells of a segment that is no phase or agent; `outer` is the segment before it.

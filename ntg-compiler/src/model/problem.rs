@@ -86,6 +86,8 @@ pub enum Leaf {
     Variable {
         /// Index into `Problem::variables`.
         variable: usize,
+        /// The member, when it is an array.
+        index: Option<Form>,
     },
     /// An index expression as a number.
     Index(Form),
@@ -143,7 +145,9 @@ pub struct Variable {
     pub doc: String,
     /// The unit in which it is shown.
     pub unit: Unit,
-    /// Its bounds.
+    /// Its members, when it is an array (ends are constants).
+    pub family: Option<Loop>,
+    /// Its bounds, those of each member for an array.
     pub bounds: Bounds,
     /// Where it is declared.
     pub span: Span,
@@ -344,8 +348,8 @@ pub enum GuessKind {
     },
     /// The duration of the scope, seconds.
     Duration(NodeId),
-    /// A declared variable.
-    Variable(usize, NodeId),
+    /// A declared variable: which, its member when it is an array, and its value.
+    Variable(usize, Option<Form>, NodeId),
     /// The start of the scope's agent, seconds.
     Start(NodeId),
 }

@@ -11,9 +11,10 @@ use ntg_structure::{Parameter, Unit};
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Steps, doc_text};
-use super::problem::{Bounds, Continuation, Variable};
+use super::problem::{Bounds, Continuation, Form, Loop, Variable};
 use super::scope::{Allow, Context, Entity, PROBLEM};
 use super::settle::Use;
+use super::shape::{Ends, Shape};
 use super::units;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
@@ -26,6 +27,8 @@ struct Numbers {
     values: Vec<f64>,
     dimension: Option<Dimension>,
     unit: Option<Rc<Unit>>,
+    /// How they were written: rows of a matrix among them.
+    shape: Shape,
 }
 
 impl<'a> Elaborator<'a> {
@@ -34,6 +37,7 @@ impl<'a> Elaborator<'a> {
         let blank =
             Parameter { name: String::new(), doc: String::new(), unit: Unit::default(), array: false, value: vec![] };
         self.problem.parameters = vec![blank; self.parameters.len()];
+        self.parameter_axes = vec![Vec::new(); self.parameters.len()];
         let mut done = vec![false; self.parameters.len()];
         for item in self.items[PROBLEM] {
             let doc = doc_text(&item.doc);
@@ -91,8 +95,30 @@ impl<'a> Elaborator<'a> {
         let cx = Context::of(PROBLEM, Allow::Constants);
         let name = &param.name.text;
         let what = format!("the default of `{name}`");
-        let size = param.size.as_ref().map(|size| (self.whole(&cx, size, "the size of an array"), size.span));
+        let axes = param.shape.as_ref().map(|shape| (self.declared_axes(&cx, shape), shape.span));
+        if let Some((axes, _)) = &axes {
+            self.parameter_axes[k] = axes.iter().map(|ends| Ends::to(ends.extent().unwrap_or(0))).collect();
+        }
+        let size = axes.as_ref().map(|(axes, span)| {
+            let sizes: Option<Vec<i64>> = axes.iter().map(Ends::extent).collect();
+            (sizes.map(|sizes| sizes.iter().copied().fold(1, i64::saturating_mul)), *span)
+        });
         let Some(numbers) = self.numbers(&cx, &param.default, &what) else { return };
+        if let (Some((axes, span)), Shape::Of(given)) = (&axes, &numbers.shape)
+            && axes.len() > 1
+            && !given.is_empty()
+        {
+            let wanted: Vec<i64> = axes.iter().filter_map(Ends::extent).collect();
+            if *given != wanted {
+                let (wanted, given) = (Shape::Of(wanted), numbers.shape.clone());
+                let message = format!("`{name}` is {}, but its default is {}", wanted.describe(), given.describe());
+                let finding = Diagnostic::new(Code::WrongCount, param.default.span, message)
+                    .label(param.default.span, given.describe())
+                    .label(*span, wanted.describe());
+                self.report(finding.help("write the rows in parentheses: `((1, 0), (0, 1))`"));
+                return;
+            }
+        }
         let mut values = numbers.values;
         match size {
             None if param.default.is_tuple && values.len() != 1 => {
@@ -118,7 +144,7 @@ impl<'a> Elaborator<'a> {
         let unit = numbers.unit.map_or_else(|| units::si(&dimension), |unit| (*unit).clone());
         self.parameters[k].1 = Some(dimension);
         self.problem.parameters[k] =
-            Parameter { name: name.clone(), doc, unit, array: param.size.is_some(), value: values };
+            Parameter { name: name.clone(), doc, unit, array: param.shape.is_some(), value: values };
     }
 
     /// Constants of one dimension, in SI units.
@@ -126,22 +152,30 @@ impl<'a> Elaborator<'a> {
         let mut all: Vec<f64> = Vec::new();
         let mut joined: Option<Value> = None;
         let mut sound = true;
+        let rows = if values.is_tuple && values.elements.len() > 1 {
+            self.tuple_shape(cx, &values.elements)?
+        } else {
+            self.shape(cx, values.elements.first()?)?
+        };
         for element in &values.elements {
-            let Some(constant) = self.constant(cx, element, what) else {
-                sound = false;
-                continue;
-            };
-            all.push(constant.value);
-            let node = self.problem.dag.constant(constant.value);
-            let (dimension, unit) = (constant.dimension, constant.unit);
-            let value = Value { node, dimension, unit, span: element.span, flaw: None };
-            joined = Some(match joined {
-                Some(first) => self.alike("(..., ...)", first, &value, node),
-                None => value,
-            });
+            let shape = self.shape(cx, element)?;
+            for at in places(shape.axes()) {
+                let Some(constant) = self.constant_element(cx, element, &at, what) else {
+                    sound = false;
+                    continue;
+                };
+                all.push(constant.value);
+                let node = self.problem.dag.constant(constant.value);
+                let (dimension, unit) = (constant.dimension, constant.unit);
+                let value = Value { node, dimension, unit, span: element.span, flaw: None };
+                joined = Some(match joined {
+                    Some(first) => self.alike("(..., ...)", first, &value, node),
+                    None => value,
+                });
+            }
         }
         let joined = joined.filter(|joined| sound && joined.is_sound())?;
-        Some(Numbers { values: all, dimension: joined.dimension, unit: joined.unit })
+        Some(Numbers { values: all, dimension: joined.dimension, unit: joined.unit, shape: rows })
     }
 
     fn continuation(&mut self, k: usize, continuation: &'a ast::Continuation, declares: Option<String>) {
@@ -206,10 +240,9 @@ impl<'a> Elaborator<'a> {
             seen += 1;
             let name = &variable.name.text;
             let what = format!("a bound of `{name}`");
-            let (bounds, joined) = match &variable.bounds {
-                Some(bounds) => self.bounds(&cx, bounds, &what),
-                None => (Bounds::default(), None),
-            };
+            let axes = variable.shape.as_ref().map_or(Vec::new(), |shape| self.declared_axes(&cx, shape));
+            let (family, bounds, joined) = self.variable_bounds(&cx, variable, &axes, &what);
+            self.variable_axes.push(axes);
             let declared = variable.unit.as_ref().and_then(|unit| self.unit(unit));
             let mut dimension = joined.as_ref().and_then(|value| value.dimension);
             let mut unit = joined.and_then(|value| value.unit).map(|unit| (*unit).clone());
@@ -227,14 +260,62 @@ impl<'a> Elaborator<'a> {
             self.variables[k].1 = Some(dimension);
             let unit = unit.unwrap_or_else(|| units::si(&dimension));
             let doc = doc_text(&item.doc);
-            self.problem.variables.push(Variable { name: name.clone(), doc, unit, bounds, span: variable.name.span });
+            let (name, span) = (name.clone(), variable.name.span);
+            self.problem.variables.push(Variable { name, doc, unit, family, bounds, span });
         }
+    }
+
+    /// The bounds of a variable, for an array those of each member.
+    fn variable_bounds(
+        &mut self,
+        cx: &Context<'a>,
+        variable: &'a ast::Variable,
+        axes: &[Ends],
+        what: &str,
+    ) -> (Option<Loop>, Bounds, Option<Value>) {
+        let family = self.family_of(axes);
+        let over = family.map(|(first, last)| self.new_index(Form::number(first), Form::number(last)));
+        let Some(bounds) = &variable.bounds else { return (over, Bounds::default(), None) };
+        let Some(over) = over else {
+            let (nodes, joined) = self.bounds(cx, bounds, what);
+            return (None, nodes, joined);
+        };
+        let inner = cx.inside(over.clone());
+        let member = [Form::index(over.index)];
+        let shapes: Vec<Option<Shape>> =
+            bounds.lower.iter().chain(&bounds.upper).map(|end| self.shape(&inner, end)).collect();
+        let own = Shape::Of(axes.iter().filter_map(Ends::extent).collect());
+        for (end, shape) in bounds.lower.iter().chain(&bounds.upper).zip(&shapes) {
+            let Some(shape) = shape.as_ref().filter(|shape| !shape.is_number()) else { continue };
+            if *shape != own || axes.len() > 1 {
+                self.misfit_shapes((variable.name.span, &own), (end.span, shape), "one bound serves all members");
+                return (Some(over), Bounds::default(), None);
+            }
+        }
+        let (nodes, joined) = self.bounds_at(&inner, bounds, &member, what);
+        if let Some(open) = self.opened.take() {
+            let message = "the bounds of an array are one formula for all of its members";
+            let finding = Diagnostic::new(Code::NotWhole, open.span, message);
+            self.report(finding.help("give them in a `param` of the same size"));
+        }
+        (Some(over), nodes, joined)
     }
 
     /// Bounds made of parameters, and their common dimension.
     pub(super) fn bounds(&mut self, cx: &Context<'a>, bounds: &'a ast::Bounds, what: &str) -> (Bounds, Option<Value>) {
-        let lower = bounds.lower.as_ref().and_then(|end| self.bound(cx, end, what));
-        let upper = bounds.upper.as_ref().and_then(|end| self.bound(cx, end, what));
+        self.bounds_at(cx, bounds, &[], what)
+    }
+
+    /// The same for one element.
+    fn bounds_at(
+        &mut self,
+        cx: &Context<'a>,
+        bounds: &'a ast::Bounds,
+        at: &[Form],
+        what: &str,
+    ) -> (Bounds, Option<Value>) {
+        let lower = bounds.lower.as_ref().and_then(|end| self.bound_at(cx, end, at, what));
+        let upper = bounds.upper.as_ref().and_then(|end| self.bound_at(cx, end, at, what));
         let nodes = Bounds { lower: lower.as_ref().map(|v| v.node), upper: upper.as_ref().map(|v| v.node) };
         self.crossing(&nodes, bounds.span);
         let joined = match (lower, upper) {
@@ -249,7 +330,13 @@ impl<'a> Elaborator<'a> {
 
     /// One expression of parameters.
     pub(super) fn bound(&mut self, cx: &Context<'a>, expr: &'a Expr, what: &str) -> Option<Value> {
-        let value = self.value(&cx.allowing(Allow::Parameters), expr);
+        self.bound_at(cx, expr, &[], what)
+    }
+
+    fn bound_at(&mut self, cx: &Context<'a>, expr: &'a Expr, at: &[Form], what: &str) -> Option<Value> {
+        let cx = cx.allowing(Allow::Parameters);
+        let spread = at.is_empty() || self.shape(&cx, expr)?.is_number();
+        let value = self.element(&cx, expr, if spread { &[] } else { at });
         self.settle(value, Use::Bound(what))
     }
 
@@ -262,6 +349,19 @@ impl<'a> Elaborator<'a> {
             self.report(Diagnostic::new(Code::BoundsCross, span, message).help("exchange the two bounds"));
         }
     }
+}
+
+/// Every place in a shape, by rows.
+fn places(axes: &[i64]) -> Vec<Vec<Form>> {
+    let mut all = vec![vec![]];
+    for n in axes {
+        all = all.into_iter().flat_map(|at: Vec<Form>| (1..=*n).map(move |k| {
+            let mut at = at.clone();
+            at.push(Form::number(k));
+            at
+        })).collect();
+    }
+    all
 }
 
 /// The largest number of members that one default may stand for.

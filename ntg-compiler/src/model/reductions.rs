@@ -1,9 +1,9 @@
 //! Sums, products and extremes over an index. They stay reductions: nothing is unrolled.
 
 use super::elaborator::Elaborator;
-use super::problem::Loop;
-use super::scope::Context;
-use super::value::{Flaw, Value};
+use super::problem::{Form, Loop};
+use super::scope::{Context, Meaning};
+use super::value::{Flaw, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Fold, NodeId};
 use crate::source::Span;
@@ -11,12 +11,12 @@ use crate::syntax::ast::{Expr, ReduceOp, Reduction};
 
 impl<'a> Elaborator<'a> {
     /// `sum(i in 1 .. N, e)` and its sisters.
-    pub(super) fn reduction(&mut self, cx: &Context<'a>, reduction: &'a Reduction, span: Span) -> Value {
+    pub(super) fn reduction(&mut self, cx: &Context<'a>, reduction: &'a Reduction, at: &[Form], span: Span) -> Value {
         match reduction.op {
-            ReduceOp::Sum => self.reduce(cx, reduction, Fold::Sum, span),
-            ReduceOp::Min => self.reduce(cx, reduction, Fold::Min, span),
-            ReduceOp::Max => self.reduce(cx, reduction, Fold::Max, span),
-            ReduceOp::Product => self.reduce(cx, reduction, Fold::Product, span),
+            ReduceOp::Sum => self.reduce(cx, reduction, (Fold::Sum, at), span),
+            ReduceOp::Min => self.reduce(cx, reduction, (Fold::Min, &[]), span),
+            ReduceOp::Max => self.reduce(cx, reduction, (Fold::Max, &[]), span),
+            ReduceOp::Product => self.reduce(cx, reduction, (Fold::Product, &[]), span),
             ReduceOp::SmoothMax => match &reduction.width {
                 Some(width) => self.smooth_reduction(cx, reduction, width, span),
                 None => self.poison(span),
@@ -24,9 +24,33 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn reduce(&mut self, cx: &Context<'a>, reduction: &'a Reduction, fold: Fold, span: Span) -> Value {
+    fn reduce(
+        &mut self,
+        cx: &Context<'a>,
+        reduction: &'a Reduction,
+        (fold, at): (Fold, &[Form]),
+        span: Span,
+    ) -> Value {
         let Some((over, inner)) = self.range(cx, &reduction.over) else { return self.poison(span) };
-        let body = self.value(&inner, &reduction.body);
+        self.reduce_over(cx, reduction, (fold, at), (&over, &inner), span)
+    }
+
+    /// The members of a part of the range, in one formula where there is one.
+    fn reduce_over(
+        &mut self,
+        cx: &Context<'a>,
+        reduction: &'a Reduction,
+        (fold, at): (Fold, &[Form]),
+        (over, inner): (&Loop, &Context<'a>),
+        span: Span,
+    ) -> Value {
+        let body = self.element_or_zero(inner, &reduction.body, at);
+        if let Some(Flaw::Open(open)) = body.flaw {
+            if open.index != over.index {
+                return body.at(span);
+            }
+            return self.reduce_parts(cx, reduction, (fold, at), (over, open), span);
+        }
         if let (Fold::Product, Some(dimension), true) = (fold, body.dimension, body.is_sound())
             && !dimension.is_none()
         {
@@ -39,11 +63,54 @@ impl<'a> Elaborator<'a> {
         if matches!(fold, Fold::Min | Fold::Max) && body.is_sound() {
             self.reduction_kink(reduction, body.node);
         }
-        let node = self.folded(fold, &over, body.node);
+        let node = self.folded(fold, over, body.node);
         body.map(node, body.dimension, span).shown_in(body.unit.clone())
     }
 
-    fn folded(&mut self, fold: Fold, over: &Loop, body: NodeId) -> NodeId {
+    /// The parts of a range in which the index is known well enough, joined.
+    fn reduce_parts(
+        &mut self,
+        cx: &Context<'a>,
+        reduction: &'a Reduction,
+        (fold, at): (Fold, &[Form]),
+        (over, open): (&Loop, OpenIndex),
+        span: Span,
+    ) -> Value {
+        let Some(parts) = self.parts(&open, over) else {
+            return match self.opened.take() {
+                Some(outer) => self.open(outer),
+                None => self.poison(span),
+            };
+        };
+        let name = reduction.over.index.text.as_str();
+        let mut total: Option<Value> = None;
+        for (first, last) in parts {
+            let value = if first == last {
+                let inner = cx.with(name, Meaning::Index(Form::number(first)));
+                self.element_or_zero(&inner, &reduction.body, at)
+            } else {
+                let part = self.new_index(Form::number(first), Form::number(last));
+                let inner = cx.inside(part.clone()).with(name, Meaning::Index(Form::index(part.index)));
+                self.reduce_over(cx, reduction, (fold, at), (&part, &inner), span)
+            };
+            total = Some(match total {
+                None => value,
+                Some(so_far) => {
+                    let dag = &mut self.problem.dag;
+                    let node = match fold {
+                        Fold::Sum => dag.add(so_far.node, value.node),
+                        Fold::Product => dag.mul(so_far.node, value.node),
+                        Fold::Min => dag.min(so_far.node, value.node),
+                        Fold::Max => dag.max(so_far.node, value.node),
+                    };
+                    self.alike("add", so_far, &value, node)
+                }
+            });
+        }
+        total.unwrap_or_else(|| self.poison(span)).at(span)
+    }
+
+    pub(super) fn folded(&mut self, fold: Fold, over: &Loop, body: NodeId) -> NodeId {
         let range = self.new_range(over);
         self.problem.dag.reduce(fold, over.index.0, range, body)
     }

@@ -9,6 +9,8 @@ use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::problem::{Form, Loop, PhaseAt};
+use super::element::Lazy;
+use super::shape::Shape;
 use super::value::Value;
 use crate::source::Span;
 use crate::syntax::ast;
@@ -117,17 +119,21 @@ pub(super) enum Allow {
 /// A name that an expression brings along.
 pub(super) struct Local<'a> {
     pub(super) name: &'a str,
-    pub(super) meaning: Meaning,
+    pub(super) meaning: Meaning<'a>,
     pub(super) next: Option<Rc<Local<'a>>>,
 }
 
 /// What a local name stands for.
 #[derive(Clone)]
-pub(super) enum Meaning {
+pub(super) enum Meaning<'a> {
     /// An index.
     Index(Form),
     /// A function's argument.
     Argument(Value),
+    /// A function's argument that is a vector.
+    Lazy(Rc<Lazy<'a>>),
+    /// Something of which only the shape is known.
+    Shaped(Shape),
 }
 
 /// Where and as what an expression is given a meaning.
@@ -149,6 +155,8 @@ pub(super) struct Context<'a> {
     pub(super) loops: Rc<Vec<Loop>>,
     /// Indices and arguments in sight, the innermost first.
     pub(super) locals: Option<Rc<Local<'a>>>,
+    /// The members around the expression that are made one by one.
+    pub(super) members: Rc<Vec<i64>>,
 }
 
 impl<'a> Context<'a> {
@@ -163,6 +171,7 @@ impl<'a> Context<'a> {
             allow,
             loops: Rc::default(),
             locals: None,
+            members: Rc::default(),
         }
     }
 
@@ -177,7 +186,7 @@ impl<'a> Context<'a> {
     }
 
     /// The same context with one more name.
-    pub(super) fn with(&self, name: &'a str, meaning: Meaning) -> Self {
+    pub(super) fn with(&self, name: &'a str, meaning: Meaning<'a>) -> Self {
         let next = self.locals.clone();
         Self { locals: Some(Rc::new(Local { name, meaning, next })), ..self.clone() }
     }
@@ -189,8 +198,15 @@ impl<'a> Context<'a> {
         Self { loops: Rc::new(loops), ..self.clone() }
     }
 
+    /// The same context for one member of a range that is made by itself.
+    pub(super) fn at_member(&self, member: i64) -> Self {
+        let mut members = (*self.members).clone();
+        members.push(member);
+        Self { members: Rc::new(members), ..self.clone() }
+    }
+
     /// The local name, if there is one.
-    pub(super) fn local(&self, name: &str) -> Option<&Meaning> {
+    pub(super) fn local(&self, name: &str) -> Option<&Meaning<'a>> {
         let mut next = self.locals.as_deref();
         while let Some(local) = next {
             if local.name == name {

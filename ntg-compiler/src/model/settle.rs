@@ -29,6 +29,10 @@ impl Elaborator<'_> {
         match &value.flaw {
             None => Some(value),
             Some(Flaw::Reported) => None,
+            Some(Flaw::Open(open)) => {
+                self.opened.get_or_insert(*open);
+                None
+            }
             Some(Flaw::Misplaced(misplaced)) => {
                 let finding = misplacement(misplaced, place);
                 self.report(finding);

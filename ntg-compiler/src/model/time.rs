@@ -152,7 +152,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The context of an expression that is taken along, or at an end of, a stretch.
-    fn on(&self, cx: &Context<'a>, stretch: &Stretch, point: Point) -> Context<'a> {
+    pub(super) fn on(&self, cx: &Context<'a>, stretch: &Stretch, point: Point) -> Context<'a> {
         Context {
             scope: self.phases[stretch.phase].scope,
             agent: stretch.agent.clone(),
@@ -163,7 +163,13 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `integral(e)`, `integral(path, e)`.
-    pub(super) fn integral(&mut self, cx: &Context<'a>, path: Option<&'a Path>, of: &'a Expr, span: Span) -> Value {
+    pub(super) fn integral(
+        &mut self,
+        cx: &Context<'a>,
+        path: Option<&'a Path>,
+        (of, at): (&'a Expr, &[Form]),
+        span: Span,
+    ) -> Value {
         if cx.allow < Allow::All {
             let text = self.text(span);
             return self.misplaced_value(What::Mission, span, &text, None);
@@ -173,7 +179,7 @@ impl<'a> Elaborator<'a> {
         let mut sample: Option<Value> = None;
         let node = self.total(&stretches, |this, stretch| {
             let inner = this.on(cx, stretch, Point::Path);
-            let value = this.value(&inner, of);
+            let value = this.element_or_zero(&inner, of, at);
             this.no_event(of.span, "the integrand is taken at every point");
             let node = this.leaf(Leaf::Integral { phase: stretch.at(), integrand: value.node });
             sample = match sample.take() {
@@ -196,7 +202,7 @@ impl<'a> Elaborator<'a> {
         cx: &Context<'a>,
         boundary: Boundary,
         path: Option<&'a Path>,
-        of: &'a Expr,
+        (of, at): (&'a Expr, &[Form]),
         span: Span,
     ) -> Value {
         if cx.allow < Allow::All {
@@ -215,7 +221,7 @@ impl<'a> Elaborator<'a> {
             (_, []) => return self.poison(span),
         };
         let inner = self.on(cx, &stretch, point);
-        let value = self.value(&inner, of);
+        let value = self.element_or_zero(&inner, of, at);
         self.mark_event(span, self.text(span), false);
         value.map(value.node, value.dimension, span).shown_in(value.unit.clone())
     }

@@ -115,6 +115,7 @@ impl Look {
             match &expr.kind {
                 ExprKind::Number(number) => self.unit(&number.unit),
                 ExprKind::Neg(inner) | ExprKind::Der { of: inner, .. } => open.push(inner),
+                ExprKind::Tuple(elements) => open.extend(elements),
                 ExprKind::Sum(terms) => open.extend(terms.iter().map(|(_, term)| term)),
                 ExprKind::Product(factors) => open.extend(factors.iter().map(|(_, factor)| factor)),
                 ExprKind::Power(base, exponent) => open.extend([&**base, &**exponent]),

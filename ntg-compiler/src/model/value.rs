@@ -8,6 +8,7 @@ use std::rc::Rc;
 use ntg_structure::Unit;
 
 use super::dimension::Dimension;
+use super::problem::IndexId;
 use crate::expr::NodeId;
 use crate::source::Span;
 
@@ -33,6 +34,19 @@ pub(super) enum Flaw {
     Reported,
     /// It depends on something that has no value here; who uses it tells, once.
     Misplaced(Rc<Misplaced>),
+    /// Only for a known index it has a value; the loop over that index finds it (`repeat.rs`).
+    Open(OpenIndex),
+}
+
+/// An index that must be known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OpenIndex {
+    /// Which.
+    pub(super) index: IndexId,
+    /// Where the formula changes, if only that must be known: below, at and above this value it is one formula.
+    pub(super) cut: Option<i64>,
+    /// What needs it.
+    pub(super) span: Span,
 }
 
 /// Something that has no value where it stands.

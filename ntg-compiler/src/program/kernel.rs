@@ -142,9 +142,9 @@ impl Copy<'_, '_> {
                 let index = index.as_ref().map(|form| environment.affine(form));
                 self.data(Data::Parameter { parameter: *parameter, index }, &format!("{name}_p"))
             }
-            Leaf::Variable { variable } => {
+            Leaf::Variable { variable, index } => {
                 let name = identifier(&self.lowering.problem.variables[*variable].name);
-                let slot = Slot::Variable { variable: *variable, index: None };
+                let slot = Slot::Variable { variable: *variable, index: index.as_ref().map(|form| environment.affine(form)) };
                 let input = self.inputs.slot(slot, &format!("{name}_v"));
                 self.input(input)
             }

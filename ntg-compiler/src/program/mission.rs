@@ -57,12 +57,12 @@ fn variables(lowering: &mut Lowering<'_>) -> Vec<out::Variable> {
     let list = lowering.problem.variables.clone();
     list.into_iter()
         .map(|v| out::Variable {
-            bounds: bounds(lowering, &v.bounds, &[], &v.name),
+            bounds: bounds(lowering, &v.bounds, v.family.as_slice(), &v.name),
             place: lowering.place(v.span),
             name: v.name,
             doc: v.doc,
             unit: v.unit,
-            family: None,
+            family: v.family.as_ref().map(family),
         })
         .collect()
 }
@@ -166,8 +166,8 @@ fn guesses(lowering: &mut Lowering<'_>) -> Vec<out::Guess> {
                 }
                 GuessKind::Duration(node) => out::GuessKind::Duration { value: value(*node) },
                 GuessKind::Start(node) => out::GuessKind::Start { value: value(*node) },
-                GuessKind::Variable(variable, node) => {
-                    out::GuessKind::Variable { variable: *variable, index: None, value: value(*node) }
+                GuessKind::Variable(variable, index, node) => {
+                    out::GuessKind::Variable { variable: *variable, index: member(index), value: value(*node) }
                 }
                 GuessKind::Route { outputs, points } => out::GuessKind::Route {
                     outputs: outputs.iter().map(|(name, index)| (name.clone(), member(index))).collect(),

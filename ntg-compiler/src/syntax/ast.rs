@@ -104,13 +104,37 @@ pub enum ItemKind {
     Guess(Guess),
 }
 
-/// `const name = value;`
+/// `const name = value;` or `const name[size] = (values);`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Const {
     /// Its name.
     pub name: Ident,
+    /// Its size, for a vector or a matrix.
+    pub shape: Option<Shape>,
     /// Its value.
     pub value: Expr,
+}
+
+/// `[3]`, `[1 .. n, 3]`, `[i in 1 .. n, 3]`: how many elements something has along each axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// The axes, one at least.
+    pub axes: Vec<ShapeAxis>,
+    /// From bracket to bracket.
+    pub span: Span,
+}
+
+/// `3`, `1 .. n` or `i in 1 .. n`: one axis of a shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeAxis {
+    /// The name of the index, where the value is written for each of its values.
+    pub index: Option<Ident>,
+    /// The first index; 1 where none is written.
+    pub first: Option<Expr>,
+    /// The last index, included.
+    pub last: Expr,
+    /// All of it.
+    pub span: Span,
 }
 
 /// `param name = value;` or `param name[size] = (values);`
@@ -118,8 +142,8 @@ pub struct Const {
 pub struct Param {
     /// Its name.
     pub name: Ident,
-    /// The number of elements, for an array.
-    pub size: Option<Expr>,
+    /// Its size, for an array.
+    pub shape: Option<Shape>,
     /// The default.
     pub default: Values,
 }
@@ -141,6 +165,8 @@ pub struct Values {
 pub struct Variable {
     /// Its name.
     pub name: Ident,
+    /// Its size, for an array.
+    pub shape: Option<Shape>,
     /// Its unit where no bound tells it: `variable m0 [kg];`.
     pub unit: Option<Unit>,
     /// Its bounds.
@@ -173,21 +199,10 @@ pub struct OutputName {
     /// Its name.
     pub name: Ident,
     /// The size, for an array.
-    pub size: Option<Size>,
+    pub shape: Option<Shape>,
     /// Its unit: its own, else the last one of the list.
     pub unit: Option<Unit>,
     /// Name, size and its own unit.
-    pub span: Span,
-}
-
-/// `first .. last` as a size.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Size {
-    /// The first index (the next stage wants it to be 1).
-    pub first: Expr,
-    /// The last index, included.
-    pub last: Expr,
-    /// Both ends and the dots.
     pub span: Span,
 }
 
@@ -217,13 +232,13 @@ pub struct Function {
     pub body: Expr,
 }
 
-/// `let name = value;`, `let name[i in 1 .. N] [unit] = value;`
+/// `let name = value;`, `let name[i in 1 .. N] [unit] = value;`, `let name[3] = value;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Let {
     /// Its name.
     pub name: Ident,
-    /// The index, for a family.
-    pub family: Option<IndexRange>,
+    /// The indices of a family, then the stated size of its members.
+    pub shape: Option<Shape>,
     /// The unit it is shown in.
     pub unit: Option<Unit>,
     /// Its value.

@@ -14,6 +14,7 @@ mod items;
 mod lists;
 mod parts;
 mod settings;
+mod shapes;
 mod tables;
 mod time;
 mod units;

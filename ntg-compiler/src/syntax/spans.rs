@@ -92,17 +92,18 @@ structures! {
     Problem { doc, name, items, span }
     Doc { text, span }
     Item { doc, kind, span }
-    Const { name, value }
-    Param { name, size, default }
+    Const { name, shape, value }
+    Shape { axes, span }
+    ShapeAxis { index, first, last, span }
+    Param { name, shape, default }
     Values { elements, is_tuple, span }
-    Variable { name, unit, bounds }
+    Variable { name, shape, unit, bounds }
     Bounds { lower, upper, span }
     Output { names, spline }
-    OutputName { name, size, unit, span }
-    Size { first, last, span }
+    OutputName { name, shape, unit, span }
     Spline { order, intervals, knots, smoothness, span }
     Function { name, parameters, body }
-    Let { name, family, unit, value }
+    Let { name, shape, unit, value }
     Table { is_param, name, axes, unit, method, data }
     Axis { name, symmetry, unit, span }
     Method { kind, order, intervals, extrapolate, span }
@@ -124,6 +125,7 @@ structures! {
     Point { coordinates, span }
     Ident { text, span }
     Segment { name, indices, span }
+    Index { first, last, span }
     Path { segments, span }
     IndexRange { index, first, last, span }
     Unit { factors, span }
@@ -186,6 +188,7 @@ impl Erase for ExprKind {
             Self::Number(x) => x.erase(),
             Self::Path(x) => x.erase(),
             Self::Neg(x) => x.erase(),
+            Self::Tuple(x) => x.erase(),
             Self::Sum(x) => x.erase(),
             Self::Product(x) => x.erase(),
             Self::Call(x) => x.erase(),

@@ -110,7 +110,7 @@ impl Environment<f64> for Reality<'_> {
                 let declared = &self.problem.parameters[parameter];
                 index.map_or(declared.value[0], |form| declared.value[self.form(&form) as usize - 1])
             }
-            Leaf::Variable { variable } => (self.world.other)(&self.problem.variables[variable].name),
+            Leaf::Variable { variable, .. } => (self.world.other)(&self.problem.variables[variable].name),
             Leaf::Index(form) => self.form(&form) as f64,
             Leaf::Integral { integrand, .. } => {
                 // A constant integrand over the duration; enough for tests.

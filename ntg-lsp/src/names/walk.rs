@@ -166,7 +166,7 @@ impl Walk {
                     found
                 }
             };
-            segment.indices.iter().for_each(|index| self.expr(scope, index));
+            self.indices(scope, &segment.indices);
             inside = found.iter().find_map(|at| self.names.declarations[*at].inner).or(inside);
         }
         inside.unwrap_or(scope)
@@ -174,10 +174,40 @@ impl Walk {
 
     fn segment(&mut self, scope: usize, segment: &Segment) {
         self.name(scope, &segment.name);
-        segment.indices.iter().for_each(|index| self.expr(scope, index));
+        self.indices(scope, &segment.indices);
+    }
+
+    fn indices(&mut self, scope: usize, indices: &[Index]) {
+        for index in indices {
+            self.expr(scope, &index.first);
+            index.last.iter().for_each(|last| self.expr(scope, last));
+        }
     }
 
     // ------------------------------------------------------------ items
+
+    /// The ends of the axes of a declared size.
+    fn size(&mut self, scope: usize, shape: &Option<Shape>) {
+        for axis in shape.iter().flat_map(|shape| &shape.axes) {
+            axis.first.iter().for_each(|first| self.expr(scope, first));
+            self.expr(scope, &axis.last);
+        }
+    }
+
+    /// A definition with the indices of its family, which are known in its value.
+    fn named(&mut self, scope: usize, it: &Let, span: Span) {
+        self.size(scope, &it.shape);
+        let (locals, indices) = (self.locals.len(), self.indices.len());
+        for axis in it.shape.iter().flat_map(|shape| &shape.axes) {
+            let Some(index) = &axis.index else { continue };
+            let local = self.declare(scope, index, Kind::Index, axis.span, None, Some(span));
+            self.locals.push(local);
+            self.indices.push(axis.span);
+        }
+        self.expr(scope, &it.value);
+        self.locals.truncate(locals);
+        self.indices.truncate(indices);
+    }
 
     fn items(&mut self, scope: usize, items: &[Item]) {
         for item in items {
@@ -187,16 +217,21 @@ impl Walk {
 
     fn item(&mut self, scope: usize, item: &Item) {
         match &item.kind {
-            ItemKind::Const(it) => self.expr(scope, &it.value),
+            ItemKind::Const(it) => {
+                self.size(scope, &it.shape);
+                self.expr(scope, &it.value);
+            }
             ItemKind::Param(it) => {
-                it.size.iter().for_each(|size| self.expr(scope, size));
+                self.size(scope, &it.shape);
                 self.values(scope, &it.default);
             }
-            ItemKind::Variable(it) => it.bounds.iter().for_each(|bounds| self.bounds(scope, bounds)),
+            ItemKind::Variable(it) => {
+                self.size(scope, &it.shape);
+                it.bounds.iter().for_each(|bounds| self.bounds(scope, bounds));
+            }
             ItemKind::Output(it) => {
                 for name in &it.names {
-                    let ends = name.size.iter().flat_map(|size| [&size.first, &size.last]);
-                    ends.for_each(|end| self.expr(scope, end));
+                    self.size(scope, &name.shape);
                 }
                 let spline = &it.spline;
                 let settings = [&spline.order, &spline.intervals, &spline.smoothness];
@@ -204,10 +239,7 @@ impl Walk {
                 spline.knots.iter().for_each(|knots| self.values(scope, knots));
             }
             ItemKind::Function(it) => self.function(scope, it, item.span),
-            ItemKind::Let(it) => match &it.family {
-                Some(over) => self.over(scope, over, item.span, |walk| walk.expr(scope, &it.value)),
-                None => self.expr(scope, &it.value),
-            },
+            ItemKind::Let(it) => self.named(scope, it, item.span),
             ItemKind::Table(it) => self.table(scope, it),
             ItemKind::Continuation(it) => self.values(scope, &it.values),
             ItemKind::Duration(it) => self.extent(scope, &it.extent),
@@ -352,6 +384,7 @@ impl Walk {
         match &expr.kind {
             ExprKind::Number(_) | ExprKind::Pi | ExprKind::Time | ExprKind::ScaledTime => {}
             ExprKind::Path(path) => _ = self.path(scope, path),
+            ExprKind::Tuple(elements) => elements.iter().for_each(|element| self.expr(scope, element)),
             ExprKind::Neg(inner) => self.expr(scope, inner),
             ExprKind::Sum(terms) => terms.iter().for_each(|(_, term)| self.expr(scope, term)),
             ExprKind::Product(factors) => factors.iter().for_each(|(_, factor)| self.expr(scope, factor)),

@@ -20,7 +20,18 @@ pub struct Segment {
     /// The name.
     pub name: Ident,
     /// What stands in the brackets; empty without brackets.
-    pub indices: Vec<Expr>,
+    pub indices: Vec<Index>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// `i` or `2 .. 4` in the brackets behind a name: one member, or those from one to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Index {
+    /// The member, or the first of several.
+    pub first: Expr,
+    /// The last of several, included.
+    pub last: Option<Expr>,
     /// All of it.
     pub span: Span,
 }
@@ -102,6 +113,8 @@ pub enum ExprKind {
     ScaledTime,
     /// A name, perhaps indexed.
     Path(Path),
+    /// `(1, 0, 0)`, `(a,)`: the elements of a vector, or the rows of a matrix.
+    Tuple(Vec<Expr>),
     /// `-a`
     Neg(Box<Expr>),
     /// `a + b - c`, two terms at least; the first one's sign is always plus (`-a + b` begins with a `Neg`).

@@ -95,6 +95,19 @@ pub enum Relation {
     },
 }
 
+impl Relation {
+    /// Everything that is compared, in the order of the text.
+    pub fn sides(&self) -> Vec<&Expr> {
+        match self {
+            Self::Compare { left, right, .. } => vec![left, right],
+            Self::Between { first, middle, last, .. } => vec![first, middle, last],
+            Self::In { value, bounds } => {
+                [Some(value), bounds.lower.as_ref(), bounds.upper.as_ref()].into_iter().flatten().collect()
+            }
+        }
+    }
+}
+
 /// The signs that a constraint may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comparison {

@@ -187,6 +187,7 @@ fn kind(rule: Rule) -> Kind {
         | R::objective_name
         | R::constraint_name
         | R::index_range => Kind::Name,
+        R::axis_size | R::ranged_axis | R::size | R::whole_size | R::whole_number | R::index => Kind::Expression,
         R::unit
         | R::unit_product
         | R::unit_operator
@@ -212,7 +213,7 @@ fn mark(rule: Rule) -> Kind {
         R::right_brace => Kind::Mark("}"),
         R::left_parenthesis | R::settings => Kind::Mark("("),
         R::right_parenthesis => Kind::Mark(")"),
-        R::left_bracket | R::array_size | R::size | R::family | R::indices => Kind::Minor("["),
+        R::left_bracket | R::array_size | R::shape | R::family | R::indices => Kind::Minor("["),
         R::right_bracket => Kind::Mark("]"),
         R::semicolon => Kind::Mark(";"),
         R::colon => Kind::Mark(":"),

@@ -24,7 +24,7 @@ impl Build {
         let op = reduce_op(&raw.callee.text);
         match (raw.callee.text.as_str(), op) {
             (_, Some(op)) if raw.over.is_some() => self.reduction(op, raw),
-            (word @ ("sum" | "prod"), _) => {
+            (word @ "prod", _) => {
                 let help = format!("write `{word}(i in 1 .. N, ...)`");
                 self.unusable(raw.span, format!("`{word}` runs over an index"), help)
             }

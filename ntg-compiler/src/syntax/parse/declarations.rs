@@ -2,8 +2,9 @@
 
 use super::Build;
 use super::parts::Parts;
+use super::shapes::Indices;
 use crate::syntax::ast::{
-    Const, Continuation, Function, Let, Objective, Output, OutputName, Param, Sense, Size, Spline, Unit, Variable,
+    Const, Continuation, Function, Let, Objective, Output, OutputName, Param, Sense, Spline, Unit, Variable,
 };
 use crate::syntax::grammar::{Pair, Rule};
 
@@ -11,22 +12,24 @@ impl Build {
     pub(super) fn constant(&mut self, pair: Pair<'_>) -> Const {
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
-        Const { name, value: self.expression(parts.required(Rule::expression)) }
+        let shape = parts.optional(Rule::array_size).map(|pair| self.shape(pair, Indices::Refused));
+        Const { name, shape, value: self.value_or_tuple(parts.required(Rule::values)) }
     }
 
     pub(super) fn param(&mut self, pair: Pair<'_>) -> Param {
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
-        let size = parts.optional(Rule::array_size).map(|pair| self.expression(Parts::of(pair).any()));
-        Param { name, size, default: self.values(parts.required(Rule::values)) }
+        let shape = parts.optional(Rule::array_size).map(|pair| self.shape(pair, Indices::Refused));
+        Param { name, shape, default: self.values(parts.required(Rule::values)) }
     }
 
     pub(super) fn variable(&mut self, pair: Pair<'_>) -> Variable {
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
+        let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::Refused));
         let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
         let bounds = parts.optional(Rule::bounds).map(|pair| self.bounds(pair));
-        Variable { name, unit, bounds }
+        Variable { name, shape, unit, bounds }
     }
 
     pub(super) fn output(&mut self, pair: Pair<'_>) -> Output {
@@ -47,17 +50,9 @@ impl Build {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
-        let size = parts.optional(Rule::size).map(|pair| self.size(pair));
+        let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::Refused));
         let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
-        OutputName { name, size, unit, span }
-    }
-
-    fn size(&mut self, pair: Pair<'_>) -> Size {
-        let mut parts = Parts::of(pair);
-        let first = self.expression(parts.required(Rule::expression));
-        let last = self.expression(parts.required(Rule::expression));
-        let span = first.span.to(last.span);
-        Size { first, last, span }
+        OutputName { name, shape, unit, span }
     }
 
     fn spline(&mut self, pair: Pair<'_>) -> Spline {
@@ -87,9 +82,9 @@ impl Build {
     pub(super) fn named(&mut self, pair: Pair<'_>) -> Let {
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
-        let family = parts.optional(Rule::family).map(|pair| self.family(pair));
+        let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::First));
         let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
-        Let { name, family, unit, value: self.expression(parts.required(Rule::expression)) }
+        Let { name, shape, unit, value: self.expression(parts.required(Rule::expression)) }
     }
 
     pub(super) fn continuation(&mut self, pair: Pair<'_>) -> Continuation {

@@ -4,11 +4,10 @@
 //! minus make nodes inside nodes, and the scan has counted those.
 
 use super::Build;
-use super::lists::is_tuple;
+use super::lists::{is_tuple, share_last_unit};
 use super::parts::Parts;
-use crate::diagnostic::Code;
 use crate::source::Span;
-use crate::syntax::ast::{Expr, ExprKind, Ident, MulOp, Path, Segment, Sign};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Index, MulOp, Path, Segment, Sign};
 use crate::syntax::grammar::{Pair, Rule};
 
 /// An operand with the places of the minus signs before it.
@@ -61,21 +60,17 @@ impl Build {
         Expr { kind, span }
     }
 
-    /// `(a)`; a tuple is no operand.
+    /// `(a)`, or the elements of a vector.
     fn parenthesis(&mut self, pair: Pair<'_>) -> Expr {
         let span = self.span(&pair);
         if !is_tuple(&pair) {
             let inner = self.expression(Parts::of(pair).required(Rule::expression));
             return Expr { span, ..inner };
         }
-        let list = self.tuple(pair);
+        let mut list = self.tuple(pair);
         self.unused_unit(&list);
-        if list.elements.len() > 1 || list.unit.is_none() {
-            let help = "a list may stand alone after `=` in `param`, `continuation` and settings, and in `through`";
-            self.report(Code::Misplaced, span, "a list may not stand in an expression", help);
-        }
-        let first = list.elements.into_iter().next();
-        first.map_or(Expr { kind: ExprKind::Pi, span }, |first| Expr { span, ..first })
+        share_last_unit(&mut list.elements);
+        list.into_expression()
     }
 
     pub(super) fn path(&mut self, pair: Pair<'_>) -> Path {
@@ -87,8 +82,16 @@ impl Build {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let name: Ident = self.name(&parts.required(Rule::name));
-        let indices = parts.next().into_iter().flat_map(Parts::of).map(|pair| self.expression(pair)).collect();
+        let indices = parts.next().into_iter().flat_map(Parts::of).map(|pair| self.index(pair)).collect();
         Segment { name, indices, span }
+    }
+
+    fn index(&mut self, pair: Pair<'_>) -> Index {
+        let mut parts = Parts::of(pair);
+        let first = self.expression(parts.required(Rule::expression));
+        let last = parts.optional(Rule::expression).map(|pair| self.expression(pair));
+        let span = last.as_ref().map_or(first.span, |last| first.span.to(last.span));
+        Index { first, last, span }
     }
 }
 

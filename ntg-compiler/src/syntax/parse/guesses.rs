@@ -66,7 +66,9 @@ impl Build {
         }
         let points: Vec<Point> =
             lists.into_iter().map(|list| Point { coordinates: list.elements, span: list.span }).collect();
-        for point in points.iter().filter(|point| point.coordinates.len() != outputs.len()) {
+        // One output may be a vector, whose elements are then the coordinates.
+        let several = outputs.len() > 1;
+        for point in points.iter().filter(|point| several && point.coordinates.len() != outputs.len()) {
             let (have, want) = (point.coordinates.len(), outputs.len());
             let message =
                 format!("this point has {}, the route has {}", plural(have, "coordinate"), plural(want, "output"));

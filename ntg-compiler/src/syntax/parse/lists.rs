@@ -11,10 +11,25 @@ use crate::syntax::grammar::{Pair, Rule};
 pub(super) struct List {
     pub(super) elements: Vec<Expr>,
     pub(super) is_tuple: bool,
+    /// Whether a comma makes it a list of elements, be it of one.
+    pub(super) has_comma: bool,
     /// The unit after the parenthesis, and whether it reached an element.
     pub(super) unit: Option<Unit>,
     pub(super) unit_is_used: bool,
     pub(super) span: Span,
+}
+
+impl List {
+    /// The list as an expression: its only element, or the elements of a vector.
+    pub(super) fn into_expression(mut self) -> Expr {
+        match self.elements.pop() {
+            Some(only) if self.elements.is_empty() && !self.has_comma => Expr { span: self.span, ..only },
+            last => {
+                self.elements.extend(last);
+                Expr { kind: ExprKind::Tuple(self.elements), span: self.span }
+            }
+        }
+    }
 }
 
 impl Build {
@@ -24,6 +39,14 @@ impl Build {
         self.unused_unit(&list);
         share_last_unit(&mut list.elements);
         Values { elements: list.elements, is_tuple: list.is_tuple, span: list.span }
+    }
+
+    /// An expression, a tuple of elements among them.
+    pub(super) fn value_or_tuple(&mut self, pair: Pair<'_>) -> Expr {
+        let mut list = self.list(pair);
+        self.unused_unit(&list);
+        share_last_unit(&mut list.elements);
+        list.into_expression()
     }
 
     /// `-100, -97 [km]` without parentheses, or one tuple with them.
@@ -54,7 +77,7 @@ impl Build {
         }
         let element = self.expression(expression);
         let span = element.span;
-        List { elements: vec![element], is_tuple: false, unit: None, unit_is_used: false, span }
+        List { elements: vec![element], is_tuple: false, has_comma: false, unit: None, unit_is_used: false, span }
     }
 
     /// A unit after a parenthesis is refused if it reached nothing.
@@ -73,10 +96,10 @@ impl Build {
         while let Some(element) = parts.optional(Rule::expression) {
             elements.push(self.expression(element));
         }
-        parts.optional(Rule::trailing_comma);
+        let has_comma = parts.optional(Rule::trailing_comma).is_some() || elements.len() > 1;
         let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
         let unit_is_used = unit.as_ref().is_some_and(|unit| give_units(&mut elements, unit));
-        List { elements, is_tuple: true, unit, unit_is_used, span }
+        List { elements, is_tuple: true, has_comma, unit, unit_is_used, span }
     }
 
     /// `lower .. upper`; either may be left out.
@@ -125,6 +148,7 @@ pub(super) fn give_units<'e>(elements: impl IntoIterator<Item = &'e mut Expr>, u
 /// Gives a unit to an expression that is a bare signed literal without one; says whether it was.
 fn give_unit(expr: &mut Expr, unit: &Unit) -> bool {
     let number = match &mut expr.kind {
+        ExprKind::Tuple(elements) => return give_units(elements, unit),
         ExprKind::Number(number) => number,
         ExprKind::Neg(inner) => match &mut inner.kind {
             ExprKind::Number(number) => number,
@@ -139,8 +163,11 @@ fn give_unit(expr: &mut Expr, unit: &Unit) -> bool {
     bare
 }
 
-/// The unit of a signed literal.
+/// The unit of a signed literal, or of the last one in a tuple.
 pub(super) fn own_unit(expr: &Expr) -> Option<Unit> {
+    if let ExprKind::Tuple(elements) = &expr.kind {
+        return elements.iter().rev().find_map(own_unit);
+    }
     expr.signed_literal().and_then(|number| number.unit.clone())
 }
 
