@@ -72,7 +72,7 @@ fn phases_are_in_order_of_time_and_have_their_own_splines() {
     assert_eq!(orders(0), [("h", 6), ("s", 6)]);
     assert_eq!(orders(1), [("h", 5), ("s", 6), ("extra", 4)]);
     assert_eq!(p.phases[1].outputs[0].unit.symbol, "km");
-    assert_eq!(p.phases[0].collocation, Collocation::Gauss { points: 5, equalities: 5 });
+    assert_eq!(p.phases[0].collocation, Collocation::Gauss { points: 5, equalities: 5, ends: true });
     assert_eq!(p.phases[1].collocation, Collocation::Uniform { points: 11 });
     assert_eq!(p.agents[0].duration_name.as_deref(), Some("T"));
     assert_eq!(p.phases[0].duration_name.as_deref(), Some("burn"));

@@ -2,13 +2,10 @@
 
 use lsp_types::{CompletionItem, CompletionItemKind};
 use ntg_compiler::model::tools;
-use ntg_compiler::syntax::{EXPRESSION_WORDS, ITEM_WORDS};
+use ntg_compiler::syntax::{EXPRESSION_WORDS, ITEM_WORDS, OTHER_ITEM_WORDS};
 
 use crate::analysis::Analysis;
 use crate::names::Kind;
-
-/// Words that begin a statement though other words of their kind do not.
-const STATEMENT_WORDS: &[&str] = &["duration", "final", "for", "initial", "jump", "start"];
 
 /// The proposals at a byte.
 pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
@@ -22,10 +19,10 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
     }
     let mut items = names(analysis, byte);
     if text[..start].trim_end().ends_with([';', '{', '}']) || text[..start].trim().is_empty() {
-        items.extend(ITEM_WORDS.iter().chain(STATEMENT_WORDS).map(|word| keyword(word)));
+        items.extend(ITEM_WORDS.iter().chain(OTHER_ITEM_WORDS).chain(&["for"]).map(|word| keyword(word)));
     } else {
         items.extend(EXPRESSION_WORDS.iter().map(|word| keyword(word)));
-        items.extend(["spline", "gauss", "uniform", "after", "through", "from"].map(keyword));
+        items.extend(["spline", "held", "gauss", "uniform", "after", "through", "from"].map(keyword));
     }
     items.extend(tools::functions().map(function));
     items

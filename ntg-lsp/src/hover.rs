@@ -68,7 +68,8 @@ fn facts(analysis: &Analysis, problem: &Problem, declaration: &Declaration) -> O
             let parameter = problem.parameters.iter().find(|p| p.name == name)?;
             let values: Vec<String> = parameter.value.iter().map(|v| shown(*v / parameter.unit.factor)).collect();
             let value = if parameter.array { format!("({})", values.join(", ")) } else { values.concat() };
-            Some(format!("value: {value}{}, {}", bracketed(&parameter.unit), dimension(&parameter.unit)))
+            let size = if parameter.array { format!("{} values, ", parameter.value.len()) } else { String::new() };
+            Some(format!("value: {value}{}, {size}{}", bracketed(&parameter.unit), dimension(&parameter.unit)))
         }
         Kind::Variable => {
             let variable = problem.variables.iter().find(|v| v.name == name)?;
@@ -81,8 +82,9 @@ fn facts(analysis: &Analysis, problem: &Problem, declaration: &Declaration) -> O
             let spline = &output.spline;
             let intervals = spline.breakpoints.len().saturating_sub(1);
             let coefficients = intervals * (spline.order - spline.smoothness) + spline.smoothness;
+            let size = output.family.map_or(String::new(), |(first, last)| format!("{first} .. {last}, each "));
             Some(format!(
-                "{}; a spline of order {} on {intervals} intervals, {} continuous derivatives: {coefficients} coefficients",
+                "{size}{}; a spline of order {} on {intervals} intervals, {} continuous derivatives: {coefficients} coefficients",
                 dimension(&output.unit),
                 spline.order,
                 spline.smoothness.saturating_sub(1),

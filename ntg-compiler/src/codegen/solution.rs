@@ -245,6 +245,8 @@ impl Writer<'_> {
         let path = path.join(".");
         let mut written: Vec<&str> = vec![];
         for full in self.structure.constraints.iter().filter_map(|constraint| constraint.name.as_deref()) {
+            // The rows of a vector are called `burn[1]`, `burn[2]`: one name for all of them.
+            let full = full.split('[').next().unwrap_or(full);
             let (before, name) = full.rsplit_once('.').unwrap_or(("", full));
             if before != path || written.contains(&full) {
                 continue;

@@ -107,6 +107,8 @@ codes! {
     NotGuessable "E065" "a guess of or from something that cannot be guessed";
     NeverHolds "E066" "a constraint that can never hold";
     NoOutput "E067" "a phase in which nothing can move";
+    WrongEquations "E068" "as many equations of `dynamics` as elements of states are needed";
+    StateWithoutRate "E069" "a state without a derivative in `dynamics`";
     NodesNotIncreasing "E070" "table nodes that do not increase";
     RaggedTable "E071" "rows of a table with different lengths";
     UnreadableTable "E072" "a table file that cannot be read";

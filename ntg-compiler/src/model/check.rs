@@ -226,7 +226,7 @@ pub(super) fn coefficients(spline: &ntg_structure::Spline) -> usize {
 }
 
 /// How many members nested loops have, at most.
-fn members(loops: &[Loop]) -> i64 {
+pub(super) fn members(loops: &[Loop]) -> i64 {
     let mut count: i64 = 1;
     for (k, over) in loops.iter().enumerate() {
         let (Some((first, _)), Some((_, last))) =

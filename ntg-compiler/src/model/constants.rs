@@ -231,9 +231,8 @@ impl<'a> Elaborator<'a> {
         let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
         let declared = super::scope::look_up(&self.scopes, cx.lexical, name).map(|(_, declared)| declared);
         if hidden || declared.is_some() {
-            let mut finding =
-                Diagnostic::new(Code::DeclaredTwice, index.span, format!("`{name}` is declared twice"))
-                    .label(index.span, "declared again as an index here");
+            let mut finding = Diagnostic::new(Code::DeclaredTwice, index.span, format!("`{name}` is declared twice"))
+                .label(index.span, "declared again as an index here");
             if let Some(declared) = declared.filter(|_| !hidden) {
                 finding = finding.label(declared.span, "first declared here");
             }

@@ -28,17 +28,17 @@ fn member_text(members: &[i64]) -> String {
 
 /// Where the constraints of a block are given a meaning.
 #[derive(Clone)]
-struct Site {
-    block: Block,
-    agent: Option<usize>,
-    phase: Option<usize>,
+pub(super) struct Site {
+    pub(super) block: Block,
+    pub(super) agent: Option<usize>,
+    pub(super) phase: Option<usize>,
 }
 
 /// What is bounded, by what, and in which unit it is shown.
-struct Body {
-    value: Value,
-    bounds: Bounds,
-    unit: Unit,
+pub(super) struct Body {
+    pub(super) value: Value,
+    pub(super) bounds: Bounds,
+    pub(super) unit: Unit,
 }
 
 impl<'a> Elaborator<'a> {
@@ -50,6 +50,10 @@ impl<'a> Elaborator<'a> {
                     self.block(scope, block);
                 }
             }
+        }
+        for phase in 0..self.phases.len() {
+            self.declared_bounds(phase);
+            self.count_equations(phase);
         }
     }
 
@@ -72,9 +76,13 @@ impl<'a> Elaborator<'a> {
                 self.statements(&cx, &block.statements, &site);
             }
             (_, None) => {} // Told of as standing at the wrong level.
-            (BlockPlace::Trajectory, Some(agent)) => {
+            (BlockPlace::Trajectory | BlockPlace::Dynamics, Some(agent)) => {
                 let phases = phase.map_or_else(|| self.agents[agent].phases.clone(), |phase| vec![phase]);
                 for phase in phases {
+                    if block.place == BlockPlace::Dynamics {
+                        self.dynamics(scope, phase, block);
+                        continue;
+                    }
                     let cx = self.phase_context(phase, Allow::All, Point::Path);
                     let site = Site { block: Block::Trajectory, agent: Some(agent), phase: Some(phase) };
                     self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
@@ -107,7 +115,7 @@ impl<'a> Elaborator<'a> {
         self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
     }
 
-    fn statements(&mut self, cx: &Context<'a>, statements: &'a [Statement<ast::Constraint>], site: &Site) {
+    pub(super) fn statements(&mut self, cx: &Context<'a>, statements: &'a [Statement<ast::Constraint>], site: &Site) {
         for statement in statements {
             match statement {
                 Statement::One(constraint) => self.constraint(cx, constraint, site),
@@ -210,7 +218,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `lower <= body <= upper`; two constraints where a bound changes along the way.
-    fn within(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> Vec<Body> {
+    pub(super) fn within(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> Vec<Body> {
         if self.misfit(lower, body, upper) {
             return vec![];
         }

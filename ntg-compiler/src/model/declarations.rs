@@ -235,7 +235,11 @@ fn keyword(kind: &ItemKind) -> &'static str {
         ItemKind::Const(_) => "const",
         ItemKind::Param(_) => "param",
         ItemKind::Variable(_) => "variable",
-        ItemKind::Output(_) => "output",
+        ItemKind::Output(output) => match output.role {
+            ast::Role::Output => "output",
+            ast::Role::State => "state",
+            ast::Role::Input => "input",
+        },
         ItemKind::Function(_) => "fn",
         ItemKind::Let(_) => "let",
         ItemKind::Table(table) if table.is_param => "param",
@@ -257,6 +261,7 @@ fn keyword(kind: &ItemKind) -> &'static str {
             ast::BlockPlace::Trajectory => "trajectory",
             ast::BlockPlace::Final => "final",
             ast::BlockPlace::Temporal => "temporal",
+            ast::BlockPlace::Dynamics => "dynamics",
         },
         ItemKind::Guess(_) => "guess",
     }

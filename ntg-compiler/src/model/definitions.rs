@@ -60,13 +60,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The value of a definition in a context, as used at `span`.
-    pub(super) fn definition(
-        &mut self,
-        cx: &Context<'a>,
-        definition: usize,
-        place: Vec<Form>,
-        span: Span,
-    ) -> Value {
+    pub(super) fn definition(&mut self, cx: &Context<'a>, definition: usize, place: Vec<Form>, span: Span) -> Value {
         let allow = if self.definitions[definition].is_const { Allow::Constants } else { cx.allow };
         let key = MemoKey {
             definition,
@@ -100,13 +94,7 @@ impl<'a> Elaborator<'a> {
         self.used(value, event, span)
     }
 
-    fn elaborate_definition(
-        &mut self,
-        cx: &Context<'a>,
-        definition: usize,
-        place: &[Form],
-        allow: Allow,
-    ) -> Value {
+    fn elaborate_definition(&mut self, cx: &Context<'a>, definition: usize, place: &[Form], allow: Allow) -> Value {
         let Definition { value: expr, scope, unit, is_const, name, .. } = &self.definitions[definition];
         let (expr, lexical, unit, is_const, name) = (*expr, *scope, *unit, *is_const, *name);
         let indices: Vec<&'a ast::Ident> = self.definitions[definition].indices().collect();
@@ -193,7 +181,8 @@ impl<'a> Elaborator<'a> {
         let name = self.definitions[definition].name.span;
         let message = format!("member `{}` needs itself: {}", words(self, &own), chain.join(", "));
         let finding = Diagnostic::new(Code::Circle, name, message).label(span, "needed here");
-        let help = "let each member need only those before it, or only those behind it: `if i == 1 { ... } else { ... }`";
+        let help =
+            "let each member need only those before it, or only those behind it: `if i == 1 { ... } else { ... }`";
         self.refuse(finding.help(help), span)
     }
 

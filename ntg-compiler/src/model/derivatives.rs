@@ -5,11 +5,11 @@
 //! of its arguments.
 //! Finds: derivatives that a spline does not have; notes those that jump at its knots.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::dimension::Ratio;
 use super::elaborator::Elaborator;
-use super::problem::{Form, IndexId, Leaf, Leaves, Loop, PhaseAt, Problem};
+use super::problem::{Collocation, Domain, Form, IndexId, Leaf, Leaves, Loop, PhaseAt, Problem};
 use super::scope::{Context, Entity, Meaning, look_up};
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
@@ -38,6 +38,8 @@ pub(super) struct Jump {
     /// Where the derivative stands.
     span: Span,
     order: usize,
+    /// The phase and the output in it.
+    place: (usize, usize),
     /// The smoothness of the spline, and the order with which the derivative would be continuous.
     smoothness: usize,
     needs: usize,
@@ -226,8 +228,8 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Remembers a derivative that jumps at the knots.
-    fn note_jump(&mut self, phase: &PhaseAt, output: usize, order: usize, span: Span) {
-        let output = &self.problem.phases[phase.phase].outputs[output];
+    fn note_jump(&mut self, phase: &PhaseAt, place: usize, order: usize, span: Span) {
+        let output = &self.problem.phases[phase.phase].outputs[place];
         let (k, m) = (output.spline.order, output.spline.smoothness);
         if order < m || output.spline.breakpoints.len() <= 2 {
             return;
@@ -237,6 +239,7 @@ impl<'a> Elaborator<'a> {
             declared: output.span,
             span,
             order,
+            place: (phase.phase, place),
             smoothness: m,
             needs: (order + 2).max(k),
         };
@@ -248,7 +251,8 @@ impl<'a> Elaborator<'a> {
     /// Notes the derivatives that jump at the knots. Where several outputs jump alike, as the states of a collocation do,
     /// one note names them all, at the first place; one output is noted at each of its places.
     pub(super) fn jumps_noted(&mut self) {
-        let mut left = std::mem::take(&mut self.jumps);
+        let jumps = std::mem::take(&mut self.jumps);
+        let mut left = self.seen_to_jump(jumps);
         while let Some(first) = left.first().cloned() {
             let alike: Vec<Jump>;
             (alike, left) = left.into_iter().partition(|jump| jump.is_like(&first));
@@ -263,6 +267,49 @@ impl<'a> Elaborator<'a> {
                 _ => self.report(first.note(&outputs)),
             }
         }
+    }
+
+    /// Leaves out the derivatives that stand only in equations at Gauss points: nothing jumps there.
+    fn seen_to_jump(&self, jumps: Vec<Jump>) -> Vec<Jump> {
+        if jumps.is_empty() {
+            return jumps;
+        }
+        let (mut equations, mut others) = (Vec::new(), Vec::new());
+        for constraint in &self.problem.constraints {
+            let is_equation = constraint.bounds.lower.is_some() && constraint.bounds.lower == constraint.bounds.upper;
+            match &constraint.domain {
+                Domain::Path(at) if is_equation && self.is_gauss(at.phase) => equations.push(constraint.body),
+                _ => others.push(constraint.body),
+            }
+        }
+        others.extend(self.problem.objective.iter().map(|term| term.body));
+        let (equations, others) = (self.rates_in(equations), self.rates_in(others));
+        let is_seen = |jump: &Jump| {
+            let place = (jump.place.0, jump.place.1, jump.order);
+            others.contains(&place) || !equations.contains(&place)
+        };
+        jumps.into_iter().filter(is_seen).collect()
+    }
+
+    fn is_gauss(&self, phase: usize) -> bool {
+        matches!(self.problem.phases[phase].collocation, Collocation::Gauss { .. })
+    }
+
+    /// The derivatives of outputs that occur in nodes, integrands included: phase, output, order.
+    fn rates_in(&self, mut open: Vec<NodeId>) -> HashSet<(usize, usize, usize)> {
+        let mut rates = HashSet::new();
+        let mut seen: HashSet<NodeId> = HashSet::new();
+        while !open.is_empty() {
+            let roots = std::mem::take(&mut open);
+            for input in self.problem.dag.inputs_of(&roots) {
+                match self.problem.leaves.leaf(input) {
+                    Leaf::Flat { phase, output, order, .. } => _ = rates.insert((phase.phase, *output, *order)),
+                    Leaf::Integral { integrand, .. } if seen.insert(*integrand) => open.push(*integrand),
+                    _ => {}
+                }
+            }
+        }
+        rates
     }
 
     /// `partial(f(s, w), s)`.

@@ -157,6 +157,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) jumps: Vec<Jump>,
     /// How many times the expression at hand is going to be differentiated.
     pub(super) derivatives_around: usize,
+    /// How many equations `dynamics` has in each phase, where it has any.
+    pub(super) equations: HashMap<usize, i64>, // Looked up, never iterated.
     reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
     pub(super) next_index: u32,
     pub(super) next_symbol: u32,
@@ -209,6 +211,7 @@ impl<'a> Elaborator<'a> {
             lacking: Vec::new(),
             jumps: Vec::new(),
             derivatives_around: 0,
+            equations: HashMap::new(),
             reported: HashSet::new(),
             next_index: 0,
             next_symbol: 0,
@@ -251,6 +254,16 @@ impl<'a> Elaborator<'a> {
             }
             return false;
         }
+        self.is_shallow(span)
+    }
+
+    /// As `enter`, for what takes no step: looking for a shape.
+    pub(super) fn deeper(&mut self, span: Span) -> bool {
+        self.depth += 1;
+        self.is_shallow(span)
+    }
+
+    fn is_shallow(&mut self, span: Span) -> bool {
         if self.depth > MAX_DEPTH {
             let message = "definitions and functions are nested too deeply here";
             self.report(

@@ -67,11 +67,18 @@ impl<'a> Elaborator<'a> {
         for (j, expr) in elements.iter().enumerate().take(k as usize - 1) {
             let first = self.element_or_zero(cx, expr, rest);
             let (Some(a), Some(b), true) = (first.dimension, value.dimension, first.is_sound()) else { continue };
-            if a == b {
+            // The first element that differs is told of, and no other one.
+            let before = &elements[j + 1..k as usize - 1];
+            let differs = |this: &mut Self, other: &'a Expr| {
+                let value = this.element_or_zero(cx, other, rest);
+                value.is_sound() && value.dimension.is_some_and(|dimension| dimension != a)
+            };
+            if a == b || before.iter().any(|other| differs(self, other)) {
                 return;
             }
             let (this, that) = (self.kind_in_words(&first), self.kind_in_words(value));
-            let message = format!("a vector holds one kind of quantity: element {} is {this}, element {k} {that}", j + 1);
+            let message =
+                format!("a vector holds one kind of quantity: element {} is {this}, element {k} {that}", j + 1);
             let finding = Diagnostic::new(Code::MixedVector, value.span, message)
                 .label(first.span, format!("this is {}", a.describe()))
                 .label(value.span, format!("this is {}", b.describe()));
@@ -91,13 +98,25 @@ impl<'a> Elaborator<'a> {
     }
 
     /// An element of a product of numbers, vectors and matrices.
-    pub(super) fn product_element(&mut self, cx: &Context<'a>, factors: &'a [(MulOp, Expr)], at: &[Form], span: Span) -> Value {
+    pub(super) fn product_element(
+        &mut self,
+        cx: &Context<'a>,
+        factors: &'a [(MulOp, Expr)],
+        at: &[Form],
+        span: Span,
+    ) -> Value {
         let Some(shapes) = self.product_shapes(cx, factors) else { return self.poison(span) };
         self.prefix_element(cx, factors, &shapes, at)
     }
 
     /// An element of the product of as many factors as there are shapes.
-    fn prefix_element(&mut self, cx: &Context<'a>, factors: &'a [(MulOp, Expr)], shapes: &[Shape], at: &[Form]) -> Value {
+    fn prefix_element(
+        &mut self,
+        cx: &Context<'a>,
+        factors: &'a [(MulOp, Expr)],
+        shapes: &[Shape],
+        at: &[Form],
+    ) -> Value {
         let k = shapes.len() - 1;
         let (op, factor) = &factors[k];
         if k == 0 {
@@ -122,7 +141,8 @@ impl<'a> Elaborator<'a> {
                 self.multiplied(*op, value, &factor)
             }
             ([_, inner], _) => {
-                let (row, rest) = at.split_first().map_or((Form::number(1), &[][..]), |(row, rest)| (row.clone(), rest));
+                let (row, rest) =
+                    at.split_first().map_or((Form::number(1), &[][..]), |(row, rest)| (row.clone(), rest));
                 self.contracted(cx, *inner, factor.span, &mut |this, cx, j| {
                     let value = this.prefix_element(cx, factors, before, &[row.clone(), j.clone()]);
                     let column: Vec<Form> = std::iter::once(j).chain(rest.iter().cloned()).collect();
@@ -137,8 +157,16 @@ impl<'a> Elaborator<'a> {
     }
 
     /// An element of an argument.
-    pub(super) fn lazy_element(&mut self, cx: &Context<'a>, lazy: &Rc<Lazy<'a>>, segment: &'a Segment, at: &[Form]) -> Value {
-        let Some(place) = self.place(cx, segment, &whole_axes(&lazy.shape), at) else { return self.poison(segment.span) };
+    pub(super) fn lazy_element(
+        &mut self,
+        cx: &Context<'a>,
+        lazy: &Rc<Lazy<'a>>,
+        segment: &'a Segment,
+        at: &[Form],
+    ) -> Value {
+        let Some(place) = self.place(cx, segment, &whole_axes(&lazy.shape), at) else {
+            return self.poison(segment.span);
+        };
         if let Some(known) = lazy.known.borrow().get(&place) {
             return known.clone();
         }
@@ -150,7 +178,13 @@ impl<'a> Elaborator<'a> {
 
     /// Where in something with these axes an element lies: the indices behind its name, then those of the element.
     /// What is wrong with the indices is told.
-    pub(super) fn place(&mut self, cx: &Context<'a>, segment: &'a Segment, axes: &[Ends], at: &[Form]) -> Option<Vec<Form>> {
+    pub(super) fn place(
+        &mut self,
+        cx: &Context<'a>,
+        segment: &'a Segment,
+        axes: &[Ends],
+        at: &[Form],
+    ) -> Option<Vec<Form>> {
         if segment.indices.len() > axes.len() {
             self.wrong_indices(segment, axes.len());
             return None;

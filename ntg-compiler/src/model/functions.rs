@@ -223,7 +223,13 @@ impl<'a> Elaborator<'a> {
         let names = visible(&self.scopes, cx.scope);
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
         let habit = HABITS.iter().find(|(habit, _)| *habit == name).map(|(_, right)| *right);
-        let finding = match (habit, nearest(name, own.chain(BUILTINS.iter().map(|b| b.name)).chain(VECTOR_FUNCTIONS.iter().map(|(name, _)| *name)))) {
+        let finding = match (
+            habit,
+            nearest(
+                name,
+                own.chain(BUILTINS.iter().map(|b| b.name)).chain(VECTOR_FUNCTIONS.iter().map(|(name, _)| *name)),
+            ),
+        ) {
             (Some(right), _) => finding.help(format!("write `{right}`")),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
             (None, None) => finding.help("declare it by `fn` or `table`"),

@@ -112,7 +112,12 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What a target names, and the context inside its path.
-    pub(super) fn target(&mut self, cx: &Context<'a>, outer: &'a [Segment], last: &'a Segment) -> Option<(Context<'a>, Entity)> {
+    pub(super) fn target(
+        &mut self,
+        cx: &Context<'a>,
+        outer: &'a [Segment],
+        last: &'a Segment,
+    ) -> Option<(Context<'a>, Entity)> {
         let inner = if outer.is_empty() { cx.clone() } else { self.enter_path(cx, outer)? };
         let inner = Context { lexical: inner.scope, ..inner };
         let name = last.name.text.as_str();

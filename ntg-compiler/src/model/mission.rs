@@ -17,7 +17,7 @@ use crate::source::Span;
 use crate::syntax::ast::{self, CollocationKind, Extent, ItemKind};
 
 /// The discretisation of a spec that does not choose one.
-const DEFAULT: Collocation = Collocation::Gauss { points: 5, equalities: 5 };
+const DEFAULT: Collocation = Collocation::Gauss { points: 5, equalities: 5, ends: true };
 
 /// The most points in an interval, or along a phase: beyond it, nothing could be solved any more.
 const MAX_POINTS: i64 = 1_000_000;
@@ -184,7 +184,8 @@ impl<'a> Elaborator<'a> {
                 let points = number(&collocation.points, 1, MAX_GAUSS)?;
                 let equalities = number(&collocation.equalities, 1, MAX_GAUSS)?;
                 let points = points.unwrap_or(5);
-                Some(Collocation::Gauss { points, equalities: equalities.unwrap_or(points) })
+                let ends = !self.at_points_only(collocation)?;
+                Some(Collocation::Gauss { points, equalities: equalities.unwrap_or(points), ends })
             }
             CollocationKind::Uniform => match number(&collocation.points, 2, MAX_POINTS)? {
                 Some(points) => Some(Collocation::Uniform { points }),
@@ -195,6 +196,20 @@ impl<'a> Elaborator<'a> {
                 }
             },
         }
+    }
+
+    /// Whether `inequalities = points` is written.
+    fn at_points_only(&mut self, collocation: &'a ast::Collocation) -> Option<bool> {
+        let Some(expr) = &collocation.inequalities else { return Some(false) };
+        let word = self.text(expr.span);
+        if word == "points" || word == "ends" {
+            return Some(word == "points");
+        }
+        let message = format!("inequalities do not hold at `{word}`");
+        let help =
+            "write `inequalities = points` to leave the ends of intervals out; `inequalities = ends` is the rule";
+        self.report(Diagnostic::new(Code::WrongPoints, expr.span, message).help(help));
+        None
     }
 
     /// Durations of all phases, starts and total durations of all agents.

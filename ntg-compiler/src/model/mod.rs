@@ -6,6 +6,7 @@
 //! Afterwards: no names are left in expressions, every dimension is right, and everything is in SI units.
 
 mod check;
+mod collocated;
 mod constants;
 mod constraints;
 mod continuity;
@@ -13,6 +14,7 @@ mod declarations;
 mod definitions;
 mod derivatives;
 mod dimension;
+mod dynamics;
 mod elaborator;
 mod element;
 mod expression;

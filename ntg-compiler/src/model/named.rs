@@ -108,6 +108,9 @@ impl<'a> Elaborator<'a> {
                 along.push((cx, over, value));
             }
         }
+        if along.is_empty() {
+            return; // A helper that is not shown, or told of.
+        }
         let same = along.windows(2).all(|pair| pair[0].2.node == pair[1].2.node);
         let numbers = along.iter().all(|(_, _, value)| value.is_sound()) && {
             let nodes: Vec<_> = along.iter().map(|(_, _, value)| value.node).collect();
@@ -167,9 +170,10 @@ impl<'a> Elaborator<'a> {
                 let extents: Vec<i64> = several.iter().filter_map(Ends::extent).collect();
                 let firsts: Vec<Form> = several.iter().map(|ends| ends.first.clone()).collect();
                 self.for_elements(cx, &extents, &[], &mut |this, cx, at| {
-                    let place = at.iter().zip(&firsts).filter_map(|(form, first)| {
-                        form.plus(1, first)?.plus(-1, &Form::number(1))
-                    });
+                    let place = at
+                        .iter()
+                        .zip(&firsts)
+                        .filter_map(|(form, first)| form.plus(1, first)?.plus(-1, &Form::number(1)));
                     let value = this.definition(cx, definition, place.collect(), span);
                     this.settle(value, super::settle::Use::Point);
                 });
@@ -190,7 +194,9 @@ impl<'a> Elaborator<'a> {
     /// The members of a vector that are written one by one, as one function of the index: each is chosen by its number.
     fn by_number(&mut self, cx: &Context<'a>, definition: usize, over: &Loop) -> Value {
         let span = self.definitions[definition].name.span;
-        let (Some(first), Some(last)) = (over.first.as_number(), over.last.as_number()) else { return self.poison(span) };
+        let (Some(first), Some(last)) = (over.first.as_number(), over.last.as_number()) else {
+            return self.poison(span);
+        };
         if last - first >= MOST_SHOWN {
             return self.poison(span);
         }

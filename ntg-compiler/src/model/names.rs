@@ -147,13 +147,7 @@ impl<'a> Elaborator<'a> {
         (!path.is_empty()).then_some((path, scope))
     }
 
-    fn entity(
-        &mut self,
-        cx: &Context<'a>,
-        entity: Entity,
-        segment: &'a Segment,
-        (span, at): (Span, &[Form]),
-    ) -> Value {
+    fn entity(&mut self, cx: &Context<'a>, entity: Entity, segment: &'a Segment, (span, at): (Span, &[Form])) -> Value {
         match entity {
             Entity::Definition(definition) => self.use_definition(cx, definition, segment, (span, at)),
             Entity::Parameter(parameter) => self.parameter(cx, parameter, segment, (span, at)),
@@ -192,7 +186,13 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn parameter(&mut self, cx: &Context<'a>, parameter: usize, segment: &'a Segment, (span, at): (Span, &[Form])) -> Value {
+    fn parameter(
+        &mut self,
+        cx: &Context<'a>,
+        parameter: usize,
+        segment: &'a Segment,
+        (span, at): (Span, &[Form]),
+    ) -> Value {
         let dimension = self.parameters[parameter].1;
         let text = &segment.name.text;
         if cx.allow == Allow::Constants {

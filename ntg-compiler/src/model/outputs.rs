@@ -5,7 +5,7 @@
 //! Finds: splines that do not exist, arrays with impossible sizes.
 
 use ntg_splines::{KnotError, Knots};
-use ntg_structure::{Spline, Unit};
+use ntg_structure::Spline;
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, doc_text};
@@ -13,7 +13,12 @@ use super::problem::Output;
 use super::scope::{Allow, Context, ScopeId};
 use super::shape::Ends;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::ast::{self, ItemKind, OutputName};
+use crate::syntax::ast::{self, Course, ItemKind, OutputName, Role};
+
+/// A spline in place of one that is wrong: so high that no derivative is refused because of it.
+pub(super) fn stand_in() -> Spline {
+    Spline { order: 40, smoothness: 39, breakpoints: vec![0.0, 1.0] }
+}
 
 /// One declared output.
 struct Declared {
@@ -29,9 +34,9 @@ impl<'a> Elaborator<'a> {
         for phase in 0..self.phases.len() {
             let (scope, agent) = (self.phases[phase].scope, self.phases[phase].agent);
             let common = self.agents[agent].scope;
-            let mut all = self.outputs_of(common);
+            let mut all = self.outputs_of(common, phase);
             if scope != common {
-                for own in self.outputs_of(scope) {
+                for own in self.outputs_of(scope, phase) {
                     match all.iter_mut().find(|known| known.output.name == own.output.name) {
                         Some(known) => self.replace(known, own),
                         None => all.push(own),
@@ -74,16 +79,20 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn outputs_of(&mut self, scope: ScopeId) -> Vec<Declared> {
+    fn outputs_of(&mut self, scope: ScopeId, phase: usize) -> Vec<Declared> {
         let mut all: Vec<Declared> = Vec::new();
         for item in self.items[scope] {
             let ItemKind::Output(output) = &item.kind else { continue };
-            let spline = self.spline(scope, &output.spline);
+            let spline = match &output.course {
+                Course::Spline(spline) => self.spline((scope, phase), spline, output.role),
+                course => self.collocated_start(phase, (course, output.role), item.span),
+            };
             for name in &output.names {
                 if all.iter().any(|known| known.output.name == name.name.text) {
                     continue; // Told of when it was declared.
                 }
                 let doc = doc_text(&item.doc);
+                let spline = self.collocated(phase, (&output.course, output.role), name, spline.clone());
                 all.push(self.output_declaration(scope, name, doc, &spline));
             }
         }
@@ -95,10 +104,10 @@ impl<'a> Elaborator<'a> {
         let axes = name.shape.as_ref().map_or(Vec::new(), |shape| self.declared_axes(&cx, shape));
         let family = self.family_of(&axes);
         let unit = name.unit.as_ref().and_then(|unit| self.unit(unit));
-        let has_unit = name.unit.is_some();
+        let has_unit = name.unit.is_some() || name.bounds.is_some();
         let (dimension, unit) = match unit {
             Some((quantity, shown)) => (quantity.dimension, shown),
-            None => (Dimension::NONE, Unit::default()),
+            None => self.unit_of_bounds(scope, name),
         };
         let output =
             Output { name: name.name.text.clone(), doc, unit, family, spline: spline.clone(), span: name.name.span };
@@ -132,13 +141,16 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The spline as written; a stand-in where it is wrong.
-    fn spline(&mut self, scope: ScopeId, spline: &'a ast::Spline) -> Spline {
-        // High enough that no derivative is refused because of the stand-in.
-        let stand_in = Spline { order: 40, smoothness: 39, breakpoints: vec![0.0, 1.0] };
-        self.spline_as_written(scope, spline).unwrap_or(stand_in)
+    fn spline(&mut self, at: (ScopeId, usize), spline: &'a ast::Spline, role: Role) -> Spline {
+        self.spline_as_written(at, spline, role).unwrap_or_else(stand_in)
     }
 
-    fn spline_as_written(&mut self, scope: ScopeId, spline: &'a ast::Spline) -> Option<Spline> {
+    fn spline_as_written(
+        &mut self,
+        (scope, phase): (ScopeId, usize),
+        spline: &'a ast::Spline,
+        role: Role,
+    ) -> Option<Spline> {
         let cx = Context::of(scope, Allow::Constants);
         let Some(order) = &spline.order else {
             let finding = Diagnostic::new(Code::WrongSpline, spline.span, "a spline needs an order");
@@ -166,9 +178,16 @@ impl<'a> Elaborator<'a> {
                 return None;
             }
             (None, None) => {
-                let finding = Diagnostic::new(Code::WrongSpline, spline.span, "a spline needs a number of intervals");
-                self.report(finding.help("write `spline(order = 5, intervals = 8)`"));
-                return None;
+                let Some(breakpoints) = self.common_breakpoints(phase) else {
+                    let finding =
+                        Diagnostic::new(Code::WrongSpline, spline.span, "a spline needs a number of intervals");
+                    self.report(finding.help(match role {
+                        Role::Output => "write `spline(order = 5, intervals = 8)`",
+                        _ => "write `spline(order = 4, intervals = 20)`, or `intervals = 20` in `collocation`",
+                    }));
+                    return None;
+                };
+                Knots::new(k, breakpoints, m)
             }
         };
         match knots {
@@ -183,7 +202,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn wrong_spline(&mut self, spline: &ast::Spline, error: KnotError) {
+    pub(super) fn wrong_spline(&mut self, spline: &ast::Spline, error: KnotError) {
         let part = |expr: &Option<ast::Expr>| expr.as_ref().map(|expr| expr.span);
         let knot = |index: usize| spline.knots.as_ref().and_then(|knots| knots.elements.get(index)).map(|e| e.span);
         let (span, help) = match error {

@@ -214,6 +214,8 @@ pub enum Collocation {
         points: usize,
         /// Points for equalities; the same number unless told.
         equalities: usize,
+        /// Whether inequalities hold at the ends of intervals too.
+        ends: bool,
     },
     /// Equally spaced breakpoints, trapezoid rule.
     Uniform {

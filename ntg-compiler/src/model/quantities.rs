@@ -355,11 +355,16 @@ impl<'a> Elaborator<'a> {
 fn places(axes: &[i64]) -> Vec<Vec<Form>> {
     let mut all = vec![vec![]];
     for n in axes {
-        all = all.into_iter().flat_map(|at: Vec<Form>| (1..=*n).map(move |k| {
-            let mut at = at.clone();
-            at.push(Form::number(k));
-            at
-        })).collect();
+        all = all
+            .into_iter()
+            .flat_map(|at: Vec<Form>| {
+                (1..=*n).map(move |k| {
+                    let mut at = at.clone();
+                    at.push(Form::number(k));
+                    at
+                })
+            })
+            .collect();
     }
     all
 }

@@ -24,13 +24,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn reduce(
-        &mut self,
-        cx: &Context<'a>,
-        reduction: &'a Reduction,
-        (fold, at): (Fold, &[Form]),
-        span: Span,
-    ) -> Value {
+    fn reduce(&mut self, cx: &Context<'a>, reduction: &'a Reduction, (fold, at): (Fold, &[Form]), span: Span) -> Value {
         let Some((over, inner)) = self.range(cx, &reduction.over) else { return self.poison(span) };
         self.reduce_over(cx, reduction, (fold, at), (&over, &inner), span)
     }

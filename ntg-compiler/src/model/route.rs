@@ -101,8 +101,10 @@ impl<'a> Elaborator<'a> {
             _ => outputs.len(),
         };
         if point.coordinates.len() != wanted || wanted != outputs.len() {
-            let message =
-                format!("this point has {} coordinates, but the route is about {wanted} outputs", point.coordinates.len());
+            let message = format!(
+                "this point has {} coordinates, but the route is about {wanted} outputs",
+                point.coordinates.len()
+            );
             let finding = Diagnostic::new(Code::WrongCount, point.span, message);
             self.report(finding.help("write one coordinate for each output"));
             return None;

@@ -8,8 +8,8 @@
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
-use super::problem::{Form, Loop, PhaseAt};
 use super::element::Lazy;
+use super::problem::{Form, Loop, PhaseAt};
 use super::shape::Shape;
 use super::value::Value;
 use crate::source::Span;

@@ -99,7 +99,7 @@ impl Shape {
 impl<'a> Elaborator<'a> {
     /// The shape of an expression; none where something in it was told of.
     pub(super) fn shape(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Shape> {
-        let shape = if self.enter(expr.span) { self.shape_kind(cx, expr) } else { None };
+        let shape = if self.deeper(expr.span) { self.shape_kind(cx, expr) } else { None };
         self.leave();
         shape
     }
@@ -157,8 +157,10 @@ impl<'a> Elaborator<'a> {
             ExprKind::Der { of, .. } => self.shape(cx, of),
             ExprKind::Partial { .. } => Some(Shape::NUMBER),
             ExprKind::Integral { path, of } | ExprKind::Boundary { path, of, .. } => {
-                let stretches = self.stretches_of(cx, path.as_ref(), expr.span)?;
-                let inner = self.on(cx, stretches.first()?, Point::Path);
+                // What is wrong with a path is told of here, and must not hide what else is wrong.
+                let stretches = self.stretches_of(cx, path.as_ref(), expr.span).unwrap_or_default();
+                let Some(first) = stretches.first() else { return Some(Shape::NUMBER) };
+                let inner = self.on(cx, first, Point::Path);
                 self.shape(&inner, of)
             }
             ExprKind::Reduce(reduction) => {
@@ -238,6 +240,13 @@ impl<'a> Elaborator<'a> {
                 (MulOp::Multiply, [], _) => shape,
                 (MulOp::Multiply, [n, m], [k]) if m == k => Shape::Of(vec![*n]),
                 (MulOp::Multiply, [n, m], [k, l]) if m == k => Shape::Of(vec![*n, *l]),
+                (MulOp::Multiply, [_], [_]) => {
+                    let (this, that) = (self.text(span), self.text(factor.span));
+                    let message = format!("`{this} * {that}` has no one meaning: both are vectors");
+                    let finding = Diagnostic::new(Code::ShapeMismatch, span.to(factor.span), message);
+                    self.report(finding.help("a product of two vectors is `dot(a, b)` or `cross(a, b)`"));
+                    return None;
+                }
                 _ => {
                     let left = left.clone();
                     let help = product_help(*op, &left, &shape);
@@ -255,9 +264,13 @@ impl<'a> Elaborator<'a> {
     pub(super) fn misfit_shapes(&mut self, (a, left): (Span, &Shape), (b, right): (Span, &Shape), help: &str) {
         let (this, that) = (self.text(a), self.text(b));
         let message = match (left.is_number(), right.is_number()) {
-            (true, _) => format!("the shapes do not fit: `{this}` is a number, `{that}` has {} elements", right.sizes()),
+            (true, _) => {
+                format!("the shapes do not fit: `{this}` is a number, `{that}` has {} elements", right.sizes())
+            }
             (_, true) => format!("the shapes do not fit: `{this}` has {} elements, `{that}` is a number", left.sizes()),
-            _ => format!("the shapes do not fit: `{this}` has {} elements, `{that}` has {}", left.sizes(), right.sizes()),
+            _ => {
+                format!("the shapes do not fit: `{this}` has {} elements, `{that}` has {}", left.sizes(), right.sizes())
+            }
         };
         let whole = if a.start <= b.start { a.to(b) } else { b.to(a) };
         let between = Span { start: a.end.min(b.end), end: a.start.max(b.start) };
@@ -298,7 +311,7 @@ impl<'a> Elaborator<'a> {
         let (segment, outer) = path.segments.split_last()?;
         let name = segment.name.text.as_str();
         if !outer.is_empty() {
-            let inner = self.enter_path(cx, outer)?;
+            let Some(inner) = self.enter_path(cx, outer) else { return Some(Shape::NUMBER) };
             let inner = Context { lexical: inner.scope, point: Point::Nowhere, ..inner };
             return match self.inside(inner.scope, name) {
                 Some(entity) => self.entity_shape(&inner, entity, segment),
@@ -353,7 +366,13 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What is left of the axes of a name when its indices are taken; `whole` where no axes are and none is taken.
-    pub(super) fn indexed_shape(&mut self, cx: &Context<'a>, segment: &'a Segment, axes: &[Ends], whole: Shape) -> Option<Shape> {
+    pub(super) fn indexed_shape(
+        &mut self,
+        cx: &Context<'a>,
+        segment: &'a Segment,
+        axes: &[Ends],
+        whole: Shape,
+    ) -> Option<Shape> {
         if axes.is_empty() || segment.indices.len() > axes.len() {
             return Some(if segment.indices.is_empty() { whole } else { Shape::NUMBER });
         }
@@ -376,7 +395,9 @@ impl<'a> Elaborator<'a> {
             Some(extent) if extent > 0 => return Some(extent),
             Some(_) => {
                 let message = format!("`{}` has no elements", self.text(span));
-                self.report(Diagnostic::new(Code::IndexOutside, span, message).help("write `first .. last`, both included"));
+                self.report(
+                    Diagnostic::new(Code::IndexOutside, span, message).help("write `first .. last`, both included"),
+                );
             }
             None => {
                 let message = format!("how many elements `{}` has depends on an index", self.text(span));
@@ -438,7 +459,8 @@ impl<'a> Elaborator<'a> {
         let name = call.function.text.as_str();
         match look_up(&self.scopes, cx.scope, name).map(|(_, declared)| declared.entity) {
             Some(Entity::Function(function)) => {
-                let shapes = call.arguments.iter().map(|argument| self.shape(cx, argument)).collect::<Option<Vec<_>>>()?;
+                let shapes =
+                    call.arguments.iter().map(|argument| self.shape(cx, argument)).collect::<Option<Vec<_>>>()?;
                 self.function_shape(cx, function, call, shapes)
             }
             Some(Entity::Table(_)) => self.numbers_only(cx, call),
@@ -473,7 +495,13 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The shape of what a function of the spec gives for arguments of these shapes.
-    fn function_shape(&mut self, cx: &Context<'a>, function: usize, call: &'a Call, shapes: Vec<Shape>) -> Option<Shape> {
+    fn function_shape(
+        &mut self,
+        cx: &Context<'a>,
+        function: usize,
+        call: &'a Call,
+        shapes: Vec<Shape>,
+    ) -> Option<Shape> {
         let (declared, scope) = (self.functions[function].function, self.functions[function].scope);
         if declared.parameters.len() != shapes.len() {
             return Some(Shape::NUMBER); // Whoever applies it tells.
@@ -525,7 +553,12 @@ impl<'a> Elaborator<'a> {
         }
         let n = shapes[0].axes()[0];
         if matches!(function, VectorFunction::Cross | VectorFunction::Skew) && n != 3 {
-            let message = format!("`{}` is about vectors of 3, `{}` is {}", call.function.text, self.text(first.span), shapes[0].describe());
+            let message = format!(
+                "`{}` is about vectors of 3, `{}` is {}",
+                call.function.text,
+                self.text(first.span),
+                shapes[0].describe()
+            );
             let help = match (function, n) {
                 (VectorFunction::Cross, 2) => "in the plane write `a[1] * b[2] - a[2] * b[1]`",
                 _ => "write vectors with three elements",
@@ -549,8 +582,12 @@ impl<'a> Elaborator<'a> {
         let message = format!("`{name}` takes {wanted}, `{text}` is {}", shape.describe());
         let help = match (function, shape.axes().len()) {
             (VectorFunction::Sum, _) => "over an index write `sum(i in 1 .. N, ...)`".to_owned(),
-            (VectorFunction::Norm, 0) => format!("the size of a number is `abs({text})`, that of several `hypot(a, b)`"),
-            (VectorFunction::Transpose, 1) => "a vector stands for a row and for a column: leave it as it is".to_owned(),
+            (VectorFunction::Norm, 0) => {
+                format!("the size of a number is `abs({text})`, that of several `hypot(a, b)`")
+            }
+            (VectorFunction::Transpose, 1) => {
+                "a vector stands for a row and for a column: leave it as it is".to_owned()
+            }
             _ => "a vector is a name with elements, or a list `(a, b, c)`".to_owned(),
         };
         self.report(Diagnostic::new(Code::ShapeMismatch, span, message).help(help));
@@ -570,7 +607,6 @@ fn last(shapes: &[Shape]) -> Shape {
 fn product_help(op: MulOp, left: &Shape, right: &Shape) -> &'static str {
     match (op, left.axes().len(), right.axes().len()) {
         (MulOp::Divide, _, _) => "divide by a number, such as `norm(v)`",
-        (_, 1, 1) => "a product of two vectors is `dot(a, b)` or `cross(a, b)`",
         (_, 1, 2) => "a matrix stands before its vector: `transpose(A) * v`",
         _ => "the second has as many rows as the first has columns; `transpose(A)` exchanges both",
     }

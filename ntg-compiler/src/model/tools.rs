@@ -2,6 +2,7 @@
 
 use super::functions::BUILTINS;
 use super::units::{self, SYMBOLS};
+use super::vectors::VECTOR_FUNCTIONS;
 use crate::source::Source;
 use crate::syntax;
 
@@ -12,7 +13,7 @@ pub fn unit_symbols() -> impl Iterator<Item = &'static str> {
 
 /// Every function of the language that is applied like one of the user's own.
 pub fn functions() -> impl Iterator<Item = &'static str> {
-    BUILTINS.iter().map(|builtin| builtin.name())
+    BUILTINS.iter().map(|builtin| builtin.name()).chain(VECTOR_FUNCTIONS.iter().map(|(name, _)| *name))
 }
 
 /// What a unit, written without its brackets, measures, and how many SI units it is: `a speed [m/s]`, 1000 for `km/s`.

@@ -27,7 +27,10 @@ impl Look {
                     self.unit(&v.unit);
                     self.bounds(&v.bounds);
                 }
-                ItemKind::Output(o) => o.names.iter().for_each(|name| self.unit(&name.unit)),
+                ItemKind::Output(o) => o.names.iter().for_each(|name| {
+                    self.unit(&name.unit);
+                    self.bounds(&name.bounds);
+                }),
                 ItemKind::Function(f) => self.expr(&f.body),
                 ItemKind::Let(l) => {
                     self.unit(&l.unit);

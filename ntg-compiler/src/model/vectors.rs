@@ -78,7 +78,13 @@ pub(super) fn vector_function(name: &str) -> Option<VectorFunction> {
 
 impl<'a> Elaborator<'a> {
     /// An element of a function of vectors.
-    pub(super) fn vector_call(&mut self, cx: &Context<'a>, function: VectorFunction, call: &'a Call, at: &[Form]) -> Value {
+    pub(super) fn vector_call(
+        &mut self,
+        cx: &Context<'a>,
+        function: VectorFunction,
+        call: &'a Call,
+        at: &[Form],
+    ) -> Value {
         // Shapes first: nothing below has to look again.
         let Some(shape) = self.call_shape(cx, call) else { return self.poison(call.span) };
         if shape.axes().len() != at.len() {
@@ -97,7 +103,8 @@ impl<'a> Elaborator<'a> {
             (VectorFunction::Cross, [k]) => self.cross(cx, (a, &call.arguments[1]), k, span),
             (VectorFunction::Transpose, [i, j]) => self.element(cx, a, &[j.clone(), i.clone()]),
             (VectorFunction::Outer, [i, j]) => {
-                let (left, right) = (self.element(cx, a, &[i.clone()]), self.element(cx, &call.arguments[1], &[j.clone()]));
+                let (left, right) =
+                    (self.element(cx, a, &[i.clone()]), self.element(cx, &call.arguments[1], &[j.clone()]));
                 self.times(left, &right)
             }
             (VectorFunction::Identity, [i, j]) => match (self.known(i, span), self.known(j, span)) {
@@ -166,22 +173,35 @@ impl<'a> Elaborator<'a> {
 
     /// The square root of the sum of squares; the sum itself is kept, so that an even power of it has no root.
     fn norm(&mut self, cx: &Context<'a>, v: &'a Expr, span: Span) -> Value {
-        let square = self.dot(cx, v, v, span);
         let n = self.length(cx, v);
-        let node = if n <= WRITTEN_OUT {
-            let elements = self.elements(cx, v, n);
-            if let Some(flawed) = elements.iter().find(|element| !element.is_sound()) {
-                return flawed.clone();
+        if n > WRITTEN_OUT {
+            let square = self.dot(cx, v, v, span);
+            let node = self.problem.dag.sqrt(square.node);
+            if square.is_sound() {
+                self.squares.insert(node, square.node);
             }
-            let nodes: Vec<NodeId> = elements.iter().map(|element| element.node).collect();
-            self.length_of(&nodes)
-        } else {
-            self.problem.dag.sqrt(square.node)
-        };
-        if square.is_sound() {
-            self.squares.insert(node, square.node);
+            return square.map(node, square.dimension.map(|d| d.power(Ratio::new(1, 2))), span);
         }
-        square.map(node, square.dimension.map(|d| d.power(Ratio::new(1, 2))), span)
+        let mut joined: Option<Value> = None;
+        let mut nodes: Vec<NodeId> = Vec::new();
+        for element in self.elements(cx, v, n) {
+            nodes.push(element.node);
+            joined = Some(match joined {
+                None => element,
+                Some(first) => self.alike("add", first, &element, element.node),
+            });
+        }
+        let Some(joined) = joined else { return self.poison(span) };
+        let node = self.length_of(&nodes);
+        if joined.is_sound() {
+            let zero = self.problem.dag.constant(0.0);
+            let square = nodes.iter().fold(zero, |sum, node| {
+                let square = self.problem.dag.mul(*node, *node);
+                self.problem.dag.add(sum, square)
+            });
+            self.squares.insert(node, square);
+        }
+        joined.map(node, joined.dimension, span).shown_in(joined.unit.clone())
     }
 
     /// The length of a vector with these elements.

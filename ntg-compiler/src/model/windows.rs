@@ -54,7 +54,9 @@ impl Elaborator<'_> {
             Node::Input(input) => match self.problem.leaves.leaf(input) {
                 Leaf::Duration(at) => self.duration_window(at.phase),
                 Leaf::Start(at) => self.start_window(at),
-                Leaf::Variable { variable, index: None } => self.bounds_window(&self.problem.variables[*variable].bounds),
+                Leaf::Variable { variable, index: None } => {
+                    self.bounds_window(&self.problem.variables[*variable].bounds)
+                }
                 _ => ANYTHING,
             },
             Node::Unary(Unary::Neg, a) => {

@@ -144,7 +144,8 @@ impl Copy<'_, '_> {
             }
             Leaf::Variable { variable, index } => {
                 let name = identifier(&self.lowering.problem.variables[*variable].name);
-                let slot = Slot::Variable { variable: *variable, index: index.as_ref().map(|form| environment.affine(form)) };
+                let slot =
+                    Slot::Variable { variable: *variable, index: index.as_ref().map(|form| environment.affine(form)) };
                 let input = self.inputs.slot(slot, &format!("{name}_v"));
                 self.input(input)
             }

@@ -10,16 +10,17 @@ use crate::model::problem::{Collocation, Domain, Leaf, PhaseAt, Problem};
 ///
 /// Integrands stand at quadrature points, equalities at the collocation points, inequalities at
 /// the quadrature points and at both ends of every interval: once where the function is
-/// continuous, from both sides where a derivative in it jumps.
+/// continuous, from both sides where a derivative in it jumps; `inequalities = points` leaves the ends out.
 pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> Vec<Points> {
-    let (points, equalities) = match problem.phases[phase.phase].collocation {
+    let (points, equalities, ends) = match problem.phases[phase.phase].collocation {
         Collocation::Uniform { points } => return vec![Points::Uniform { points }],
-        Collocation::Gauss { points, equalities } => (points, equalities),
+        Collocation::Gauss { points, equalities, ends } => (points, equalities, ends),
     };
     match &piece.role {
         Role::Constraint { bounds, .. } if bounds.lower.is_some() && bounds.lower == bounds.upper => {
             vec![Points::Gauss { points: equalities }]
         }
+        Role::Constraint { .. } if !ends => vec![Points::Gauss { points }],
         Role::Constraint { .. } => {
             let mut sets = vec![Points::Gauss { points }, Points::Breakpoints];
             if jumps(problem, piece) {

@@ -184,25 +184,53 @@ pub struct Bounds {
     pub span: Span,
 }
 
-/// `output names: spline(...);`
+/// `output names: spline(...);`, `state names;`, `input names: held;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
+    /// Which word declares them.
+    pub role: Role,
     /// The outputs declared at once, one at least.
     pub names: Vec<OutputName>,
     /// What they are made of.
-    pub spline: Spline,
+    pub course: Course,
 }
 
-/// `x`, `x [km]`, `x[1 .. N]` or `x[1 .. N] [km]` in a list of outputs.
+/// What an output is in a system of equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// `output`: whatever the constraints make of it.
+    Output,
+    /// `state`: its derivatives stand in `dynamics`.
+    State,
+    /// `input`: chosen freely.
+    Input,
+}
+
+/// How smooth an output is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Course {
+    /// `: spline(...)`, the only one for `output`.
+    Spline(Spline),
+    /// `: held`: one value in each interval.
+    Held,
+    /// `: continuous`: no jumps between intervals.
+    Continuous,
+    /// Nothing written: as the collocation and the equations ask for.
+    Collocated,
+}
+
+/// `x`, `x [km]`, `x[1 .. N] [km]` or `m in 750 .. 2000 [kg]` in a list of outputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputName {
     /// Its name.
     pub name: Ident,
     /// The size, for an array.
     pub shape: Option<Shape>,
-    /// Its unit: its own, else the last one of the list.
+    /// Its unit: its own, else the one that the list gives it.
     pub unit: Option<Unit>,
-    /// Name, size and its own unit.
+    /// Between what it stays all the way.
+    pub bounds: Option<Bounds>,
+    /// Name, size, its own unit and bounds.
     pub span: Span,
 }
 
@@ -321,6 +349,12 @@ pub struct Collocation {
     pub points: Option<Expr>,
     /// `equalities`: points per knot interval at which equalities hold; `gauss` only.
     pub equalities: Option<Expr>,
+    /// `inequalities = points`: inequalities hold at the points alone, not at the ends of intervals; `gauss` only.
+    pub inequalities: Option<Expr>,
+    /// `intervals` of every spline that says nothing else.
+    pub intervals: Option<Expr>,
+    /// `knots` of every spline that says nothing else.
+    pub knots: Option<Values>,
 }
 
 /// Which points a problem is collocated at.

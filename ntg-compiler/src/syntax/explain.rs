@@ -7,7 +7,7 @@
 use super::grammar::{Rule, Stuck};
 use super::recover::{Body, text};
 use super::scan::{Scan, Token, TokenKind};
-use super::words::{ITEM_WORDS, LATER_WORDS, is_reserved, nearest_item_word};
+use super::words::{ITEM_WORDS, LATER_WORDS, OTHER_ITEM_WORDS, is_reserved, nearest_item_word};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 
@@ -55,7 +55,7 @@ pub(super) fn misplaced(scan: &Scan, body: Body, at: usize, end: usize) -> Optio
     if !matches!(body, Body::Items(_)) {
         return foreign_item(scan, body, token, word);
     }
-    let is_item = ITEM_WORDS.contains(&word) || matches!(word, "initial" | "final" | "duration" | "start" | "jump");
+    let is_item = ITEM_WORDS.contains(&word) || OTHER_ITEM_WORDS.contains(&word);
     if word == "problem" {
         let finding = Diagnostic::new(Code::OneProblem, token.span, "a problem does not stand in another one");
         return Some(finding.help("a spec is exactly one `problem Name { ... }`"));
@@ -66,7 +66,8 @@ pub(super) fn misplaced(scan: &Scan, body: Body, at: usize, end: usize) -> Optio
 /// A declaration in a block of constraints, a guess or a table.
 fn foreign_item(scan: &Scan, body: Body, token: &Token, word: &str) -> Option<Diagnostic> {
     let follows = scan.tokens.get(scan.tokens.partition_point(|other| other.span.start <= token.span.start));
-    let is_block = matches!(word, "initial" | "final") && follows.is_some_and(|next| text(scan, next) == "{");
+    let is_block =
+        matches!(word, "initial" | "final" | "dynamics") && follows.is_some_and(|next| text(scan, next) == "{");
     if !ITEM_WORDS.contains(&word) && !is_block {
         return None;
     }
@@ -93,6 +94,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
     }
     let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
     match nearest_item_word(word) {
+        _ if matches!(word, "control" | "controls") => finding.help("what is chosen freely is an `input`"),
         _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
         Some(meant) => finding.help(format!("did you mean `{meant}`?")),
         None => finding.help("a statement begins with a word such as `let`, `output`, `param` or `trajectory`"),

@@ -162,7 +162,7 @@ impl Walk<'_> {
             ("for", Body::Constraints | Body::Guess) => (Rule::whole_for_head, body),
             ("phase", Body::Items(_)) => (Rule::whole_phase_head, Body::Items(Scope::Phase)),
             ("agent", Body::Items(_)) => (Rule::whole_agent_head, Body::Items(Scope::Agent)),
-            ("initial" | "trajectory" | "final" | "temporal", Body::Items(_)) => {
+            ("initial" | "trajectory" | "final" | "temporal" | "dynamics", Body::Items(_)) => {
                 (Rule::whole_block_head, Body::Constraints)
             }
             ("guess", Body::Items(_)) => (Rule::whole_guess_head, Body::Guess),

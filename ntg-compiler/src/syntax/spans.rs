@@ -74,7 +74,7 @@ macro_rules! spanless {
 }
 
 spanless!(String, f64, bool, i32, Sign, MulOp, Boundary, Event, ReduceOp, Comparison, BlockPlace);
-spanless!(Symmetry, MethodKind, Extrapolate, CollocationKind, Sense);
+spanless!(Symmetry, MethodKind, Extrapolate, CollocationKind, Sense, Role);
 
 /// A structure, by all of its fields.
 macro_rules! structures {
@@ -99,8 +99,8 @@ structures! {
     Values { elements, is_tuple, span }
     Variable { name, shape, unit, bounds }
     Bounds { lower, upper, span }
-    Output { names, spline }
-    OutputName { name, shape, unit, span }
+    Output { role, names, course }
+    OutputName { name, shape, unit, bounds, span }
     Spline { order, intervals, knots, smoothness, span }
     Function { name, parameters, body }
     Let { name, shape, unit, value }
@@ -115,7 +115,7 @@ structures! {
     Agent { name, family, items }
     Jump { outputs }
     Continuous { outputs, up_to }
-    Collocation { kind, points, equalities }
+    Collocation { kind, points, equalities, inequalities, intervals, knots }
     Objective { sense, name, unit, value }
     Block { place, statements }
     Constraint { doc, name, relation, span }
@@ -169,6 +169,7 @@ choices! {
     }
     TableData { Inline(x); File { path, span }; }
     Extent { Fixed(x), Free(x);; }
+    Course { Spline(x);; Held, Continuous, Collocated }
     Statement<T> { One(x), For(x);; }
     Relation {
         ;

@@ -37,7 +37,7 @@ pub const LATER_WORDS: &[&str] = &["at", "if", "import", "piecewise", "scale", "
 pub(crate) const NEVER_NAMES: &[&str] = &["Self", "crate", "self", "super"];
 
 /// Words that begin a declaration though they are reserved for expressions, or not at all.
-const OTHER_ITEM_WORDS: &[&str] = &["duration", "final", "initial", "jump", "start"];
+pub const OTHER_ITEM_WORDS: &[&str] = &["duration", "dynamics", "final", "initial", "input", "jump", "start", "state"];
 
 /// Whether no name may be so.
 pub(crate) fn is_reserved(word: &str) -> bool {

@@ -232,11 +232,13 @@ impl Walk {
             ItemKind::Output(it) => {
                 for name in &it.names {
                     self.size(scope, &name.shape);
+                    name.bounds.iter().for_each(|bounds| self.bounds(scope, bounds));
                 }
-                let spline = &it.spline;
-                let settings = [&spline.order, &spline.intervals, &spline.smoothness];
-                settings.into_iter().flatten().for_each(|setting| self.expr(scope, setting));
-                spline.knots.iter().for_each(|knots| self.values(scope, knots));
+                if let Course::Spline(spline) = &it.course {
+                    let settings = [&spline.order, &spline.intervals, &spline.smoothness];
+                    settings.into_iter().flatten().for_each(|setting| self.expr(scope, setting));
+                    spline.knots.iter().for_each(|knots| self.values(scope, knots));
+                }
             }
             ItemKind::Function(it) => self.function(scope, it, item.span),
             ItemKind::Let(it) => self.named(scope, it, item.span),
@@ -268,7 +270,9 @@ impl Walk {
                 self.expr(scope, &it.up_to);
             }
             ItemKind::Collocation(it) => {
-                [&it.points, &it.equalities].into_iter().flatten().for_each(|points| self.expr(scope, points));
+                let settings = [&it.points, &it.equalities, &it.intervals];
+                settings.into_iter().flatten().for_each(|points| self.expr(scope, points));
+                it.knots.iter().for_each(|knots| self.values(scope, knots));
             }
             ItemKind::Objective(it) => {
                 if let Some(name) = &it.name {

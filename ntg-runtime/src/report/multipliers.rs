@@ -31,7 +31,8 @@ impl Solution {
             let RowKind::Constraint(index) = info.kind else { return None };
             let declared = &structure.constraints[index];
             let sense = sense(structure, declared.unit.factor);
-            (constraint_name(declared) == constraint).then(|| multiplier(layout, &self.inner.x, info, sense * raw))
+            is_called(constraint_name(declared), constraint)
+                .then(|| multiplier(layout, &self.inner.x, info, sense * raw))
         });
         own.collect()
     }
@@ -45,6 +46,11 @@ impl Solution {
         let unit = &self.variables()[position].unit;
         Some(sense(structure, unit.factor) * self.inner.bound_multipliers.get(first + position)?)
     }
+}
+
+/// Whether a constraint has a name; the rows of a vector, `burn[1]` and `burn[2]`, have that of their relation too.
+fn is_called(own: &str, name: &str) -> bool {
+    own == name || own.strip_prefix(name).is_some_and(|rest| rest.starts_with('['))
 }
 
 /// From SI and minimisation to the user's units and sense.

@@ -5,7 +5,7 @@
 use super::{Bounds, Doc, Event, Expr, Ident, IndexRange, Path};
 use crate::source::Span;
 
-/// `initial { ... }`, `trajectory { ... }`, `final { ... }`, `temporal { ... }`
+/// `initial { ... }`, `trajectory { ... }`, `final { ... }`, `temporal { ... }`, `dynamics { ... }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Where its constraints hold.
@@ -25,6 +25,8 @@ pub enum BlockPlace {
     Final,
     /// At no single point.
     Temporal,
+    /// All the way: the equations of motion.
+    Dynamics,
 }
 
 /// Something in a block, or a loop around some of it.

@@ -140,6 +140,8 @@ fn kind(rule: Rule) -> Kind {
         | R::param
         | R::variable
         | R::output
+        | R::state
+        | R::input
         | R::function
         | R::named
         | R::continuation
@@ -226,6 +228,7 @@ fn mark(rule: Rule) -> Kind {
         R::extent => Kind::Mark("="),
         R::after => Kind::Keyword("after".into()),
         R::spline => Kind::Keyword("spline".into()),
+        R::course => Kind::Keyword("continuous".into()),
         R::method => Kind::Name,
         R::place
         | R::whole_block_head

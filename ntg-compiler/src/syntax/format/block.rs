@@ -206,7 +206,9 @@ impl Writer<'_> {
         let mut line = Line::new(blank, indent, "");
         (line.cells, line.align) = match word.as_str() {
             "phase" | "agent" => (vec![head, inside], Align::Phases),
-            "initial" | "trajectory" | "final" | "temporal" | "guess" => (vec![head, inside], Align::Blocks),
+            "initial" | "trajectory" | "final" | "temporal" | "dynamics" | "guess" => {
+                (vec![head, inside], Align::Blocks)
+            }
             _ => (vec![format!("{head} {inside}")], Align::Nothing),
         };
         let width = line.cells.iter().map(|cell| cell.chars().count()).sum::<usize>() + line.cells.len() - 1;

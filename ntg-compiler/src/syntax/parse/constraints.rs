@@ -18,6 +18,7 @@ impl Build {
             "initial" => BlockPlace::Initial,
             "trajectory" => BlockPlace::Trajectory,
             "final" => BlockPlace::Final,
+            "dynamics" => BlockPlace::Dynamics,
             _ => BlockPlace::Temporal,
         };
         Block { place, statements: parts.map(|pair| self.statement(pair)).collect() }

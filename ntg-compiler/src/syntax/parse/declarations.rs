@@ -4,7 +4,8 @@ use super::Build;
 use super::parts::Parts;
 use super::shapes::Indices;
 use crate::syntax::ast::{
-    Const, Continuation, Function, Let, Objective, Output, OutputName, Param, Sense, Spline, Unit, Variable,
+    Const, Continuation, Course, Function, Let, Objective, Output, OutputName, Param, Role, Sense, Spline, Unit,
+    Variable,
 };
 use crate::syntax::grammar::{Pair, Rule};
 
@@ -40,10 +41,37 @@ impl Build {
         }
         // Names without a unit take the last one of the list.
         let last: Option<Unit> = names.iter().rev().find_map(|name| name.unit.clone());
-        for name in names.iter_mut().filter(|name| name.unit.is_none()) {
+        for name in names.iter_mut().filter(|name| name.unit.is_none() && name.bounds.is_none()) {
             name.unit.clone_from(&last);
         }
-        Output { names, spline: self.spline(parts.required(Rule::spline)) }
+        let course = Course::Spline(self.spline(parts.required(Rule::spline)));
+        Output { role: Role::Output, names, course }
+    }
+
+    /// `state` or `input`.
+    pub(super) fn process(&mut self, pair: Pair<'_>, role: Role) -> Output {
+        let mut parts = Parts::of(pair);
+        let mut names = vec![];
+        while let Some(pair) = parts.optional(Rule::output_name) {
+            names.push(self.output_name(pair));
+        }
+        // A name without unit and bounds takes the next unit to its right, else the last one of the list.
+        let last: Option<Unit> = names.iter().rev().find_map(|name| name.unit.clone());
+        let mut next = last;
+        for name in names.iter_mut().rev() {
+            match &name.unit {
+                Some(unit) => next = Some(unit.clone()),
+                None if name.bounds.is_none() => name.unit.clone_from(&next),
+                None => {}
+            }
+        }
+        let course = match parts.next() {
+            None => Course::Collocated,
+            Some(pair) if pair.as_rule() == Rule::spline => Course::Spline(self.spline(pair)),
+            Some(pair) if pair.as_str() == "held" => Course::Held,
+            Some(_) => Course::Continuous,
+        };
+        Output { role, names, course }
     }
 
     fn output_name(&mut self, pair: Pair<'_>) -> OutputName {
@@ -52,7 +80,8 @@ impl Build {
         let name = self.name(&parts.required(Rule::name));
         let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::Refused));
         let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
-        OutputName { name, shape, unit, span }
+        let bounds = parts.optional(Rule::bounds).map(|pair| self.bounds(pair));
+        OutputName { name, shape, unit, bounds, span }
     }
 
     fn spline(&mut self, pair: Pair<'_>) -> Spline {

@@ -4,7 +4,7 @@
 //! minus make nodes inside nodes, and the scan has counted those.
 
 use super::Build;
-use super::lists::{is_tuple, share_last_unit};
+use super::lists::is_tuple;
 use super::parts::Parts;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Index, MulOp, Path, Segment, Sign};
@@ -67,9 +67,8 @@ impl Build {
             let inner = self.expression(Parts::of(pair).required(Rule::expression));
             return Expr { span, ..inner };
         }
-        let mut list = self.tuple(pair);
+        let list = self.tuple(pair);
         self.unused_unit(&list);
-        share_last_unit(&mut list.elements);
         list.into_expression()
     }
 

@@ -4,7 +4,7 @@ use super::parts::Parts;
 use super::{Build, Scope};
 use crate::diagnostic::Code;
 use crate::source::Span;
-use crate::syntax::ast::{Item, ItemKind, Problem};
+use crate::syntax::ast::{Item, ItemKind, Problem, Role};
 use crate::syntax::grammar::{Pair, Rule};
 
 impl Build {
@@ -43,6 +43,8 @@ impl Build {
             Rule::param => ItemKind::Param(self.param(pair)),
             Rule::variable => ItemKind::Variable(self.variable(pair)),
             Rule::output => ItemKind::Output(self.output(pair)),
+            Rule::state => ItemKind::Output(self.process(pair, Role::State)),
+            Rule::input => ItemKind::Output(self.process(pair, Role::Input)),
             Rule::function => ItemKind::Function(self.function(pair)),
             Rule::named => ItemKind::Let(self.named(pair)),
             Rule::continuation => ItemKind::Continuation(self.continuation(pair)),

@@ -134,7 +134,7 @@ impl Build {
 }
 
 /// Gives the last element's unit to the other bare literals of a list.
-pub(super) fn share_last_unit(elements: &mut [Expr]) {
+fn share_last_unit(elements: &mut [Expr]) {
     let Some((last, others)) = elements.split_last_mut() else { return };
     let Some(unit) = own_unit(last) else { return };
     give_units(others, &unit);

@@ -88,6 +88,7 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_from
             | R::kw_guess
             | R::kw_in
+            | R::kw_input
             | R::kw_jump
             | R::kw_let
             | R::kw_output
@@ -96,6 +97,7 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_problem
             | R::kw_spline
             | R::kw_start
+            | R::kw_state
             | R::kw_table
             | R::kw_through
             | R::kw_to

@@ -74,14 +74,17 @@ impl Build {
                 };
                 let span = self.span(&name);
                 self.report(Code::Setting, span, format!("`{word}` is no kind of collocation"), help);
-                return Collocation { kind: CollocationKind::Gauss, points: None, equalities: None };
+                let kind = CollocationKind::Gauss;
+                let (points, equalities, inequalities, intervals, knots) = (None, None, None, None, None);
+                return Collocation { kind, points, equalities, inequalities, intervals, knots };
             }
         };
         let mut settings = self.settings(owner, parts.next());
         let mut points = settings.value(self, "points");
-        let mut equalities = None;
+        let (mut equalities, mut inequalities) = (None, None);
         if kind == CollocationKind::Gauss {
             equalities = settings.value(self, "equalities");
+            inequalities = settings.value(self, "inequalities");
         } else if let Some(breakpoints) = settings.value(self, "breakpoints") {
             if let Some(points) = &points {
                 let message = "`points` and `breakpoints` are two words for the same";
@@ -89,7 +92,9 @@ impl Build {
             }
             points = Some(breakpoints);
         }
+        let intervals = settings.value(self, "intervals");
+        let knots = settings.values(self, "knots");
         settings.finish(self);
-        Collocation { kind, points, equalities }
+        Collocation { kind, points, equalities, inequalities, intervals, knots }
     }
 }
