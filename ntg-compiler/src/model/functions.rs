@@ -6,12 +6,10 @@
 //! User functions are inlined: their arguments are values, their bodies are elaborated anew for
 //! every use, so they are generic in dimensions.
 
-use std::cell::RefCell;
 use std::rc::Rc;
 
 use super::dimension::{Dimension, Ratio};
 use super::elaborator::Elaborator;
-use super::element::Lazy;
 use super::kinds::Kind;
 use super::problem::Form;
 use super::scope::{Allow, Context, Entity, Meaning, look_up, visible};
@@ -165,52 +163,6 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// The arguments of a call as numbers.
-    fn plain_arguments(&mut self, cx: &Context<'a>, call: &'a Call) -> Vec<Value> {
-        call.arguments.iter().map(|argument| self.value(cx, argument)).collect()
-    }
-
-    /// The arguments of a function of the spec: numbers at once, vectors as rules.
-    pub(super) fn arguments(&mut self, cx: &Context<'a>, call: &'a Call) -> Option<Vec<Meaning<'a>>> {
-        let mut arguments = Vec::with_capacity(call.arguments.len());
-        for argument in &call.arguments {
-            let shape = self.shape(cx, argument)?;
-            arguments.push(if shape.is_number() {
-                Meaning::Argument(self.value(cx, argument))
-            } else {
-                Meaning::Lazy(Rc::new(Lazy { cx: cx.clone(), expr: argument, shape, known: RefCell::default() }))
-            });
-        }
-        Some(arguments)
-    }
-
-    /// `hypot`, `min` and `max` of numbers and of the elements of vectors.
-    fn spread(&mut self, cx: &Context<'a>, builtin: Builtin, call: &'a Call) -> Value {
-        let mut arguments = Vec::new();
-        for argument in &call.arguments {
-            match self.shape(cx, argument) {
-                Some(shape) if shape.is_number() => arguments.push(self.value(cx, argument)),
-                Some(shape) => {
-                    let n = shape.axes().first().copied().unwrap_or(0);
-                    arguments.extend(self.elements(cx, argument, n));
-                }
-                None => return self.poison(call.span),
-            }
-        }
-        if let [_, _, ..] = call.arguments.as_slice()
-            && !self.arity(call, 1, usize::MAX)
-        {
-            return self.poison(call.span);
-        }
-        let flaw = arguments.iter().fold(None, |flaw, value| Flaw::join(&flaw, &value.flaw));
-        if matches!(flaw, Some(Flaw::Reported)) {
-            return self.poison(call.span);
-        }
-        let mut result = self.applied(builtin, call, &arguments);
-        result.flaw = Flaw::join(&result.flaw, &flaw);
-        result
-    }
-
     pub(super) fn no_function(&mut self, cx: &Context<'a>, call: &Call, entity: Option<Entity>) -> Value {
         let name = call.function.text.as_str();
         let span = call.function.span;
@@ -277,7 +229,7 @@ impl<'a> Elaborator<'a> {
         result
     }
 
-    fn applied(&mut self, builtin: Builtin, call: &Call, arguments: &[Value]) -> Value {
+    pub(super) fn applied(&mut self, builtin: Builtin, call: &Call, arguments: &[Value]) -> Value {
         let (first, span) = (&arguments[0], call.span);
         match builtin.rule {
             Rule::Pure(op) => {

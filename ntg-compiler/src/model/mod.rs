@@ -5,6 +5,7 @@
 //! All findings are told at once: a name that is wrong does not hide the next.
 //! Afterwards: no names are left in expressions, every dimension is right, and everything is in SI units.
 
+mod arguments;
 mod check;
 mod collocated;
 mod constants;
@@ -39,6 +40,8 @@ mod rows;
 mod scope;
 mod settle;
 mod shape;
+mod shape_calls;
+mod shape_names;
 mod suggest;
 mod table_data;
 mod table_report;
