@@ -34,6 +34,7 @@ macro_rules! specs {
 
 specs! {
     gates: "specs/gates.ntg" => Gates,
+    halo_orbit: "specs/halo_orbit.ntg" => HaloOrbit,
     kinematic_car: "specs/kinematic_car.ntg" => KinematicCar,
     kinematic_car_gauss: "specs/kinematic_car_gauss.ntg" => KinematicCarGauss,
     launch: "specs/launch.ntg" => Launch,
@@ -50,8 +51,10 @@ specs! {
     multi_vehicle_look_after_strike: "specs/multi_vehicle_look_after_strike.ntg" => MultiVehicleLookAfterStrike,
     multi_vehicle_separated: "specs/multi_vehicle_separated.ntg" => MultiVehicleSeparated,
     multi_vehicle_simultaneous: "specs/multi_vehicle_simultaneous.ntg" => MultiVehicleSimultaneous,
+    powered_descent_6dof: "specs/powered_descent_6dof.ntg" => PoweredDescent6dof,
     radar_net: "specs/radar_net.ntg" => RadarNet,
     strike_and_look: "specs/strike_and_look.ntg" => StrikeAndLook,
+    swarm: "specs/swarm.ntg" => Swarm,
     van_der_pol: "specs/van_der_pol.ntg" => VanDerPol,
     van_der_pol_gauss: "specs/van_der_pol_gauss.ntg" => VanDerPolGauss,
 }

@@ -14,4 +14,5 @@ mod oscillator;
 mod phases;
 mod resolve;
 mod support;
+mod vectors;
 mod vehicles;
