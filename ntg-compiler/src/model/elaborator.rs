@@ -322,6 +322,15 @@ impl<'a> Elaborator<'a> {
         match units::quantity(unit) {
             Ok(quantity) => Some((quantity, units::shown(unit, &quantity, self.source))),
             Err(finding) => {
+                // A constant in brackets was meant as a size.
+                let finding = match unit.factors.as_slice() {
+                    [ast::UnitFactor { base: ast::UnitBase::Symbol(name), power: 1, .. }]
+                        if self.scopes.iter().any(|scope| scope.names.contains_key(name.text.as_str())) =>
+                    {
+                        finding.help(format!("as a size write `[1 .. {}]`", name.text))
+                    }
+                    _ => finding,
+                };
                 self.report(finding);
                 None
             }

@@ -169,7 +169,12 @@ impl<'a> Elaborator<'a> {
         if let Some(entity) = entity {
             let message = format!("`{name}` is {}, not a function", entity.describe());
             let finding = Diagnostic::new(Code::NoFunction, span, message);
-            return self.refuse(finding.help(format!("to multiply, write `{name} * (...)`")), call.span);
+            let has_members = self.axes_of(cx, entity, name).is_some_and(|axes| !axes.is_empty());
+            let help = match call.arguments.as_slice() {
+                [only] if has_members => format!("an element is `{name}[{}]`", self.text(only.span)),
+                _ => format!("to multiply, write `{name} * (...)`"),
+            };
+            return self.refuse(finding.help(help), call.span);
         }
         let finding = Diagnostic::new(Code::NoFunction, span, format!("unknown function `{name}`"));
         let names = visible(&self.scopes, cx.scope);
@@ -183,8 +188,11 @@ impl<'a> Elaborator<'a> {
             ),
         ) {
             (Some(right), _) => finding.help(format!("write `{right}`")),
-            (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
-            (None, None) => finding.help("declare it by `fn` or `table`"),
+            (None, Some(near)) if !matches!(name, "inv" | "det") => finding.help(format!("did you mean `{near}`?")),
+            (None, _) if matches!(name, "inv" | "inverse" | "det" | "solve") => {
+                finding.help("write the equation without it: `A * x == b`, with `x` a state, an input or an output")
+            }
+            (None, _) => finding.help("declare it by `fn` or `table`"),
         };
         self.refuse(finding, call.span)
     }

@@ -118,6 +118,11 @@ impl<'a> Elaborator<'a> {
             (None, None) => format!("unknown phase or agent `{name}`"),
         };
         let finding = Diagnostic::new(Code::UnknownPhase, segment.name.span, message);
+        let of_array = entity.filter(|entity| !is_path(entity)).is_some();
+        let after = self.source.text.get(segment.span.end as usize..).unwrap_or_default();
+        if of_array && outer.is_none() && after.starts_with(".T") && !after[2..].starts_with(char::is_alphanumeric) {
+            return self.report(finding.help(format!("the transpose is `transpose({name})`")));
+        }
         let finding = match nearest(name, paths.iter().copied()) {
             Some(near) => finding.help(format!("did you mean `{near}`?")),
             None if paths.is_empty() => match outer {

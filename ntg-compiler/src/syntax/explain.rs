@@ -95,6 +95,9 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
     let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
     match nearest_item_word(word) {
         _ if matches!(word, "control" | "controls") => finding.help("what is chosen freely is an `input`"),
+        _ if matches!(word, "vector" | "matrix") => {
+            finding.help("a vector is declared by its size: `output r[3]: ...`, `param J[3, 3] = ...`")
+        }
         _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
         Some(meant) => finding.help(format!("did you mean `{meant}`?")),
         None => finding.help("a statement begins with a word such as `let`, `output`, `param` or `trajectory`"),
@@ -220,6 +223,15 @@ impl Here<'_> {
         }
         if this == "+" && self.expected.has_expression() {
             return Some("a number without a sign is positive: remove the `+`".into());
+        }
+        if this == "[" && before == "]" {
+            return Some("several indices stand in one bracket: `A[1, 2]`".into());
+        }
+        if this == "[" && self.expected.has_expression() {
+            return Some("a vector is a list in parentheses, `(1, 0, 0)`; brackets are units and indices".into());
+        }
+        if before == "." && matches!(this, "*" | "/" | "^") {
+            return Some("there is no product element by element: write it for an index, `a[i] * b[i]`".into());
         }
         if this == "==" && self.expected.has(Rule::equals) {
             return Some("here a value is given, with one `=`".into());

@@ -15,6 +15,9 @@ impl Expected {
         if rules.contains(&Rule::extent) {
             rules.extend([Rule::equals, Rule::kw_in]);
         }
+        if rules.contains(&Rule::course) {
+            rules.push(Rule::kw_continuous);
+        }
         Self { rules }
     }
 
@@ -228,7 +231,7 @@ fn mark(rule: Rule) -> Kind {
         R::extent => Kind::Mark("="),
         R::after => Kind::Keyword("after".into()),
         R::spline => Kind::Keyword("spline".into()),
-        R::course => Kind::Keyword("continuous".into()),
+        R::course => Kind::Keyword("held".into()),
         R::method => Kind::Name,
         R::place
         | R::whole_block_head

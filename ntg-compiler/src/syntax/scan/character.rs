@@ -61,6 +61,7 @@ fn advice(c: char) -> (&'static str, String) {
         '‘' | '’' | '′' => ("", "derivatives are written `der(x)`"),
         '%' => ("", "write a share as a number, `0.05`; comments begin with `//`"),
         '#' => ("", "comments begin with `//`"),
+        '@' => ("*", "write `*`, which is the product of matrices too"),
         '!' => ("", "write each constraint with `==`, `<=` or `>=`"),
         '&' => ("", "write two statements: all of them hold"),
         '|' => ("", "write `abs(x)` for a magnitude"),
