@@ -238,8 +238,8 @@ impl<'a> Elaborator<'a> {
         Value::new(node, dimension, span).shown_in(Some(Rc::new(unit)))
     }
 
-    /// Which member of an array is meant, if it is one; none where something is wrong with the indices.
-    #[expect(clippy::option_option, reason = "the outer one says whether it could be found out")]
+    /// Which member of an array is meant, if it is one; the outer option is none where something is wrong with the
+    /// indices.
     pub(super) fn array_member(
         &mut self,
         cx: &Context<'a>,
