@@ -1,5 +1,25 @@
-//! Proofs.
+//! Proofs that the constraints of a solved ntg problem hold at every time, not only at points.
+//!
+//! A solver holds constraints at points and hopes in between. For flat outputs the trajectory is a polynomial on each
+//! knot interval, so what happens between can be *proved*: in interval arithmetic, with branch and bound in time
+//! (docs/maths.md, section 16; docs/certify.md says exactly what is proved and what is trusted).
+//!
+//! ```text
+//! Program, Solution --collect--> Statement --certify--> Certificate --write--> a file that ntg-check re-proves
+//! ```
+
+pub mod certify;
+pub mod collect;
 pub mod elementary;
+mod evaluate;
 pub mod interval;
 pub mod jet;
+pub mod prove;
 pub mod spline;
+pub mod statement;
+mod table;
+
+pub use certify::{Certificate, Finding, Verdict, certify};
+pub use collect::statement;
+pub use interval::Interval;
+pub use prove::Options;

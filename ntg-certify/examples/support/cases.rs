@@ -42,7 +42,7 @@ fn holds(x: Interval, value: &BigRational) -> bool {
 }
 
 /// Sums, differences, products, quotients, squares and powers of random intervals; the description of what escaped.
-pub fn arithmetic(random: &mut fastrand::Rng) -> Option<String> {
+pub(crate) fn arithmetic(random: &mut fastrand::Rng) -> Option<String> {
     let ((x, of_x), (y, of_y)) = (interval(random), interval(random));
     let (a, b) = (of_x[random.usize(0..of_x.len())], of_y[random.usize(0..of_y.len())]);
     let (p, q) = (exact(a), exact(b));
@@ -72,15 +72,15 @@ pub fn arithmetic(random: &mut fastrand::Rng) -> Option<String> {
 }
 
 /// What multi-precision needs.
-pub struct Reference {
+pub(crate) struct Reference {
     constants: Consts,
     /// The largest error of `ntg-math` that was seen, in units of the last place, and of which function.
-    pub worst: (f64, &'static str),
+    pub(crate) worst: (f64, &'static str),
 }
 
 impl Reference {
     /// Nothing seen yet.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { constants: Consts::new().expect("a cache"), worst: (0.0, "") }
     }
 }
@@ -128,7 +128,7 @@ fn softplus(x: &BigFloat, c: &mut Consts) -> BigFloat {
 }
 
 /// One elementary function on a random interval; the description of what escaped.
-pub fn elementary(random: &mut fastrand::Rng, reference: &mut Reference) -> Option<String> {
+pub(crate) fn elementary(random: &mut fastrand::Rng, reference: &mut Reference) -> Option<String> {
     let (name, image, function, exact, (least, most)) = FUNCTIONS[random.usize(0..FUNCTIONS.len())];
     let (x, inside) = interval(random);
     let x = x.within(least, most)?;
@@ -139,7 +139,7 @@ pub fn elementary(random: &mut fastrand::Rng, reference: &mut Reference) -> Opti
 }
 
 /// Angles, hypotenuses and powers of random pairs; the description of what escaped.
-pub fn binary(random: &mut fastrand::Rng, reference: &mut Reference) -> Option<String> {
+pub(crate) fn binary(random: &mut fastrand::Rng, reference: &mut Reference) -> Option<String> {
     let ((x, of_x), (y, of_y)) = (interval(random), interval(random));
     let (a, b) = (of_x[random.usize(0..of_x.len())], of_y[random.usize(0..of_y.len())]);
     let cc = &mut reference.constants;

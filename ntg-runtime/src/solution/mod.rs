@@ -5,10 +5,12 @@
 //! the one from the right, at the very end the one from the left.
 
 mod family;
+mod meaning;
 mod signal;
 mod trajectory;
 
 pub use family::Family;
+pub use meaning::{Meaning, SplineView};
 pub use signal::Signal;
 pub use trajectory::Trajectory;
 

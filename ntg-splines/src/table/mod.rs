@@ -74,6 +74,26 @@ pub enum Extrapolation {
     Linear,
 }
 
+/// One argument of an interpolant (docs/maths.md, equations 7.1 and 7.17).
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisParts {
+    /// What holds beyond the nodes.
+    pub symmetry: Symmetry,
+    /// The first and the last node; of an even argument the last one, mirrored and as it is.
+    pub ends: (f64, f64),
+    /// Where each cell begins, and its width; cells follow one another.
+    pub cells: Vec<(f64, f64)>,
+    /// Coefficients that act on a cell, as many as its weights have Bernstein coefficients.
+    pub order: usize,
+    /// From the first coefficient of one cell to that of the next.
+    pub step: usize,
+    /// For each cell, the `order` by `order` Bernstein coefficients of its weights: first that of all weights where
+    /// the cell begins, last where it ends.
+    pub weights: Vec<f64>,
+    /// How many coefficients the argument has.
+    pub coefficients: usize,
+}
+
 /// An interpolation table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
@@ -164,6 +184,16 @@ impl Table {
         let axes = axes.map(|(nodes, old)| Axis { nodes, symmetry: old.symmetry }).collect();
         *self = Self::new(axes, values, self.method.clone(), self.extrapolation)?;
         Ok(())
+    }
+
+    /// The interpolant as it is computed: for each argument the cells and the weights there, in order of arguments.
+    pub fn parts(&self) -> Vec<AxisParts> {
+        self.pieces.iter().map(Piece::parts).collect()
+    }
+
+    /// The coefficients that the weights of [`Table::parts`] multiply, row-major, the last argument fastest.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.coefficients.values
     }
 
     /// How well the interpolant meets its values and keeps to their range.

@@ -66,6 +66,19 @@ impl Piece {
         &self.polynomials[cell * size..][..size]
     }
 
+    /// Everything, for those who evaluate it in another arithmetic.
+    pub(super) fn parts(&self) -> super::AxisParts {
+        super::AxisParts {
+            symmetry: self.symmetry,
+            ends: (self.low, self.high),
+            cells: self.frames.iter().map(|[begin, width, ..]| (*begin, *width)).collect(),
+            order: self.form.order,
+            step: self.form.step,
+            weights: self.polynomials.clone(),
+            coefficients: self.start(self.cells() - 1) + self.form.order,
+        }
+    }
+
     /// Whether weights and widths of cells are finite numbers.
     pub(super) fn is_finite(&self) -> bool {
         self.polynomials.iter().all(|c| c.is_finite()) && self.frames.iter().all(|[_, width, ..]| width.is_finite())

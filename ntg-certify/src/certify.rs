@@ -1,0 +1,232 @@
+//! From a statement to what is proved of it: one [`Finding`] for each subject.
+
+use crate::evaluate::Machine;
+use crate::interval::Interval;
+use crate::prove::{Goal, Leaf, Options, Required, Search, Witness, integral, search};
+use crate::statement::{Kind, Over, Quantity, Statement, Subject, Summand};
+
+/// What is known of the required bounds of a subject.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// It has no bounds; what it can be is all there is to say.
+    Bounded,
+    /// Its bounds hold at every time, in real arithmetic.
+    Proved,
+    /// An equality: its two sides differ by no more than this at any time, in SI units.
+    Within(f64),
+    /// A bound is missed for certain: by at least the first, nowhere by more than the second.
+    Refuted(f64, f64),
+    /// Neither proved nor refuted; a bound is missed by no more than this, which is at the limit of what the
+    /// arithmetic or the number of boxes can tell.
+    Undecided(f64),
+}
+
+impl Verdict {
+    /// Whether nothing is left to be wished.
+    pub fn holds(&self) -> bool {
+        matches!(self, Self::Bounded | Self::Proved | Self::Within(_))
+    }
+}
+
+/// What was found of one subject.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What is known of its bounds.
+    pub verdict: Verdict,
+    /// Encloses every value that it takes; widened a little, so that another arithmetic finds it too.
+    pub values: Interval,
+    /// The bounds that it was to keep.
+    pub required: Option<(f64, f64)>,
+    /// Where a bound is missed, for what runs over a phase.
+    pub witness: Option<Witness>,
+    /// The boxes of each search: one for what runs over a phase, and one for each integral of a sum.
+    pub covers: Vec<Vec<Leaf>>,
+}
+
+/// What is proved of a trajectory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// What it is about.
+    pub statement: Statement,
+    /// What is known of the integrals that functions use, with the boxes of each of their summands.
+    pub integrals: Vec<(Interval, Vec<Vec<Leaf>>)>,
+    /// One for each subject.
+    pub findings: Vec<Finding>,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+}
+
+/// Bounds every subject of a statement.
+pub fn certify(statement: Statement, options: &Options) -> Certificate {
+    let began = std::time::Instant::now();
+    let mut machine = Machine::new(&statement);
+    let mut integrals: Vec<(Interval, Vec<Vec<Leaf>>)> = vec![];
+    // An integral may use those before it; one that is used before it is known has no bounds.
+    for (number, summands) in statement.integrals.iter().enumerate() {
+        let (value, covers) = sum(&machine, summands, options);
+        let value = outward(value);
+        machine.integrals[number] = value;
+        integrals.push((value, covers));
+    }
+    let findings = statement.subjects.iter().map(|subject| finding(&machine, subject, options)).collect();
+    let seconds = began.elapsed().as_secs_f64();
+    drop(machine);
+    Certificate { statement, integrals, findings, seconds }
+}
+
+impl Certificate {
+    /// Whether every constraint is proved, equalities to within their stated residual.
+    pub fn is_proved(&self) -> bool {
+        self.findings.iter().all(|finding| finding.verdict.holds())
+    }
+
+    /// Subjects with what was found of them.
+    pub fn each(&self) -> impl Iterator<Item = (&Subject, &Finding)> {
+        self.statement.subjects.iter().zip(&self.findings)
+    }
+
+    /// What is known of one constraint of the structure, over all of its members: the worst of them.
+    pub fn constraint(&self, number: usize) -> Option<&Finding> {
+        let own = self.each().filter(|(subject, _)| subject.kind == Kind::Constraint(number));
+        own.map(|(_, finding)| finding).reduce(|a, b| if rank(&b.verdict) > rank(&a.verdict) { b } else { a })
+    }
+
+    /// A time within a phase, in seconds of mission time.
+    pub fn time(&self, phase: usize, cell: usize, part: f64) -> f64 {
+        let phase = &self.statement.phases[phase];
+        let tau = phase.cuts[cell] + (phase.cuts[cell + 1] - phase.cuts[cell]) * part;
+        let [start, duration] = [phase.start, phase.duration].map(|number| self.statement.numbers[number].value);
+        start + duration * tau
+    }
+
+    /// The mission time of a witness.
+    pub fn witness_time(&self, subject: &Subject, witness: &Witness) -> Option<f64> {
+        let Quantity::Path(_, phase) = subject.quantity else { return None };
+        Some(self.time(phase, witness.cell, (witness.part as f64 + 0.5) * 0.5_f64.powi(witness.halvings as i32)))
+    }
+}
+
+/// How bad a verdict is, and among equals by how much.
+fn rank(verdict: &Verdict) -> (u8, f64) {
+    match *verdict {
+        Verdict::Bounded => (0, 0.0),
+        Verdict::Proved => (1, 0.0),
+        Verdict::Within(residual) => (2, residual),
+        Verdict::Undecided(missed) => (3, missed),
+        Verdict::Refuted(missed, _) => (4, missed),
+    }
+}
+
+/// What a bound of a subject is: its enclosure.
+fn bound(machine: &Machine<'_>, function: Option<usize>) -> Option<Interval> {
+    let value = machine.number(function?, None);
+    Some(if value.total { value.c[0] } else { Interval::ENTIRE })
+}
+
+fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Finding {
+    let (below, above) = (bound(machine, subject.bounds.0), bound(machine, subject.bounds.1));
+    let equality = subject.bounds.0.is_some() && subject.bounds.0 == subject.bounds.1;
+    let required = (below.is_some() || above.is_some()).then(|| Required {
+        low: below.map_or(f64::NEG_INFINITY, Interval::high),
+        high: above.map_or(f64::INFINITY, Interval::low),
+    });
+    match &subject.quantity {
+        Quantity::Path(function, phase) => {
+            let goal = match required {
+                Some(required) if !equality => Goal::Bounds(required),
+                _ => Goal::Range,
+            };
+            let found = search(machine, (*function, *phase), &goal, options);
+            path(found, (required, equality), below)
+        }
+        Quantity::Sum(summands) => {
+            let (value, covers) = sum(machine, summands, options);
+            let total = value.is_bounded();
+            let verdict = match (required, equality) {
+                (None, _) => Verdict::Bounded,
+                (Some(_), true) => Verdict::Within(residual(outward(value), below)),
+                (Some(required), false) => {
+                    judge(required.missed(value), total)
+                }
+            };
+            let values = within_required(value, &verdict, required);
+            let required = required.map(|r| (r.low, r.high));
+            Finding { verdict, values, required, witness: None, covers }
+        }
+    }
+}
+
+/// What was found of a function along a phase.
+fn path(found: Search, (required, equality): (Option<Required>, bool), below: Option<Interval>) -> Finding {
+    let total = found.leaves.iter().all(|leaf| leaf.total);
+    let verdict = match required {
+        None => Verdict::Bounded,
+        Some(_) if equality => Verdict::Within(if total { residual(outward(found.values), below) } else { f64::INFINITY }),
+        Some(_) => judge((found.witness.map_or(0.0, |witness| witness.missed), found.missed), total),
+    };
+    let values = within_required(found.values, &verdict, required);
+    let required = required.map(|r| (r.low, r.high));
+    Finding { verdict, values, required, witness: found.witness, covers: vec![found.leaves] }
+}
+
+fn judge((least, most): (f64, f64), total: bool) -> Verdict {
+    let most = if total { most } else { f64::INFINITY };
+    if least > 0.0 {
+        Verdict::Refuted(least, most)
+    } else if most <= 0.0 {
+        Verdict::Proved
+    } else {
+        Verdict::Undecided(most)
+    }
+}
+
+/// The largest difference of values from the two ends of what they should be.
+fn residual(values: Interval, bound: Option<Interval>) -> f64 {
+    (values - bound.unwrap_or(Interval::ENTIRE)).size()
+}
+
+/// Widened by a part in 10^12 of its size: an arithmetic of other roundings, even of the same number of digits, finds
+/// the same enclosure inside.
+fn outward(values: Interval) -> Interval {
+    let slack = 1e-12 * values.size();
+    Interval::new(values.low() - slack - f64::MIN_POSITIVE, values.high() + slack + f64::MIN_POSITIVE)
+}
+
+/// What a certificate claims: the enclosure, widened, but not beyond bounds that are proved.
+fn within_required(values: Interval, verdict: &Verdict, required: Option<Required>) -> Interval {
+    let wide = outward(values);
+    match (verdict, required) {
+        (Verdict::Proved, Some(required)) => wide.within(required.low, required.high).unwrap_or(values),
+        _ => wide,
+    }
+}
+
+impl Required {
+    /// By how much a value that is known misses the bounds: at least, and at most.
+    fn missed(&self, value: Interval) -> (f64, f64) {
+        (self.missed_at_least(value).max(0.0), self.missed_at_most(value))
+    }
+}
+
+/// A sum of integrals and numbers, with the boxes of each integral.
+fn sum(machine: &Machine<'_>, summands: &[Summand], options: &Options) -> (Interval, Vec<Vec<Leaf>>) {
+    let (mut total, mut covers) = (Interval::ZERO, vec![]);
+    for summand in summands {
+        let at = |end| {
+            let value = machine.number(summand.function, end);
+            if value.total { value.c[0] } else { Interval::ENTIRE }
+        };
+        let value = match summand.over {
+            Over::Nowhere => at(None),
+            Over::Start(phase) => at(Some((phase, false))),
+            Over::End(phase) => at(Some((phase, true))),
+            Over::Phase(phase) => {
+                let (value, found) = integral(machine, (summand.function, phase), options);
+                covers.push(found.leaves);
+                value
+            }
+        };
+        total = total + value;
+    }
+    (total, covers)
+}
