@@ -44,6 +44,14 @@ fn main() {
             count(|v| matches!(v, Verdict::Undecided(_))),
             count(|v| matches!(v, Verdict::Within(_))),
         );
+        let text = ntg_certify::write::text(&certificate);
+        let began = std::time::Instant::now();
+        let checked = ntg_check::verify(&text);
+        println!("  checked {} bytes in {:.3} s: {checked:?}", text.len(), began.elapsed().as_secs_f64());
+        if let Ok(folder) = std::env::var("CERTIFICATES") {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            std::fs::write(std::path::Path::new(&folder).join(format!("{name}.cert")), &text).expect("a folder");
+        }
         if std::env::var("VERBOSE").is_ok() {
             for (subject, finding) in certificate.each() {
                 let boxes: usize = finding.covers.iter().map(Vec::len).sum();

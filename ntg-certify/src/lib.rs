@@ -18,6 +18,7 @@ pub mod prove;
 pub mod spline;
 pub mod statement;
 mod table;
+pub mod write;
 
 pub use certify::{Certificate, Finding, Verdict, certify};
 pub use collect::statement;

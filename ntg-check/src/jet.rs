@@ -1,0 +1,250 @@
+//! Taylor coefficients of a function of time on a box: `f^(k) r^k / k!` with the box's radius `r`, at its middle or at
+//! all of its times, enclosed. From both, what the function can be on the box.
+
+use crate::interval::{Image, Interval};
+
+/// The order of the remainder: even, so that its power is not negative.
+const ORDER: usize = 6;
+const COUNT: usize = ORDER + 1;
+
+/// Enclosures of the coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet {
+    /// The value, then the derivatives.
+    pub c: [Interval; COUNT],
+    /// Whether there is a value at every time.
+    pub total: bool,
+}
+
+type Coefficients = [Interval; COUNT];
+
+/// What a function of which these are the jets at the middle and everywhere can be: by its values, by the mean-value
+/// theorem, and by Taylor's, the polynomial in Bernstein form.
+pub fn range(middle: &Jet, all: &Jet) -> Interval {
+    let unit = Interval::whole(-1).hull(Interval::whole(1));
+    let mean_value = middle.c[0] + all.c[1] * unit;
+    let rest = all.c[ORDER] * Interval::ZERO.hull(Interval::whole(1));
+    all.c[0].meet(mean_value).meet(hull_of_polynomial(&middle.c[..ORDER]) + rest)
+}
+
+/// The mean over the box.
+pub fn mean(middle: &Jet, all: &Jet) -> Interval {
+    let part = |k: usize, c: &Coefficients| c[k].over(Interval::whole(k as i64 + 1));
+    let sum = (0..ORDER).step_by(2).fold(part(ORDER, &all.c), |sum, k| sum + part(k, &middle.c));
+    sum.meet(all.c[0])
+}
+
+/// The values of `sum c_k s^k` for `s` from -1 to 1: with `s = 2 u - 1` its Bernstein coefficients come from the
+/// Taylor coefficients `t_k` at `u = 0` by `b_i = sum_k binomial(i, k) t_k / binomial(n, k)`.
+fn hull_of_polynomial(c: &[Interval]) -> Interval {
+    let n = c.len() - 1;
+    let mut shifted: Vec<Interval> = c.to_vec();
+    // Horner's scheme, repeated: the coefficients in powers of s + 1.
+    for first in 0..n {
+        for k in (first..n).rev() {
+            shifted[k] = shifted[k] - shifted[k + 1];
+        }
+    }
+    let t: Vec<Interval> = shifted.iter().enumerate().map(|(k, c)| c.scaled(k as i32).over(binomial(n, k))).collect();
+    let coefficient = |i: usize| (0..=i).fold(Interval::ZERO, |sum, k| sum + t[k] * binomial(i, k));
+    (1..=n).map(coefficient).fold(coefficient(0), Interval::hull)
+}
+
+/// A binomial coefficient of small numbers.
+pub fn binomial(n: usize, k: usize) -> Interval {
+    let product = (0..k).fold(1, |product, i| product * (n - i) as i64 / (i as i64 + 1));
+    Interval::whole(product)
+}
+
+impl Jet {
+    /// What does not change.
+    pub fn constant(value: Interval) -> Self {
+        let mut c = [Interval::ZERO; COUNT];
+        c[0] = value;
+        Self { c, total: true }
+    }
+
+    /// What is known by its values alone.
+    pub fn rough((values, total): Image) -> Self {
+        let mut c = [Interval::ENTIRE; COUNT];
+        c[0] = values;
+        Self { c, total }
+    }
+
+    /// From the jet's own coefficients.
+    pub fn of(given: &[Interval]) -> Self {
+        let mut jet = Self::constant(Interval::ZERO);
+        jet.c.iter_mut().zip(given).for_each(|(c, given)| *c = *given);
+        jet
+    }
+
+    fn one() -> Self {
+        Self::constant(Interval::whole(1))
+    }
+
+    fn is_constant(&self) -> bool {
+        self.c[1..].iter().all(|c| *c == Interval::ZERO)
+    }
+
+    /// Coefficient `k` of a function whose derivative by `self` is `slope`: `sum j u_j g_(k-j) / k`.
+    fn chain(&self, slope: &Coefficients, k: usize) -> Interval {
+        let sum = (1..=k).fold(Interval::ZERO, |sum, j| sum + Interval::whole(j as i64) * self.c[j] * slope[k - j]);
+        sum.over(Interval::whole(k as i64))
+    }
+
+    /// A function of `self` with these values and this derivative.
+    fn through(&self, (values, total): Image, slope: &Self) -> Self {
+        let mut c = [values; COUNT];
+        (1..COUNT).for_each(|k| c[k] = self.chain(&slope.c, k));
+        Self { c, total: self.total && total }
+    }
+
+    /// The product of equals.
+    pub fn square(&self) -> Self {
+        let mut square = *self * *self;
+        square.c[0] = self.c[0].square();
+        square
+    }
+
+    /// The quotient.
+    pub fn over(&self, divisor: &Self) -> Self {
+        let mut c = [Interval::ZERO; COUNT];
+        for k in 0..COUNT {
+            let rest = (1..=k).fold(self.c[k], |rest, j| rest - divisor.c[j] * c[k - j]);
+            c[k] = rest.over(divisor.c[0]);
+        }
+        Self { c, total: self.total && divisor.total && !divisor.c[0].has_zero() }
+    }
+
+    /// A power with a whole exponent.
+    pub fn power(&self, n: i32) -> Self {
+        let size = n.unsigned_abs();
+        let mut power = (1..size).fold(if size == 0 { Self::one() } else { *self }, |power, _| power * *self);
+        power.c[0] = power.c[0].meet(self.c[0].power(size));
+        power.total = self.total;
+        if n < 0 { Self::one().over(&power) } else { power }
+    }
+
+    /// The square root.
+    pub fn sqrt(&self) -> Self {
+        let (values, total) = self.c[0].sqrt();
+        let mut c = [values; COUNT];
+        for k in 1..COUNT {
+            let rest = (1..k).fold(self.c[k], |rest, j| rest - c[j] * c[k - j]);
+            c[k] = rest.over(values.scaled(1));
+        }
+        Self { c, total: self.total && total }
+    }
+
+    /// The exponential: its own derivative.
+    pub fn exp(&self) -> Self {
+        let mut c = [Interval::ZERO; COUNT];
+        c[0] = self.c[0].exp();
+        (1..COUNT).for_each(|k| c[k] = self.chain(&c.clone(), k));
+        Self { c, total: self.total }
+    }
+
+    /// The natural logarithm.
+    pub fn log(&self) -> Self {
+        self.through(self.c[0].log(), &Self::one().over(self))
+    }
+
+    /// Sine and cosine: each the other's derivative, but for a sign.
+    pub fn sine_and_cosine(&self) -> (Self, Self) {
+        let (mut s, mut c) = ([Interval::ZERO; COUNT], [Interval::ZERO; COUNT]);
+        (s[0], c[0]) = (self.c[0].sin(), self.c[0].cos());
+        for k in 1..COUNT {
+            (s[k], c[k]) = (self.chain(&c, k), -self.chain(&s, k));
+        }
+        (Self { c: s, total: self.total }, Self { c, total: self.total })
+    }
+
+    /// The inverse tangent.
+    pub fn atan(&self) -> Self {
+        self.through((self.c[0].atan(), true), &Self::one().over(&(Self::one() + self.square())))
+    }
+
+    /// The inverse sine and the inverse cosine.
+    pub fn asin_and_acos(&self) -> (Self, Self) {
+        let slope = Self::one().over(&((Self::one() - *self) * (Self::one() + *self)).sqrt());
+        let (sine, cosine) = self.c[0].asin_and_acos();
+        (self.through(sine, &slope), self.through(cosine, &-slope))
+    }
+
+    /// The angle of the point with ordinate `self` and abscissa `x`.
+    pub fn atan2(&self, x: &Self) -> Self {
+        let (y0, x0, total) = (self.c[0], x.c[0], self.total && x.total);
+        // Two zeros have the angle 0.
+        let both = y0.has_zero() && x0.has_zero();
+        let values = if y0 == Interval::ZERO && x0 == Interval::ZERO { Interval::ZERO } else { x0.atan2(y0) };
+        if self.is_constant() && x.is_constant() {
+            return Self { total, ..Self::constant(values) };
+        }
+        let behind = !x0.is_positive() && !y0.is_positive() && !(-y0).is_positive();
+        if both || (behind && !((-x0).is_positive() && y0.is_not_negative())) {
+            return Self::rough((values, total));
+        }
+        let square = self.square() + x.square();
+        let (p, q) = (x.over(&square), self.over(&square));
+        let mut c = [values; COUNT];
+        (1..COUNT).for_each(|k| c[k] = self.chain(&p.c, k) - x.chain(&q.c, k));
+        Self { c, total }
+    }
+
+    /// `self` where it is certainly not below `other`, `other` where that is certain; else their values.
+    pub fn max(&self, other: &Self) -> Self {
+        let total = self.total && other.total;
+        if (self.c[0] - other.c[0]).is_not_negative() {
+            return Self { total, ..*self };
+        }
+        if (other.c[0] - self.c[0]).is_not_negative() {
+            return Self { total, ..*other };
+        }
+        let values = match (self.c[0].ends(), other.c[0].ends()) {
+            (Some((a, b)), Some((c, d))) => Interval::new(a.max(c), b.max(d)),
+            _ => Interval::ENTIRE,
+        };
+        Self::rough((values, total))
+    }
+
+    /// `then` where `self` is certainly not 0, `otherwise` where it certainly is; else their values.
+    pub fn select(&self, then: &Self, otherwise: &Self) -> Self {
+        let total = self.total;
+        if !self.c[0].has_zero() {
+            return Self { total: total && then.total, ..*then };
+        }
+        if self.c[0] == Interval::ZERO {
+            return Self { total: total && otherwise.total, ..*otherwise };
+        }
+        Self::rough((then.c[0].hull(otherwise.c[0]), total && then.total && otherwise.total))
+    }
+}
+
+impl std::ops::Neg for Jet {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { c: self.c.map(|c| -c), total: self.total }
+    }
+}
+
+impl std::ops::Add for Jet {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { c: std::array::from_fn(|k| self.c[k] + other.c[k]), total: self.total && other.total }
+    }
+}
+
+impl std::ops::Sub for Jet {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl std::ops::Mul for Jet {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let product = |k: usize| (0..=k).fold(Interval::ZERO, |sum, i| sum + self.c[i] * other.c[k - i]);
+        Self { c: std::array::from_fn(product), total: self.total && other.total }
+    }
+}

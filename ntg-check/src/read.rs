@@ -1,0 +1,379 @@
+//! Reads a certificate (docs/certificate-format.md): lines of words, every reference checked.
+
+use crate::interval::Interval;
+use crate::real::Real;
+
+/// An operation of a graph on operations before it.
+#[derive(Clone, Debug)]
+pub enum Node {
+    /// A number.
+    Constant(Interval),
+    /// An input of the function.
+    Input(usize),
+    /// A named operation on one or two nodes.
+    Named(String, usize, Option<usize>),
+    /// A whole power.
+    Power(usize, i32),
+    /// The second where the first is not 0, else the third.
+    Select(usize, usize, usize),
+    /// A derivative of a table.
+    Table(usize, Vec<usize>, Vec<usize>),
+}
+
+/// What an input of a function is.
+#[derive(Clone, Debug)]
+pub enum Input {
+    /// A derivative of a spline at the time of evaluation, at the start (`Some(false)`) or at the end of its phase.
+    Flat(usize, Option<bool>),
+    /// A number.
+    Value(Interval),
+    /// Scaled time.
+    Tau,
+    /// Functions joined: by `+`, `*`, `<` (the smallest) or `>`.
+    Join(char, Vec<usize>),
+    /// An integral.
+    Integral(usize),
+}
+
+/// A function: the nodes up to its result, and its inputs.
+#[derive(Clone, Debug)]
+pub struct Function {
+    pub graph: usize,
+    pub root: usize,
+    pub inputs: Vec<Input>,
+}
+
+/// Operations, and which of them are results.
+#[derive(Clone, Debug)]
+pub struct Graph {
+    pub nodes: Vec<Node>,
+    pub rows: Vec<usize>,
+}
+
+/// A spline of a phase.
+#[derive(Clone, Debug)]
+pub struct Spline {
+    pub phase: usize,
+    pub order: usize,
+    pub knots: Vec<Real>,
+    pub coefficients: Vec<Real>,
+}
+
+/// An argument of a table.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    pub symmetry: String,
+    pub low: Real,
+    pub high: Real,
+    pub order: usize,
+    pub step: usize,
+    pub coefficients: usize,
+    pub cells: Vec<(Real, Real)>,
+    pub weights: Vec<Real>,
+}
+
+/// A table.
+#[derive(Clone, Debug)]
+pub struct Table {
+    pub linear: bool,
+    pub axes: Vec<Axis>,
+    pub coefficients: Vec<Real>,
+}
+
+/// Where a summand is taken: over a phase, at its start, at its end, nowhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    Phase(usize),
+    End(usize, bool),
+    Nowhere,
+}
+
+/// A function at all times of a phase, or a sum.
+#[derive(Clone, Debug)]
+pub enum Quantity {
+    Path(usize, usize),
+    Sum(Vec<(usize, Over)>),
+}
+
+/// What is claimed of a subject.
+#[derive(Clone, Debug)]
+pub struct Claim {
+    pub name: String,
+    pub quantity: Quantity,
+    pub bounds: (Option<usize>, Option<usize>),
+    pub verdict: String,
+    /// Of an equality: how far its sides differ at most.
+    pub residual: Option<Real>,
+    pub values: Interval,
+    /// Cell, halvings and part of the box in whose middle the values are those of the interval.
+    pub witness: Option<(usize, u32, u64, Interval)>,
+    pub covers: Vec<Vec<String>>,
+}
+
+/// Everything that a certificate says.
+#[derive(Debug, Default)]
+pub struct Certificate {
+    pub problem: String,
+    pub numbers: Vec<Interval>,
+    pub phases: Vec<Vec<Real>>,
+    pub splines: Vec<Spline>,
+    pub flats: Vec<(usize, usize)>,
+    pub tables: Vec<Table>,
+    pub graphs: Vec<Graph>,
+    pub functions: Vec<Function>,
+    pub integrals: Vec<Claim>,
+    pub claims: Vec<Claim>,
+}
+
+type Read<T> = Result<T, String>;
+
+/// The words of a line.
+struct Words<'a>(std::str::SplitAsciiWhitespace<'a>);
+
+impl Words<'_> {
+    fn next(&mut self) -> Read<&str> {
+        self.0.next().ok_or_else(|| "a word is missing".to_owned())
+    }
+
+    fn number<T: std::str::FromStr>(&mut self) -> Read<T> {
+        let word = self.next()?;
+        word.parse().map_err(|_| format!("`{word}` is no number"))
+    }
+
+    /// A reference to one of `count` things.
+    fn below(&mut self, count: usize) -> Read<usize> {
+        let index = self.number()?;
+        if index < count { Ok(index) } else { Err(format!("there is no number {index} of {count}")) }
+    }
+
+    fn real(&mut self) -> Read<Real> {
+        real(self.next()?)
+    }
+
+    fn reals(&mut self, most: usize) -> Read<Vec<Real>> {
+        let count = self.number()?;
+        if count > most { Err("too many numbers".to_owned()) } else { (0..count).map(|_| self.real()).collect() }
+    }
+
+    /// Two ends; `-inf` and `inf` for no bounds.
+    fn interval(&mut self) -> Read<Interval> {
+        let (low, high) = (self.next()?.to_owned(), self.next()?.to_owned());
+        if low == "-inf" && high == "inf" {
+            return Ok(Interval::ENTIRE);
+        }
+        let (low, high) = (real(&low)?, real(&high)?);
+        if low <= high { Ok(Interval::new(low, high)) } else { Err("the ends of an interval cross".to_owned()) }
+    }
+
+    fn rest(&mut self) -> String {
+        self.0.by_ref().collect::<Vec<_>>().join(" ")
+    }
+
+    fn end(&mut self) -> Read<()> {
+        self.0.next().map_or(Ok(()), |word| Err(format!("`{word}` is one word too many")))
+    }
+}
+
+/// A hexadecimal floating-point number, such as `-0x1.8p+1`: exact.
+pub fn real(word: &str) -> Read<Real> {
+    let wrong = || format!("`{word}` is no hexadecimal number");
+    let (sign, size) = word.strip_prefix('-').map_or((1, word), |size| (-1, size));
+    let (digits, exponent) = size.strip_prefix("0x").and_then(|s| s.split_once('p')).ok_or_else(wrong)?;
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    if whole.len() != 1 || fraction.len() > 13 || exponent.len() > 5 {
+        return Err(wrong());
+    }
+    let mantissa = i64::from_str_radix(&format!("{whole}{fraction}"), 16).map_err(|_| wrong())?;
+    let exponent: i32 = exponent.parse().map_err(|_| wrong())?;
+    Ok(Real::dyadic(sign * mantissa, exponent - 4 * fraction.len() as i32))
+}
+
+/// Most numbers in one list: a guard against a file that asks for all memory.
+const MOST: usize = 1 << 24;
+
+/// Reads all lines but the digest.
+pub fn read(text: &str) -> Read<Certificate> {
+    let mut out = Certificate::default();
+    let mut lines = text.lines().enumerate();
+    match lines.next() {
+        Some((_, "ntg-certificate 1")) => {}
+        _ => return Err("this is no certificate of version 1".to_owned()),
+    }
+    for (number, line) in lines.filter(|(_, line)| !line.starts_with("| ")) {
+        let mut words = Words(line.split_ascii_whitespace());
+        statement(&mut out, &mut words).map_err(|error| format!("line {}: {error}", number + 1))?;
+    }
+    for claim in out.integrals.iter().chain(&out.claims) {
+        if claim.verdict.is_empty() {
+            return Err(format!("nothing is claimed of `{}`", claim.name));
+        }
+    }
+    Ok(out)
+}
+
+fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
+    match words.next()? {
+        "problem" => out.problem = words.rest(),
+        "number" => {
+            out.numbers.push(Interval::point(words.real()?));
+            words.rest();
+        }
+        "phase" => {
+            words.below(out.numbers.len())?;
+            words.below(out.numbers.len())?;
+            out.phases.push(words.reals(MOST)?);
+            words.rest();
+        }
+        "spline" => {
+            let (phase, order) = (words.below(out.phases.len())?, words.number()?);
+            let (knots, coefficients) = (words.reals(MOST)?, words.reals(MOST)?);
+            words.rest();
+            out.splines.push(Spline { phase, order, knots, coefficients });
+        }
+        "flat" => out.flats.push((words.below(out.splines.len())?, words.number()?)),
+        "table" => {
+            let linear = words.next()? == "linear";
+            words.rest();
+            out.tables.push(Table { linear, axes: vec![], coefficients: vec![] });
+        }
+        "axis" => {
+            let axis = Axis {
+                symmetry: words.next()?.to_owned(),
+                low: words.real()?,
+                high: words.real()?,
+                order: words.number()?,
+                step: words.number()?,
+                coefficients: words.number()?,
+                cells: words.reals(MOST)?.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect(),
+                weights: words.reals(MOST)?,
+            };
+            out.tables.last_mut().ok_or("an axis without a table")?.axes.push(axis);
+        }
+        "coefficients" => out.tables.last_mut().ok_or("no table")?.coefficients = words.reals(MOST)?,
+        "graph" => out.graphs.push(Graph { nodes: vec![], rows: vec![] }),
+        "rows" => {
+            let graph = out.graphs.last_mut().ok_or("no graph")?;
+            let count: usize = words.number()?;
+            for _ in 0..count.min(MOST) {
+                graph.rows.push(words.below(graph.nodes.len())?);
+            }
+        }
+        "function" => {
+            let graph = words.below(out.graphs.len())?;
+            let root = out.graphs[graph].rows[words.below(out.graphs[graph].rows.len())?];
+            let count: usize = words.number()?;
+            let inputs = (0..count.min(MOST)).map(|_| input(out, words)).collect::<Read<Vec<_>>>()?;
+            out.functions.push(Function { graph, root, inputs });
+        }
+        "integral" => {
+            let quantity = sum(out, words)?;
+            out.integrals.push(claim(format!("integral {}", out.integrals.len()), quantity, (None, None)));
+        }
+        "subject" => {
+            words.next()?;
+            let bound = |words: &mut Words<'_>| match words.next()? {
+                "-" => Ok(None),
+                word => word.parse().ok().filter(|f| *f < out.functions.len()).map(Some).ok_or("no such bound".to_owned()),
+            };
+            let bounds = (bound(words)?, bound(words)?);
+            let quantity = match words.next()? {
+                "path" => Quantity::Path(words.below(out.functions.len())?, words.below(out.phases.len())?),
+                _ => sum(out, words)?,
+            };
+            out.claims.push(claim(words.rest(), quantity, bounds));
+        }
+        "claim" => {
+            let own = last(out)?;
+            own.verdict = words.next()?.to_owned();
+            own.residual = if own.verdict == "within" { Some(words.real()?) } else { None };
+            own.values = words.interval()?;
+        }
+        "witness" => {
+            let witness = (words.number()?, words.number()?, words.number()?, words.interval()?);
+            last(out)?.witness = Some(witness);
+        }
+        "cover" => {
+            let trees = words.0.by_ref().map(str::to_owned).collect();
+            last(out)?.covers.push(trees);
+        }
+        word => {
+            let graph = out.graphs.last_mut().ok_or_else(|| format!("`{word}` is unknown"))?;
+            let node = node(word.to_owned().as_str(), words, (graph.nodes.len(), out.tables.as_slice()))?;
+            graph.nodes.push(node);
+        }
+    }
+    words.end()
+}
+
+fn claim(name: String, quantity: Quantity, bounds: (Option<usize>, Option<usize>)) -> Claim {
+    let (verdict, values, covers) = (String::new(), Interval::ENTIRE, vec![]);
+    Claim { name, quantity, bounds, verdict, residual: None, values, witness: None, covers }
+}
+
+/// The subject or the integral that a line belongs to.
+fn last(out: &mut Certificate) -> Read<&mut Claim> {
+    let Certificate { integrals, claims, .. } = out;
+    claims.last_mut().or(integrals.last_mut()).ok_or("a claim about nothing".to_owned())
+}
+
+fn sum(out: &Certificate, words: &mut Words<'_>) -> Read<Quantity> {
+    let count: usize = words.number()?;
+    let summand = |_| {
+        let function = words.below(out.functions.len())?;
+        let over = match words.next()? {
+            "nowhere" => Over::Nowhere,
+            "over" => Over::Phase(words.below(out.phases.len())?),
+            "start" => Over::End(words.below(out.phases.len())?, false),
+            "end" => Over::End(words.below(out.phases.len())?, true),
+            word => return Err(format!("`{word}` is no place")),
+        };
+        Ok((function, over))
+    };
+    Ok(Quantity::Sum((0..count.min(MOST)).map(summand).collect::<Read<_>>()?))
+}
+
+fn input(out: &Certificate, words: &mut Words<'_>) -> Read<Input> {
+    Ok(match words.next()? {
+        "flat" => Input::Flat(words.below(out.flats.len())?, None),
+        "start" => Input::Flat(words.below(out.flats.len())?, Some(false)),
+        "end" => Input::Flat(words.below(out.flats.len())?, Some(true)),
+        "number" => Input::Value(out.numbers[words.below(out.numbers.len())?]),
+        "value" => Input::Value(Interval::point(words.real()?)),
+        "tau" => Input::Tau,
+        "integral" => Input::Integral(words.number()?),
+        join @ ("sum" | "product" | "min" | "max") => {
+            let how = match join {
+                "sum" => '+',
+                "product" => '*',
+                "min" => '<',
+                _ => '>',
+            };
+            let count: usize = words.number()?;
+            Input::Join(how, (0..count.min(MOST)).map(|_| words.below(out.functions.len())).collect::<Read<_>>()?)
+        }
+        word => return Err(format!("`{word}` is no input")),
+    })
+}
+
+fn node(word: &str, words: &mut Words<'_>, (before, tables): (usize, &[Table])) -> Read<Node> {
+    const ONE: [&str; 17] = [
+        "neg", "sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "abs", "sign",
+        "logistic", "softplus",
+    ];
+    const TWO: [&str; 10] = ["add", "sub", "mul", "div", "pow", "atan2", "hypot", "min", "max", "less_eq"];
+    Ok(match word {
+        "const" => Node::Constant(Interval::point(words.real()?)),
+        "input" => Node::Input(words.number()?),
+        "powi" => Node::Power(words.below(before)?, words.number()?),
+        "select" => Node::Select(words.below(before)?, words.below(before)?, words.below(before)?),
+        "lookup" => {
+            let table = words.below(tables.len())?;
+            let count = tables[table].axes.len();
+            let orders = (0..count).map(|_| words.number()).collect::<Read<_>>()?;
+            Node::Table(table, orders, (0..count).map(|_| words.below(before)).collect::<Read<_>>()?)
+        }
+        _ if ONE.contains(&word) => Node::Named(word.to_owned(), words.below(before)?, None),
+        _ if TWO.contains(&word) => Node::Named(word.to_owned(), words.below(before)?, Some(words.below(before)?)),
+        _ => return Err(format!("`{word}` is unknown")),
+    })
+}
