@@ -52,6 +52,25 @@ fn main() {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             std::fs::write(std::path::Path::new(&folder).join(format!("{name}.cert")), &text).expect("a folder");
         }
+        if std::env::var("GUARANTEE").is_ok() {
+            let task = ntg_certify::guarantee::Task { program: &compiled.program, problem: &problem, spec: &text };
+            let seconds = report.seconds;
+            let wanted = ntg_certify::Guarantee::default();
+            match ntg_certify::guarantee::proved_from(task, report.clone(), &Settings::default(), &wanted) {
+                Ok(found) => {
+                    let all: f64 = found.rounds.iter().map(|round| round.solve + round.certify).sum();
+                    let checked = ntg_check::verify(&ntg_certify::write::text(&found.certificate));
+                    println!(
+                        "  guarantee: {:?} after {} rounds, {:.1} solves' time, cost {:.2e}, check {:?}",
+                        found.ending, found.rounds.len(), all / seconds, found.cost(), checked.map(|c| c.proved),
+                    );
+                    if found.ending != ntg_certify::guarantee::Ending::Proved {
+                        println!("  {:?}\n  {:?}", found.rounds, found.changes);
+                    }
+                }
+                Err(error) => println!("  guarantee: {error}"),
+            }
+        }
         if std::env::var("VERBOSE").is_ok() {
             for (subject, finding) in certificate.each() {
                 let boxes: usize = finding.covers.iter().map(Vec::len).sum();

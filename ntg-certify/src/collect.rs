@@ -47,11 +47,12 @@ struct Collector<'a> {
 
 impl<'a> Collector<'a> {
     fn new(program: &'a Program, solution: &'a Solution, spec: &str) -> Self {
-        let structure = solution.structure();
+        // Of a solution of a tightened problem the formulas are still those of the program.
+        let structure = &program.structure;
         let mut out =
             Statement { problem: structure.name.clone(), spec: spec.to_owned(), ..Statement::default() };
         let mut parameters = vec![];
-        for parameter in &structure.parameters {
+        for parameter in &solution.structure().parameters {
             parameters.push(out.numbers.len());
             out.numbers.extend(parameter.value.iter().enumerate().map(|(i, value)| Number {
                 name: if parameter.array { format!("{}[{}]", parameter.name, i + 1) } else { parameter.name.clone() },
@@ -221,12 +222,11 @@ impl<'a> Collector<'a> {
     }
 
     fn named_member(&self, name: &str, indices: &[i64], phase: Option<usize>) -> String {
-        let phase = phase.map(|phase| self.out.phases[phase].name.as_str()).filter(|path| !path.is_empty());
-        match (indices, phase) {
-            ([], None) => name.to_owned(),
-            (_, Some(path)) => format!("{name} in {path}{}", if indices.is_empty() { String::new() } else { format!(" {indices:?}") }),
-            (_, None) => format!("{name}{indices:?}"),
-        }
+        let path = phase.map_or("", |phase| self.out.phases[phase].name.as_str());
+        // The path of the phase says its own indices, which are those of the outermost loops.
+        let own = &indices[path.matches('[').count().min(indices.len())..];
+        let members: String = own.iter().map(|index| format!("[{index}]")).collect();
+        if path.is_empty() { format!("{name}{members}") } else { format!("{name}{members} in {path}") }
     }
 
     /// One result of a call as a function.

@@ -12,15 +12,18 @@ pub mod certify;
 pub mod collect;
 pub mod elementary;
 mod evaluate;
+pub mod guarantee;
 pub mod interval;
 pub mod jet;
 pub mod prove;
 pub mod spline;
 pub mod statement;
 mod table;
+pub mod tightened;
 pub mod write;
 
 pub use certify::{Certificate, Finding, Verdict, certify};
 pub use collect::statement;
+pub use guarantee::{Guarantee, Guaranteed, guarantee};
 pub use interval::Interval;
 pub use prove::Options;

@@ -6,12 +6,12 @@ use crate::read::{Axis, Certificate, Function, Input, Node, Table};
 use crate::real::Real;
 
 /// A polynomial by its Bernstein coefficients on a box.
-pub type Piece = Vec<Interval>;
+pub(crate) type Piece = Vec<Interval>;
 
 /// Jets of the flats at one place, and of scaled time.
-pub struct Here<'a> {
-    pub flats: &'a dyn Fn(usize) -> Jet,
-    pub tau: Jet,
+pub(crate) struct Here<'a> {
+    pub(crate) flats: &'a dyn Fn(usize) -> Jet,
+    pub(crate) tau: Jet,
 }
 
 fn difference(a: Real, b: Real) -> Interval {
@@ -20,7 +20,7 @@ fn difference(a: Real, b: Real) -> Interval {
 
 /// Derivative `d` of a spline between two neighbouring cuts: differences of coefficients, then de Boor's scheme with
 /// the ends of the cell as arguments.
-pub fn piece(certificate: &Certificate, (spline, d): (usize, usize), cell: usize) -> Result<Piece, String> {
+pub(crate) fn piece(certificate: &Certificate, (spline, d): (usize, usize), cell: usize) -> Result<Piece, String> {
     let spline = &certificate.splines[spline];
     let cuts = &certificate.phases[spline.phase];
     let (low, high, k) = (cuts[cell], cuts[cell + 1], spline.order);
@@ -55,7 +55,7 @@ pub fn piece(certificate: &Certificate, (spline, d): (usize, usize), cell: usize
 }
 
 /// Both halves of a polynomial.
-pub fn halves(piece: &Piece) -> (Piece, Piece) {
+pub(crate) fn halves(piece: &Piece) -> (Piece, Piece) {
     let (mut row, mut left, mut right) = (piece.clone(), vec![], vec![]);
     while let (Some(first), Some(last)) = (row.first(), row.last()) {
         left.push(*first);
@@ -67,7 +67,7 @@ pub fn halves(piece: &Piece) -> (Piece, Piece) {
 }
 
 /// The jets of a polynomial in the middle of its box, and everywhere on it.
-pub fn jets(piece: &Piece) -> (Jet, Jet) {
+pub(crate) fn jets(piece: &Piece) -> (Jet, Jet) {
     let degree = piece.len() - 1;
     let (mut at, mut over) = (halves(piece).1, piece.clone());
     let (mut middle, mut all) = (vec![], vec![]);
@@ -82,7 +82,7 @@ pub fn jets(piece: &Piece) -> (Jet, Jet) {
 }
 
 /// A function at one place; `integrals` are those that are known so far.
-pub fn evaluate(certificate: &Certificate, function: &Function, integrals: &[Interval], here: &Here<'_>) -> Jet {
+pub(crate) fn evaluate(certificate: &Certificate, function: &Function, integrals: &[Interval], here: &Here<'_>) -> Jet {
     let nodes = &certificate.graphs[function.graph].nodes[..=function.root];
     let mut needed = vec![false; nodes.len()];
     needed[function.root] = true;
@@ -149,7 +149,7 @@ fn input(certificate: &Certificate, input: &Input, integrals: &[Interval], here:
 }
 
 /// A flat at the start or the end of its phase.
-pub fn end_of(certificate: &Certificate, flat: usize, last: bool) -> Jet {
+pub(crate) fn end_of(certificate: &Certificate, flat: usize, last: bool) -> Jet {
     let flat = certificate.flats[flat];
     let cells = certificate.phases[certificate.splines[flat.0].phase].len() - 1;
     match piece(certificate, flat, if last { cells - 1 } else { 0 }) {

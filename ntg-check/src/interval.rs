@@ -7,57 +7,57 @@ use crate::real::{Real, To};
 
 /// All numbers between two, or all numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub(crate) struct Interval {
     /// The ends; none where there is no bound.
     ends: Option<(Real, Real)>,
 }
 
 /// Values, and whether there is one for every argument.
-pub type Image = (Interval, bool);
+pub(crate) type Image = (Interval, bool);
 
 impl Interval {
     /// All numbers.
-    pub const ENTIRE: Self = Self { ends: None };
+    pub(crate) const ENTIRE: Self = Self { ends: None };
     /// Nothing but 0.
-    pub const ZERO: Self = Self { ends: Some((Real::ZERO, Real::ZERO)) };
+    pub(crate) const ZERO: Self = Self { ends: Some((Real::ZERO, Real::ZERO)) };
 
     /// The numbers from `low` to `high`.
-    pub fn new(low: Real, high: Real) -> Self {
+    pub(crate) fn new(low: Real, high: Real) -> Self {
         if low > high || low.is_huge() || high.is_huge() { Self::ENTIRE } else { Self { ends: Some((low, high)) } }
     }
 
     /// Nothing but this number.
-    pub fn point(x: Real) -> Self {
+    pub(crate) fn point(x: Real) -> Self {
         Self::new(x, x)
     }
 
     /// Nothing but this whole number.
-    pub fn whole(n: i64) -> Self {
+    pub(crate) fn whole(n: i64) -> Self {
         Self::point(Real::whole(n))
     }
 
     /// The ends; none where there is no bound.
-    pub fn ends(self) -> Option<(Real, Real)> {
+    pub(crate) fn ends(self) -> Option<(Real, Real)> {
         self.ends
     }
 
     /// Whether 0 may be inside.
-    pub fn has_zero(self) -> bool {
+    pub(crate) fn has_zero(self) -> bool {
         self.ends.is_none_or(|(low, high)| low <= Real::ZERO && high >= Real::ZERO)
     }
 
     /// Whether all numbers are above 0, or not below it.
-    pub fn is_positive(self) -> bool {
+    pub(crate) fn is_positive(self) -> bool {
         self.ends.is_some_and(|(low, _)| low > Real::ZERO)
     }
 
     /// Whether no number is below 0.
-    pub fn is_not_negative(self) -> bool {
+    pub(crate) fn is_not_negative(self) -> bool {
         self.ends.is_some_and(|(low, _)| low >= Real::ZERO)
     }
 
     /// Whether all of the other is inside.
-    pub fn encloses(self, other: Self) -> bool {
+    pub(crate) fn encloses(self, other: Self) -> bool {
         match (self.ends, other.ends) {
             (None, _) => true,
             (Some((a, b)), Some((c, d))) => a <= c && d <= b,
@@ -66,7 +66,7 @@ impl Interval {
     }
 
     /// The smallest interval that encloses both.
-    pub fn hull(self, other: Self) -> Self {
+    pub(crate) fn hull(self, other: Self) -> Self {
         match (self.ends, other.ends) {
             (Some((a, b)), Some((c, d))) => Self::new(a.min(c), b.max(d)),
             _ => Self::ENTIRE,
@@ -74,7 +74,7 @@ impl Interval {
     }
 
     /// What two enclosures of one number have in common.
-    pub fn meet(self, other: Self) -> Self {
+    pub(crate) fn meet(self, other: Self) -> Self {
         match (self.ends, other.ends) {
             (None, _) => other,
             (_, None) => self,
@@ -84,7 +84,7 @@ impl Interval {
     }
 
     /// The part between two numbers; none where there is none.
-    pub fn within(self, low: Option<Real>, high: Option<Real>) -> Option<Self> {
+    pub(crate) fn within(self, low: Option<Real>, high: Option<Real>) -> Option<Self> {
         let Some((a, b)) = self.ends else {
             return Some(match (low, high) {
                 (Some(low), Some(high)) => Self::new(low, high),
@@ -96,18 +96,18 @@ impl Interval {
     }
 
     /// Times a power of two.
-    pub fn scaled(self, power: i32) -> Self {
+    pub(crate) fn scaled(self, power: i32) -> Self {
         Self { ends: self.ends.map(|(a, b)| (a.scaled(power), b.scaled(power))) }
     }
 
     /// The square.
-    pub fn square(self) -> Self {
+    pub(crate) fn square(self) -> Self {
         let Some((low, high)) = self.abs().ends else { return self };
         Self::new(low.times(low, To::Below), high.times(high, To::Above))
     }
 
     /// Absolute values.
-    pub fn abs(self) -> Self {
+    pub(crate) fn abs(self) -> Self {
         match self.ends {
             Some((low, _)) if low >= Real::ZERO => self,
             Some((_, high)) if high <= Real::ZERO => -self,
@@ -117,7 +117,7 @@ impl Interval {
     }
 
     /// The quotient; everything, where the divisor may be 0.
-    pub fn over(self, divisor: Self) -> Self {
+    pub(crate) fn over(self, divisor: Self) -> Self {
         let (Some((a, b)), Some((c, d))) = (self.ends, divisor.ends) else {
             return if self == Self::ZERO { self } else { Self::ENTIRE };
         };
@@ -132,7 +132,7 @@ impl Interval {
     }
 
     /// A power with a whole exponent that is not negative.
-    pub fn power(self, n: u32) -> Self {
+    pub(crate) fn power(self, n: u32) -> Self {
         let Some((a, b)) = (if n.is_multiple_of(2) { self.abs().ends } else { self.ends }) else { return Self::ENTIRE };
         let raise = |x: Real, to: To| {
             // The size is raised with rounding that makes it smaller or larger, as the sign asks.
@@ -145,7 +145,7 @@ impl Interval {
     }
 
     /// Square roots of what is not negative.
-    pub fn sqrt(self) -> Image {
+    pub(crate) fn sqrt(self) -> Image {
         match self.within(Some(Real::ZERO), None).map(|inside| inside.ends) {
             Some(Some((a, b))) => (Self::new(a.root(To::Below), b.root(To::Above)), self.is_not_negative()),
             _ => (Self::ENTIRE, false),
@@ -159,22 +159,22 @@ impl Interval {
     }
 
     /// Exponential.
-    pub fn exp(self) -> Self {
+    pub(crate) fn exp(self) -> Self {
         self.rising(exp)
     }
 
     /// Natural logarithm.
-    pub fn log(self) -> Image {
+    pub(crate) fn log(self) -> Image {
         if self.is_positive() { (self.rising(log), true) } else { (Self::ENTIRE, false) }
     }
 
     /// Inverse tangent.
-    pub fn atan(self) -> Self {
+    pub(crate) fn atan(self) -> Self {
         self.rising(atan).meet(pi().scaled(-1).hull(-pi().scaled(-1)))
     }
 
     /// Inverse sine and inverse cosine of the part between -1 and 1.
-    pub fn asin_and_acos(self) -> (Image, Image) {
+    pub(crate) fn asin_and_acos(self) -> (Image, Image) {
         let Some(inside) = self.within(Some(Real::whole(-1)), Some(Real::whole(1))) else {
             return ((Self::ENTIRE, false), (Self::ENTIRE, false));
         };
@@ -190,7 +190,7 @@ impl Interval {
     }
 
     /// The angle of the points with abscissae `self` and ordinates `y`.
-    pub fn atan2(self, y: Self) -> Self {
+    pub(crate) fn atan2(self, y: Self) -> Self {
         let (x, quarter) = (self, pi().scaled(-1));
         let full = pi().hull(-pi());
         if x.ends.is_none() || y.ends.is_none() {
@@ -209,12 +209,12 @@ impl Interval {
     }
 
     /// Sine.
-    pub fn sin(self) -> Self {
+    pub(crate) fn sin(self) -> Self {
         (self - pi().scaled(-1)).cos()
     }
 
     /// Cosine.
-    pub fn cos(self) -> Self {
+    pub(crate) fn cos(self) -> Self {
         let all = Self::whole(-1).hull(Self::whole(1));
         let Some((low, high)) = self.ends else { return all };
         let (Some(first), Some(last)) = (half_turns(low), half_turns(high)) else { return all };
@@ -237,7 +237,7 @@ fn half_turns(x: Real) -> Option<(i64, i64)> {
 }
 
 /// π: 3.14159265358979323846 to 62 bits.
-pub fn pi() -> Interval {
+pub(crate) fn pi() -> Interval {
     // 3.243F6A8885A308D3 1319... in base 16.
     Interval::new(Real::dyadic(0x3243_F6A8_885A_308D, -60), Real::dyadic(0x3243_F6A8_885A_308E, -60))
 }

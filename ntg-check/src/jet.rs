@@ -9,18 +9,18 @@ const COUNT: usize = ORDER + 1;
 
 /// Enclosures of the coefficients.
 #[derive(Clone, Copy, Debug)]
-pub struct Jet {
+pub(crate) struct Jet {
     /// The value, then the derivatives.
-    pub c: [Interval; COUNT],
+    pub(crate) c: [Interval; COUNT],
     /// Whether there is a value at every time.
-    pub total: bool,
+    pub(crate) total: bool,
 }
 
 type Coefficients = [Interval; COUNT];
 
 /// What a function of which these are the jets at the middle and everywhere can be: by its values, by the mean-value
 /// theorem, and by Taylor's, the polynomial in Bernstein form.
-pub fn range(middle: &Jet, all: &Jet) -> Interval {
+pub(crate) fn range(middle: &Jet, all: &Jet) -> Interval {
     let unit = Interval::whole(-1).hull(Interval::whole(1));
     let mean_value = middle.c[0] + all.c[1] * unit;
     let rest = all.c[ORDER] * Interval::ZERO.hull(Interval::whole(1));
@@ -28,7 +28,7 @@ pub fn range(middle: &Jet, all: &Jet) -> Interval {
 }
 
 /// The mean over the box.
-pub fn mean(middle: &Jet, all: &Jet) -> Interval {
+pub(crate) fn mean(middle: &Jet, all: &Jet) -> Interval {
     let part = |k: usize, c: &Coefficients| c[k].over(Interval::whole(k as i64 + 1));
     let sum = (0..ORDER).step_by(2).fold(part(ORDER, &all.c), |sum, k| sum + part(k, &middle.c));
     sum.meet(all.c[0])
@@ -51,28 +51,28 @@ fn hull_of_polynomial(c: &[Interval]) -> Interval {
 }
 
 /// A binomial coefficient of small numbers.
-pub fn binomial(n: usize, k: usize) -> Interval {
+pub(crate) fn binomial(n: usize, k: usize) -> Interval {
     let product = (0..k).fold(1, |product, i| product * (n - i) as i64 / (i as i64 + 1));
     Interval::whole(product)
 }
 
 impl Jet {
     /// What does not change.
-    pub fn constant(value: Interval) -> Self {
+    pub(crate) fn constant(value: Interval) -> Self {
         let mut c = [Interval::ZERO; COUNT];
         c[0] = value;
         Self { c, total: true }
     }
 
     /// What is known by its values alone.
-    pub fn rough((values, total): Image) -> Self {
+    pub(crate) fn rough((values, total): Image) -> Self {
         let mut c = [Interval::ENTIRE; COUNT];
         c[0] = values;
         Self { c, total }
     }
 
     /// From the jet's own coefficients.
-    pub fn of(given: &[Interval]) -> Self {
+    pub(crate) fn of(given: &[Interval]) -> Self {
         let mut jet = Self::constant(Interval::ZERO);
         jet.c.iter_mut().zip(given).for_each(|(c, given)| *c = *given);
         jet
@@ -100,14 +100,16 @@ impl Jet {
     }
 
     /// The product of equals.
-    pub fn square(&self) -> Self {
-        let mut square = *self * *self;
-        square.c[0] = self.c[0].square();
-        square
+    pub(crate) fn square(&self) -> Self {
+        let coefficient = |k: usize| {
+            let pairs = (0..k.div_ceil(2)).fold(Interval::ZERO, |sum, i| sum + self.c[i] * self.c[k - i]);
+            pairs.scaled(1) + if k.is_multiple_of(2) { self.c[k / 2].square() } else { Interval::ZERO }
+        };
+        Self { c: std::array::from_fn(coefficient), total: self.total }
     }
 
     /// The quotient.
-    pub fn over(&self, divisor: &Self) -> Self {
+    pub(crate) fn over(&self, divisor: &Self) -> Self {
         let mut c = [Interval::ZERO; COUNT];
         for k in 0..COUNT {
             let rest = (1..=k).fold(self.c[k], |rest, j| rest - divisor.c[j] * c[k - j]);
@@ -117,7 +119,7 @@ impl Jet {
     }
 
     /// A power with a whole exponent.
-    pub fn power(&self, n: i32) -> Self {
+    pub(crate) fn power(&self, n: i32) -> Self {
         let size = n.unsigned_abs();
         let mut power = (1..size).fold(if size == 0 { Self::one() } else { *self }, |power, _| power * *self);
         power.c[0] = power.c[0].meet(self.c[0].power(size));
@@ -126,7 +128,7 @@ impl Jet {
     }
 
     /// The square root.
-    pub fn sqrt(&self) -> Self {
+    pub(crate) fn sqrt(&self) -> Self {
         let (values, total) = self.c[0].sqrt();
         let mut c = [values; COUNT];
         for k in 1..COUNT {
@@ -137,7 +139,7 @@ impl Jet {
     }
 
     /// The exponential: its own derivative.
-    pub fn exp(&self) -> Self {
+    pub(crate) fn exp(&self) -> Self {
         let mut c = [Interval::ZERO; COUNT];
         c[0] = self.c[0].exp();
         (1..COUNT).for_each(|k| c[k] = self.chain(&c.clone(), k));
@@ -145,12 +147,12 @@ impl Jet {
     }
 
     /// The natural logarithm.
-    pub fn log(&self) -> Self {
+    pub(crate) fn log(&self) -> Self {
         self.through(self.c[0].log(), &Self::one().over(self))
     }
 
     /// Sine and cosine: each the other's derivative, but for a sign.
-    pub fn sine_and_cosine(&self) -> (Self, Self) {
+    pub(crate) fn sine_and_cosine(&self) -> (Self, Self) {
         let (mut s, mut c) = ([Interval::ZERO; COUNT], [Interval::ZERO; COUNT]);
         (s[0], c[0]) = (self.c[0].sin(), self.c[0].cos());
         for k in 1..COUNT {
@@ -160,19 +162,19 @@ impl Jet {
     }
 
     /// The inverse tangent.
-    pub fn atan(&self) -> Self {
+    pub(crate) fn atan(&self) -> Self {
         self.through((self.c[0].atan(), true), &Self::one().over(&(Self::one() + self.square())))
     }
 
     /// The inverse sine and the inverse cosine.
-    pub fn asin_and_acos(&self) -> (Self, Self) {
+    pub(crate) fn asin_and_acos(&self) -> (Self, Self) {
         let slope = Self::one().over(&((Self::one() - *self) * (Self::one() + *self)).sqrt());
         let (sine, cosine) = self.c[0].asin_and_acos();
         (self.through(sine, &slope), self.through(cosine, &-slope))
     }
 
     /// The angle of the point with ordinate `self` and abscissa `x`.
-    pub fn atan2(&self, x: &Self) -> Self {
+    pub(crate) fn atan2(&self, x: &Self) -> Self {
         let (y0, x0, total) = (self.c[0], x.c[0], self.total && x.total);
         // Two zeros have the angle 0.
         let both = y0.has_zero() && x0.has_zero();
@@ -192,7 +194,7 @@ impl Jet {
     }
 
     /// `self` where it is certainly not below `other`, `other` where that is certain; else their values.
-    pub fn max(&self, other: &Self) -> Self {
+    pub(crate) fn max(&self, other: &Self) -> Self {
         let total = self.total && other.total;
         if (self.c[0] - other.c[0]).is_not_negative() {
             return Self { total, ..*self };
@@ -208,7 +210,7 @@ impl Jet {
     }
 
     /// `then` where `self` is certainly not 0, `otherwise` where it certainly is; else their values.
-    pub fn select(&self, then: &Self, otherwise: &Self) -> Self {
+    pub(crate) fn select(&self, then: &Self, otherwise: &Self) -> Self {
         let total = self.total;
         if !self.c[0].has_zero() {
             return Self { total: total && then.total, ..*then };

@@ -5,7 +5,7 @@ use crate::real::Real;
 
 /// An operation of a graph on operations before it.
 #[derive(Clone, Debug)]
-pub enum Node {
+pub(crate) enum Node {
     /// A number.
     Constant(Interval),
     /// An input of the function.
@@ -22,7 +22,7 @@ pub enum Node {
 
 /// What an input of a function is.
 #[derive(Clone, Debug)]
-pub enum Input {
+pub(crate) enum Input {
     /// A derivative of a spline at the time of evaluation, at the start (`Some(false)`) or at the end of its phase.
     Flat(usize, Option<bool>),
     /// A number.
@@ -37,52 +37,52 @@ pub enum Input {
 
 /// A function: the nodes up to its result, and its inputs.
 #[derive(Clone, Debug)]
-pub struct Function {
-    pub graph: usize,
-    pub root: usize,
-    pub inputs: Vec<Input>,
+pub(crate) struct Function {
+    pub(crate) graph: usize,
+    pub(crate) root: usize,
+    pub(crate) inputs: Vec<Input>,
 }
 
 /// Operations, and which of them are results.
 #[derive(Clone, Debug)]
-pub struct Graph {
-    pub nodes: Vec<Node>,
-    pub rows: Vec<usize>,
+pub(crate) struct Graph {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) rows: Vec<usize>,
 }
 
 /// A spline of a phase.
 #[derive(Clone, Debug)]
-pub struct Spline {
-    pub phase: usize,
-    pub order: usize,
-    pub knots: Vec<Real>,
-    pub coefficients: Vec<Real>,
+pub(crate) struct Spline {
+    pub(crate) phase: usize,
+    pub(crate) order: usize,
+    pub(crate) knots: Vec<Real>,
+    pub(crate) coefficients: Vec<Real>,
 }
 
 /// An argument of a table.
 #[derive(Clone, Debug)]
-pub struct Axis {
-    pub symmetry: String,
-    pub low: Real,
-    pub high: Real,
-    pub order: usize,
-    pub step: usize,
-    pub coefficients: usize,
-    pub cells: Vec<(Real, Real)>,
-    pub weights: Vec<Real>,
+pub(crate) struct Axis {
+    pub(crate) symmetry: String,
+    pub(crate) low: Real,
+    pub(crate) high: Real,
+    pub(crate) order: usize,
+    pub(crate) step: usize,
+    pub(crate) coefficients: usize,
+    pub(crate) cells: Vec<(Real, Real)>,
+    pub(crate) weights: Vec<Real>,
 }
 
 /// A table.
 #[derive(Clone, Debug)]
-pub struct Table {
-    pub linear: bool,
-    pub axes: Vec<Axis>,
-    pub coefficients: Vec<Real>,
+pub(crate) struct Table {
+    pub(crate) linear: bool,
+    pub(crate) axes: Vec<Axis>,
+    pub(crate) coefficients: Vec<Real>,
 }
 
 /// Where a summand is taken: over a phase, at its start, at its end, nowhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Over {
+pub(crate) enum Over {
     Phase(usize),
     End(usize, bool),
     Nowhere,
@@ -90,39 +90,39 @@ pub enum Over {
 
 /// A function at all times of a phase, or a sum.
 #[derive(Clone, Debug)]
-pub enum Quantity {
+pub(crate) enum Quantity {
     Path(usize, usize),
     Sum(Vec<(usize, Over)>),
 }
 
 /// What is claimed of a subject.
 #[derive(Clone, Debug)]
-pub struct Claim {
-    pub name: String,
-    pub quantity: Quantity,
-    pub bounds: (Option<usize>, Option<usize>),
-    pub verdict: String,
+pub(crate) struct Claim {
+    pub(crate) name: String,
+    pub(crate) quantity: Quantity,
+    pub(crate) bounds: (Option<usize>, Option<usize>),
+    pub(crate) verdict: String,
     /// Of an equality: how far its sides differ at most.
-    pub residual: Option<Real>,
-    pub values: Interval,
+    pub(crate) residual: Option<Real>,
+    pub(crate) values: Interval,
     /// Cell, halvings and part of the box in whose middle the values are those of the interval.
-    pub witness: Option<(usize, u32, u64, Interval)>,
-    pub covers: Vec<Vec<String>>,
+    pub(crate) witness: Option<(usize, u32, u64, Interval)>,
+    pub(crate) covers: Vec<Vec<String>>,
 }
 
 /// Everything that a certificate says.
 #[derive(Debug, Default)]
-pub struct Certificate {
-    pub problem: String,
-    pub numbers: Vec<Interval>,
-    pub phases: Vec<Vec<Real>>,
-    pub splines: Vec<Spline>,
-    pub flats: Vec<(usize, usize)>,
-    pub tables: Vec<Table>,
-    pub graphs: Vec<Graph>,
-    pub functions: Vec<Function>,
-    pub integrals: Vec<Claim>,
-    pub claims: Vec<Claim>,
+pub(crate) struct Certificate {
+    pub(crate) problem: String,
+    pub(crate) numbers: Vec<Interval>,
+    pub(crate) phases: Vec<Vec<Real>>,
+    pub(crate) splines: Vec<Spline>,
+    pub(crate) flats: Vec<(usize, usize)>,
+    pub(crate) tables: Vec<Table>,
+    pub(crate) graphs: Vec<Graph>,
+    pub(crate) functions: Vec<Function>,
+    pub(crate) integrals: Vec<Claim>,
+    pub(crate) claims: Vec<Claim>,
 }
 
 type Read<T> = Result<T, String>;
@@ -175,7 +175,7 @@ impl Words<'_> {
 }
 
 /// A hexadecimal floating-point number, such as `-0x1.8p+1`: exact.
-pub fn real(word: &str) -> Read<Real> {
+pub(crate) fn real(word: &str) -> Read<Real> {
     let wrong = || format!("`{word}` is no hexadecimal number");
     let (sign, size) = word.strip_prefix('-').map_or((1, word), |size| (-1, size));
     let (digits, exponent) = size.strip_prefix("0x").and_then(|s| s.split_once('p')).ok_or_else(wrong)?;
@@ -192,7 +192,7 @@ pub fn real(word: &str) -> Read<Real> {
 const MOST: usize = 1 << 24;
 
 /// Reads all lines but the digest.
-pub fn read(text: &str) -> Read<Certificate> {
+pub(crate) fn read(text: &str) -> Read<Certificate> {
     let mut out = Certificate::default();
     let mut lines = text.lines().enumerate();
     match lines.next() {

@@ -13,14 +13,14 @@ const LARGEST: i32 = 1 << 20;
 
 /// `m 2^e`, with `2^61 <= |m| < 2^62` or `m = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Real {
+pub(crate) struct Real {
     m: i64,
     e: i32,
 }
 
 /// In which direction a result is rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum To {
+pub(crate) enum To {
     /// Not above the exact result.
     Below,
     /// Not below it.
@@ -29,7 +29,7 @@ pub enum To {
 
 impl To {
     /// The other direction.
-    pub fn other(self) -> Self {
+    pub(crate) fn other(self) -> Self {
         if self == Self::Below { Self::Above } else { Self::Below }
     }
 }
@@ -43,7 +43,7 @@ fn shifted(m: i128, by: u32, to: To) -> i128 {
 
 impl Real {
     /// 0.
-    pub const ZERO: Self = Self { m: 0, e: 0 };
+    pub(crate) const ZERO: Self = Self { m: 0, e: 0 };
 
     /// `m 2^e`, rounded to as many bits as there are.
     fn rounded(m: i128, e: i32, to: To) -> Self {
@@ -66,27 +66,27 @@ impl Real {
     }
 
     /// A whole number.
-    pub fn whole(n: i64) -> Self {
+    pub(crate) fn whole(n: i64) -> Self {
         Self::rounded(i128::from(n), 0, To::Below)
     }
 
     /// `n 2^e`, exactly, for numbers of up to 62 bits.
-    pub fn dyadic(n: i64, e: i32) -> Self {
+    pub(crate) fn dyadic(n: i64, e: i32) -> Self {
         Self::rounded(i128::from(n), e, To::Below)
     }
 
     /// Whether its size is beyond what is kept.
-    pub fn is_huge(self) -> bool {
+    pub(crate) fn is_huge(self) -> bool {
         self.m != 0 && self.e > LARGEST
     }
 
     /// -1, 0 or 1.
-    pub fn sign(self) -> i64 {
+    pub(crate) fn sign(self) -> i64 {
         self.m.signum()
     }
 
     /// The sum.
-    pub fn plus(self, other: Self, to: To) -> Self {
+    pub(crate) fn plus(self, other: Self, to: To) -> Self {
         if self.m == 0 || other.m == 0 {
             return if self.m == 0 { other } else { self };
         }
@@ -100,12 +100,12 @@ impl Real {
     }
 
     /// The product.
-    pub fn times(self, other: Self, to: To) -> Self {
+    pub(crate) fn times(self, other: Self, to: To) -> Self {
         Self::rounded(i128::from(self.m) * i128::from(other.m), self.e.saturating_add(other.e), to)
     }
 
     /// The quotient by a number that is not 0.
-    pub fn over(self, other: Self, to: To) -> Self {
+    pub(crate) fn over(self, other: Self, to: To) -> Self {
         let sign = other.m.signum();
         let (n, d) = (i128::from(self.m * sign) << 64, i128::from(other.m * sign));
         let floor = n.div_euclid(d);
@@ -114,7 +114,7 @@ impl Real {
     }
 
     /// The square root of a number that is not negative.
-    pub fn root(self, to: To) -> Self {
+    pub(crate) fn root(self, to: To) -> Self {
         if self.m <= 0 {
             return Self::ZERO;
         }
@@ -126,12 +126,12 @@ impl Real {
     }
 
     /// Times a power of two, exactly.
-    pub fn scaled(self, power: i32) -> Self {
+    pub(crate) fn scaled(self, power: i32) -> Self {
         if self.m == 0 { self } else { Self { m: self.m, e: self.e.saturating_add(power) } }
     }
 
     /// The largest whole number that is not above it, as long as it has less than 62 bits.
-    pub fn floor(self) -> Option<i64> {
+    pub(crate) fn floor(self) -> Option<i64> {
         match self.e {
             _ if self.m == 0 => Some(0),
             e if e > 0 => None,
@@ -140,7 +140,7 @@ impl Real {
     }
 
     /// `f` and `k` with the number `f 2^k` and `f` in ½ .. 1, for what is positive.
-    pub fn fraction(self) -> (Self, i32) {
+    pub(crate) fn fraction(self) -> (Self, i32) {
         (Self { m: self.m, e: -(BITS as i32) }, self.e + BITS as i32)
     }
 }
