@@ -216,6 +216,8 @@ fn compiler_and_runtime_do_not_know_each_other() {
     forbid("ntg-report/src", &["ntg_interp", "ntg_macros", "std::fs", "std::net"], None);
     forbid("ntg-math/src", &["ntg_"], Some("lib.rs")); // Its example names it.
     forbid("ntg-structure/src", &["ntg_"], None);
+    forbid("ntg-certify/src", &["ntg_interp", "ntg_macros", "ntg_check"], None);
+    forbid("ntg-check/src", &["ntg_s", "ntg_r", "ntg_c", "ntg_i", "ntg_m", "f64", "f32"], Some("main.rs"));
     forbid("ntg-splines/src", &["ntg_structure", "ntg_runtime", "ntg_compiler"], None);
 }
 
@@ -234,6 +236,8 @@ fn there_are_no_globals_and_nothing_is_unfinished() {
         "ntg-report/src",
         "ntg-sweep/src",
         "ntg-lsp/src",
+        "ntg-certify/src",
+        "ntg-check/src",
         "ntg-cli/src",
     ] {
         forbid(folder, &["static mut", "thread_local!", "todo!(", "unimplemented!(", "#[ignore"], None);
@@ -257,6 +261,8 @@ fn files_stay_small_enough_to_have_one_purpose() {
         "ntg-report/src",
         "ntg-sweep/src",
         "ntg-lsp/src",
+        "ntg-certify/src",
+        "ntg-check/src",
         "ntg-cli/src",
     ] {
         for (path, text) in files(folder) {
@@ -264,6 +270,18 @@ fn files_stay_small_enough_to_have_one_purpose() {
             assert!(lines <= MOST_LINES, "{} has {lines} lines", path.display());
         }
     }
+}
+
+#[test]
+fn the_checker_of_certificates_can_be_read_in_an_afternoon() {
+    /// Lines of code: without comments, blank lines and tests.
+    const MOST_LINES: usize = 1500;
+    let code = |text: &str| {
+        let lines = shipped(text).lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
+        lines.count()
+    };
+    let lines: usize = files("ntg-check/src").iter().map(|(_, text)| code(text)).sum();
+    assert!(lines <= MOST_LINES, "ntg-check has {lines} lines of code");
 }
 
 #[test]
@@ -280,9 +298,15 @@ fn every_code_is_documented_once() {
 fn every_section_of_the_manual_that_code_cites_exists() {
     let manual =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/maths.md")).expect("docs/maths.md");
-    for folder in
-        ["ntg-splines/src", "ntg-nlp/src", "ntg-compiler/src", "ntg-runtime/src", "ntg-interp/src", "ntg-structure/src"]
-    {
+    for folder in [
+        "ntg-splines/src",
+        "ntg-nlp/src",
+        "ntg-compiler/src",
+        "ntg-runtime/src",
+        "ntg-interp/src",
+        "ntg-structure/src",
+        "ntg-certify/src",
+    ] {
         for (path, text) in files(folder) {
             for (at, _) in text.match_indices("maths.md, section ") {
                 let number: String = text[at + "maths.md, section ".len()..]

@@ -62,7 +62,11 @@ fn main() {
                     let checked = ntg_check::verify(&ntg_certify::write::text(&found.certificate));
                     println!(
                         "  guarantee: {:?} after {} rounds, {:.1} solves' time, cost {:.2e}, check {:?}",
-                        found.ending, found.rounds.len(), all / seconds, found.cost(), checked.map(|c| c.proved),
+                        found.ending,
+                        found.rounds.len(),
+                        all / seconds,
+                        found.cost(),
+                        checked.map(|c| c.proved),
                     );
                     if found.ending != ntg_certify::guarantee::Ending::Proved {
                         println!("  {:?}\n  {:?}", found.rounds, found.changes);

@@ -146,9 +146,7 @@ fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Findi
             let verdict = match (required, equality) {
                 (None, _) => Verdict::Bounded,
                 (Some(_), true) => Verdict::Within(residual(outward(value), below)),
-                (Some(required), false) => {
-                    judge(required.missed(value), total)
-                }
+                (Some(required), false) => judge(required.missed(value), total),
             };
             let values = within_required(value, &verdict, required);
             let required = required.map(|r| (r.low, r.high));
@@ -162,7 +160,9 @@ fn path(found: Search, (required, equality): (Option<Required>, bool), below: Op
     let total = found.leaves.iter().all(|leaf| leaf.total);
     let verdict = match required {
         None => Verdict::Bounded,
-        Some(_) if equality => Verdict::Within(if total { residual(outward(found.values), below) } else { f64::INFINITY }),
+        Some(_) if equality => {
+            Verdict::Within(if total { residual(outward(found.values), below) } else { f64::INFINITY })
+        }
         Some(_) => judge((found.witness.map_or(0.0, |witness| witness.missed), found.missed), total),
     };
     let values = within_required(found.values, &verdict, required);

@@ -49,8 +49,7 @@ impl<'a> Collector<'a> {
     fn new(program: &'a Program, solution: &'a Solution, spec: &str) -> Self {
         // Of a solution of a tightened problem the formulas are still those of the program.
         let structure = &program.structure;
-        let mut out =
-            Statement { problem: structure.name.clone(), spec: spec.to_owned(), ..Statement::default() };
+        let mut out = Statement { problem: structure.name.clone(), spec: spec.to_owned(), ..Statement::default() };
         let mut parameters = vec![];
         for parameter in &solution.structure().parameters {
             parameters.push(out.numbers.len());
@@ -69,10 +68,12 @@ impl<'a> Collector<'a> {
         }
         let variables = out.numbers.len();
         let coefficients = solution.spline_coefficients().len();
-        out.numbers.extend(solution.coefficients()[coefficients..].iter().enumerate().map(|(i, value)| Number {
-            name: format!("variable {}", coefficients + i),
-            value: *value,
-        }));
+        out.numbers.extend(
+            solution.coefficients()[coefficients..]
+                .iter()
+                .enumerate()
+                .map(|(i, value)| Number { name: format!("variable {}", coefficients + i), value: *value }),
+        );
         for view in solution.splines() {
             let (order, knots) = (view.knots.order(), view.knots.knots().to_vec());
             let (name, phase) = (view.name, view.phase);
@@ -85,12 +86,17 @@ impl<'a> Collector<'a> {
             phase.cuts.dedup();
             out.numbers[phase.duration].value = duration;
         }
-        out.tables = structure.tables.iter().zip(solution.tables()).map(|(declared, table)| Table {
-            name: declared.name.clone(),
-            axes: table.parts(),
-            linear_outside: table.extrapolation() == Extrapolation::Linear,
-            coefficients: table.coefficients().to_vec(),
-        }).collect();
+        out.tables = structure
+            .tables
+            .iter()
+            .zip(solution.tables())
+            .map(|(declared, table)| Table {
+                name: declared.name.clone(),
+                axes: table.parts(),
+                linear_outside: table.extrapolation() == Extrapolation::Linear,
+                coefficients: table.coefficients().to_vec(),
+            })
+            .collect();
         out.graphs = program.kernels.iter().map(graph).collect();
         let (flats, members) = (HashMap::new(), BTreeMap::new());
         Self { structure, solution, out, durations, parameters, variables, flats, members }
@@ -180,9 +186,19 @@ impl<'a> Collector<'a> {
             let above = if lower == upper { below } else { bound(this, upper)? };
             let declared = &this.structure.constraints[*constraint];
             let name = declared.name.as_deref().unwrap_or(&declared.place.text);
-            let name = this.named_member(name, indices, along);
+            let mut name = this.named_member(name, indices, along);
+            // The same text may stand at both ends.
+            if let Over::Start(_) | Over::End(_) = over {
+                name.push_str(if matches!(over, Over::Start(_)) { " at the start" } else { " at the end" });
+            }
             let kind = Kind::Constraint(*constraint);
-            this.out.subjects.push(Subject { kind, name, quantity, bounds: (below, above) });
+            this.out.subjects.push(Subject {
+                kind,
+                name,
+                quantity,
+                unit: declared.unit.clone(),
+                bounds: (below, above),
+            });
             Ok(())
         })
     }
@@ -199,7 +215,8 @@ impl<'a> Collector<'a> {
             let declared = &self.structure.terms[term];
             let name = declared.name.as_deref().unwrap_or(&declared.place.text).to_owned();
             let (kind, quantity) = (Kind::Term(term), Quantity::Sum(summands));
-            self.out.subjects.push(Subject { kind, name, quantity, bounds: (None, None) });
+            let unit = declared.unit.clone();
+            self.out.subjects.push(Subject { kind, name, quantity, unit, bounds: (None, None) });
         }
         Ok(())
     }
@@ -215,7 +232,8 @@ impl<'a> Collector<'a> {
                     over => (Quantity::Sum(vec![Summand { function, over }]), None),
                 };
                 let name = self.named_member(&named.name, &indices, along);
-                self.out.subjects.push(Subject { kind: Kind::Named(number), name, quantity, bounds: (None, None) });
+                let (kind, unit) = (Kind::Named(number), named.unit.clone());
+                self.out.subjects.push(Subject { kind, name, quantity, unit, bounds: (None, None) });
             }
         }
         Ok(())

@@ -80,7 +80,9 @@ impl<'a> Machine<'a> {
                 Node::Unary(op, x) => unary(*op, &values[*x]),
                 Node::Binary(op, a, b) => binary(*op, &values[*a], &values[*b], a == b),
                 Node::Powi(x, n) => values[*x].integer_power(*n),
-                Node::Select(condition, then, otherwise) => values[*condition].select(&values[*then], &values[*otherwise]),
+                Node::Select(condition, then, otherwise) => {
+                    values[*condition].select(&values[*then], &values[*otherwise])
+                }
                 Node::Table(table, derivative, args) => {
                     let args: Vec<Jet> = args.iter().map(|arg| values[*arg]).collect();
                     look_up(&self.statement.tables[*table], derivative, &args)

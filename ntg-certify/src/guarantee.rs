@@ -1,4 +1,4 @@
-//! Tighten and solve again, until everything is proved (docs/maths.md, section 16.6).
+//! Tighten and solve again, until everything is proved (docs/maths.md, section 15.6).
 //!
 //! A constraint that is missed by much between the points is held at more of them; one that is missed by little is
 //! tightened by what it misses, and a little more. The rounds end when every constraint is proved, or with what cannot

@@ -1,7 +1,7 @@
 //! Intervals of real numbers with ends that are doubles, rounded outward.
 //!
 //! No processor mode is used: an operation is rounded to nearest as everywhere else, and the result is moved to the
-//! neighbouring double below or above unless it is known to be exact (docs/maths.md, equation 16.1). So the same
+//! neighbouring double below or above unless it is known to be exact (docs/maths.md, equation 15.1). So the same
 //! code gives the same bits on every target.
 //!
 //! Afterwards, for every operation `f` and all real `x` in `X`: `f(x)` is in `f(X)`. An interval is never empty and
@@ -267,7 +267,9 @@ impl Interval {
     pub fn sqrt(self) -> Option<Self> {
         let x = self.within(0.0, f64::INFINITY)?;
         let (low, high) = (x.low.sqrt(), x.high.sqrt());
-        let exact = |x: f64, root: f64| x == 0.0 || x == 1.0 || x.is_infinite() || (root * root == x && root.fract() == 0.0 && root < 9e7);
+        let exact = |x: f64, root: f64| {
+            x == 0.0 || x == 1.0 || x.is_infinite() || (root * root == x && root.fract() == 0.0 && root < 9e7)
+        };
         let low = if exact(x.low, low) { low } else { low.next_down().max(0.0) };
         let high = if exact(x.high, high) { high } else { high.next_up() };
         Some(Self { low, high })

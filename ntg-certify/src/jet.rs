@@ -1,4 +1,4 @@
-//! Taylor coefficients of functions of one variable, enclosed (docs/maths.md, section 16.2).
+//! Taylor coefficients of functions of one variable, enclosed (docs/maths.md, section 15.2).
 //!
 //! On a box with centre `c` and radius `r` a function of time is written in `s = (t - c) / r`, which runs from -1 to
 //! 1. A [`Jet`] encloses its Taylor coefficients `f_k = f^(k)(t) r^k / k!`, either at the centre alone or at every
@@ -54,7 +54,7 @@ impl Jet {
     }
 
     /// What the function can be on the box: the best of its values, its mean-value form and its Taylor form (docs/maths.md,
-    /// equations 16.3 and 16.4). `centre` is the jet at the centre, `self` the one of all times.
+    /// equations 15.3 and 15.4). `centre` is the jet at the centre, `self` the one of all times.
     pub fn range(&self, centre: &Self) -> Interval {
         let values = self.c[0];
         let mean_value = centre.c[0] + self.c[1] * Interval::of_constants(-1.0, 1.0);
@@ -63,7 +63,7 @@ impl Jet {
         values.meet(mean_value).meet(taylor)
     }
 
-    /// The mean over the box (docs/maths.md, equation 16.5).
+    /// The mean over the box (docs/maths.md, equation 15.5).
     pub fn mean(&self, centre: &Self) -> Interval {
         let last = self.c[ORDER].over(Interval::point((ORDER + 1) as f64));
         let terms = (0..ORDER).step_by(2).map(|k| centre.c[k].over(Interval::point((k + 1) as f64)));

@@ -2,7 +2,7 @@
 //!
 //! A solver holds constraints at points and hopes in between. For flat outputs the trajectory is a polynomial on each
 //! knot interval, so what happens between can be *proved*: in interval arithmetic, with branch and bound in time
-//! (docs/maths.md, section 16; docs/certify.md says exactly what is proved and what is trusted).
+//! (docs/maths.md, section 15; docs/certify.md says exactly what is proved and what is trusted).
 //!
 //! ```text
 //! Program, Solution --collect--> Statement --certify--> Certificate --write--> a file that ntg-check re-proves
@@ -18,6 +18,7 @@ pub mod jet;
 pub mod prove;
 pub mod spline;
 pub mod statement;
+pub mod summary;
 mod table;
 pub mod tightened;
 pub mod write;

@@ -1,5 +1,5 @@
 //! Branch and bound in time: what a function can be over a phase, and whether its bounds hold (docs/maths.md, section
-//! 16.4).
+//! 15.4).
 //!
 //! Boxes are the cells between cuts and their halves. All boxes of one size are looked at before any is halved, so that a
 //! witness of a violation is found where the violation is large. A box is done when it is proved, when it cannot add to
@@ -130,7 +130,12 @@ struct Open {
 }
 
 /// Looks at a function over a phase.
-pub(crate) fn search(machine: &Machine<'_>, (function, phase): (usize, usize), goal: &Goal, options: &Options) -> Search {
+pub(crate) fn search(
+    machine: &Machine<'_>,
+    (function, phase): (usize, usize),
+    goal: &Goal,
+    options: &Options,
+) -> Search {
     let cuts = &machine.statement.phases[phase].cuts;
     let needs = machine.needs(function);
     let cells = cuts.len() - 1;

@@ -1,7 +1,7 @@
-//! Splines in Bernstein form, interval by interval (docs/maths.md, section 16.3).
+//! Splines in Bernstein form, interval by interval (docs/maths.md, section 15.3).
 //!
 //! A derivative of a spline is a spline again; on a cell between two cuts it is one polynomial, whose Bernstein
-//! coefficients are the values of its blossom at the ends of the cell (equation 16.6). They are enclosed once for a
+//! coefficients are the values of its blossom at the ends of the cell (equation 15.6). They are enclosed once for a
 //! cell and then halved, which only takes means: nothing cancels, however small the box.
 
 use crate::interval::Interval;

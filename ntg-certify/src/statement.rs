@@ -5,6 +5,7 @@
 
 use ntg_compiler::expr::{Binary, Unary};
 use ntg_splines::AxisParts;
+use ntg_structure::Unit;
 
 /// One operation of a [`Graph`] on nodes before it.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,6 +190,8 @@ pub struct Subject {
     pub name: String,
     /// What is bounded.
     pub quantity: Quantity,
+    /// The unit in which a person sees it; the file has SI units alone.
+    pub unit: Unit,
     /// The functions that are its required bounds, below and above; the same one twice for an equality.
     pub bounds: (Option<usize>, Option<usize>),
 }

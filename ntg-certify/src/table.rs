@@ -111,7 +111,8 @@ fn cells_of(axis: &AxisParts, x: &Jet, sign: f64, found: &mut Vec<Place>) {
     let range = x.c[0];
     let last = axis.cells.len() - 1;
     let outside = |cell: usize, end: f64| {
-        let local = (Interval::point(end) - Interval::point(axis.cells[cell].0)).over(Interval::point(axis.cells[cell].1));
+        let local =
+            (Interval::point(end) - Interval::point(axis.cells[cell].0)).over(Interval::point(axis.cells[cell].1));
         let beyond = *x - Jet::constant(Interval::point(end));
         (Jet::constant(local), beyond)
     };

@@ -64,7 +64,8 @@ impl<'p> Tightened<'p> {
     fn tighten(&mut self, group: usize, changes: &BTreeMap<usize, Change>) {
         let group = &mut self.structure.groups[group];
         let Some(bounds) = group.bounds.clone() else { return };
-        let is_changed = |row: &Row| matches!(row, Row::Constraint { constraint, .. } if changes.contains_key(constraint));
+        let is_changed =
+            |row: &Row| matches!(row, Row::Constraint { constraint, .. } if changes.contains_key(constraint));
         if !group.rows.iter().any(is_changed) {
             return;
         }
@@ -84,11 +85,8 @@ impl<'p> Tightened<'p> {
             }
         }
         let old = &self.structure.kernels[bounds.kernel];
-        let shape = Kernel {
-            rows: rows.len(),
-            degree: rows.iter().map(|(row, _)| old.degree[*row]).collect(),
-            ..old.clone()
-        };
+        let shape =
+            Kernel { rows: rows.len(), degree: rows.iter().map(|(row, _)| old.degree[*row]).collect(), ..old.clone() };
         let index = self.add(shape, Extra::Shifted { kernel: bounds.kernel, rows });
         // The group was found above; adding a kernel moves no group.
         for own in self.structure.groups.iter_mut().filter(|own| own.bounds.as_ref() == Some(&bounds)) {

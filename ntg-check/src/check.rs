@@ -63,7 +63,10 @@ fn sound(certificate: &Certificate) -> Result<(), String> {
         let size = table.axes.iter().fold(1, |product: usize, axis| product.saturating_mul(axis.coefficients));
         let axes = table.axes.iter().all(|axis| {
             let begins: Vec<Real> = axis.cells.iter().map(|cell| cell.0).collect();
-            !begins.is_empty() && (1..=64).contains(&axis.order) && rising(&begins, true) && axis.low < axis.high
+            !begins.is_empty()
+                && (1..=64).contains(&axis.order)
+                && rising(&begins, true)
+                && axis.low < axis.high
                 && axis.cells.iter().all(|cell| cell.1 > Real::ZERO)
                 && axis.weights.len() == begins.len() * axis.order * axis.order
                 && (begins.len() - 1).saturating_mul(axis.step).saturating_add(axis.order) == axis.coefficients
@@ -72,16 +75,7 @@ fn sound(certificate: &Certificate) -> Result<(), String> {
             return Err("a table is not sound".to_owned());
         }
     }
-    for (number, function) in certificate.functions.iter().enumerate() {
-        for input in &function.inputs {
-            match input {
-                Input::Join(_, members) if members.iter().any(|member| *member >= number) => {
-                    return Err("a function is made of one after it".to_owned());
-                }
-                _ => {}
-            }
-        }
-    }
+    // Functions are made of functions before them alone: the reader knows no others.
     Ok(())
 }
 
@@ -99,9 +93,10 @@ fn quantity(certificate: &Certificate, claim: &Claim, integrals: &[Interval]) ->
         Quantity::Sum(summands) => {
             let count = summands.iter().filter(|(_, over)| matches!(over, Over::Phase(_))).count();
             let found = |more| sum(certificate, (summands, &claim.covers), integrals, more);
-            if claim.covers.len() != count || !(0..=MORE / 2).try_fold(false, |done, more| {
-                Ok::<_, String>(done || claim.values.encloses(found(more)?))
-            })? {
+            if claim.covers.len() != count
+                || !(0..=MORE / 2)
+                    .try_fold(false, |done, more| Ok::<_, String>(done || claim.values.encloses(found(more)?)))?
+            {
                 return Err("its value is not proved to be where it is claimed to be".to_owned());
             }
         }
@@ -206,7 +201,6 @@ struct Walk<'a> {
 }
 
 /// A box: the pieces of the flats, that of scaled time, and its length.
-#[derive(Clone)]
 struct Part {
     pieces: Vec<(usize, Piece)>,
     tau: Piece,
@@ -215,14 +209,11 @@ struct Part {
 
 impl Part {
     fn halves(&self) -> [Self; 2] {
-        let (left, right) = self.pieces.iter().map(|(flat, piece)| (*flat, halves(piece))).fold(
-            (vec![], vec![]),
-            |(mut left, mut right), (flat, (a, b))| {
-                left.push((flat, a));
-                right.push((flat, b));
-                (left, right)
-            },
-        );
+        let both = |(flat, piece): &(usize, Piece)| {
+            let (left, right) = halves(piece);
+            ((*flat, left), (*flat, right))
+        };
+        let (left, right) = self.pieces.iter().map(both).unzip();
         let (before, after) = halves(&self.tau);
         let length = self.length.scaled(-1);
         [Self { pieces: left, tau: before, length }, Self { pieces: right, tau: after, length }]
@@ -277,13 +268,7 @@ impl Walk<'_> {
             let [left, right] = part.halves();
             part = if number >> bit & 1 == 1 { right } else { left };
         }
-        let nothing = Jet::rough((Interval::ENTIRE, false));
-        let at = |flat: usize| {
-            let own = part.pieces.iter().find(|(own, _)| *own == flat);
-            own.map_or(nothing, |(_, piece)| Jet::constant(jets(piece).0.c[0]))
-        };
-        let here = Here { flats: &at, tau: Jet::constant(jets(&part.tau).0.c[0]) };
-        Ok(evaluate(self.certificate, &self.certificate.functions[self.function], self.integrals, &here))
+        Ok(self.jets(&part).0)
     }
 
     /// Goes through the boxes of a cover: for each cell a tree, `/` for a box that is halved (the first half first), `.`
@@ -298,7 +283,7 @@ impl Walk<'_> {
                 let part = open.pop().ok_or("a cover has too many boxes")?;
                 match letter {
                     '/' => open.extend(part.halves().into_iter().rev()),
-                    '.' => self.halved(&part, judge, more)?,
+                    '.' => self.judge(&part, judge, (more, MORE))?,
                     _ => return Err("a cover has an unknown sign".to_owned()),
                 }
             }
@@ -309,22 +294,18 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Judges all parts of a box that is halved so often.
-    fn halved(&self, part: &Part, judge: &mut Judge<'_>, times: u32) -> Result<(), String> {
-        match times {
-            0 => self.judge(part, judge, MORE),
-            _ => part.halves().iter().try_for_each(|half| self.halved(half, judge, times - 1)),
+    /// Judges a box, after so many halvings; it may be halved `MORE` times beyond.
+    fn judge(&self, part: &Part, judge: &mut Judge<'_>, (first, more): (u32, u32)) -> Result<(), String> {
+        if first == 0 {
+            let (middle, all) = self.jets(part);
+            if judge(&middle, &all, part.length)? {
+                return Ok(());
+            }
+            if more == 0 {
+                return Err("its values are not proved to be where they are claimed to be".to_owned());
+            }
         }
-    }
-
-    fn judge(&self, part: &Part, judge: &mut Judge<'_>, more: u32) -> Result<(), String> {
-        let (middle, all) = self.jets(part);
-        if judge(&middle, &all, part.length)? {
-            return Ok(());
-        }
-        if more == 0 {
-            return Err("its values are not proved to be where they are claimed to be".to_owned());
-        }
-        part.halves().iter().try_for_each(|half| self.judge(half, judge, more - 1))
+        let left = if first > 0 { (first - 1, more) } else { (0, more - 1) };
+        part.halves().iter().try_for_each(|half| self.judge(half, judge, left))
     }
 }

@@ -176,15 +176,7 @@ fn one(name: &str, x: &Jet) -> Jet {
         "cosh" => (x.exp() + (-*x).exp()) * half,
         "tanh" => one - (one + one).over(&(one + (*x + *x).exp())),
         "abs" => x.max(&-*x),
-        "sign" => {
-            let sign = |n: i64| Jet { total: x.total, ..Jet::constant(Interval::whole(n)) };
-            match x.c[0] {
-                value if value.is_positive() => sign(1),
-                value if (-value).is_positive() => sign(-1),
-                value if value == Interval::ZERO => sign(0),
-                _ => Jet::rough((Interval::whole(-1).hull(Interval::whole(1)), x.total)),
-            }
-        }
+        "sign" => step(x.c[0], x.total, [-1, 0, 1]),
         "logistic" => one.over(&(one + (-*x).exp())),
         _ => (one + x.exp()).log(), // The only one left is `softplus`.
     }
@@ -201,15 +193,18 @@ fn two(name: &str, a: &Jet, b: &Jet) -> Jet {
         "hypot" => (a.square() + b.square()).sqrt(),
         "min" => -(-*a).max(&-*b),
         "max" => a.max(b),
-        _ => {
-            let total = a.total && b.total;
-            let less = |n: i64| Jet { total, ..Jet::constant(Interval::whole(n)) };
-            match b.c[0] - a.c[0] {
-                rest if rest.is_not_negative() => less(1),
-                rest if (-rest).is_positive() => less(0),
-                _ => Jet::rough((Interval::ZERO.hull(Interval::whole(1)), total)),
-            }
-        }
+        _ => step(b.c[0] - a.c[0], a.total && b.total, [0, 1, 1]), // The only one left is `less_eq`.
+    }
+}
+
+/// Which of three numbers, for what is below 0, 0 and above it.
+fn step(x: Interval, total: bool, [below, at, above]: [i64; 3]) -> Jet {
+    let to = |n: i64| Jet { total, ..Jet::constant(Interval::whole(n)) };
+    match x {
+        x if x.is_positive() => to(above),
+        x if (-x).is_positive() => to(below),
+        x if x == Interval::ZERO => to(at),
+        _ => Jet::rough((Interval::whole(below).hull(Interval::whole(above)), total)),
     }
 }
 

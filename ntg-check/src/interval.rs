@@ -133,15 +133,8 @@ impl Interval {
 
     /// A power with a whole exponent that is not negative.
     pub(crate) fn power(self, n: u32) -> Self {
-        let Some((a, b)) = (if n.is_multiple_of(2) { self.abs().ends } else { self.ends }) else { return Self::ENTIRE };
-        let raise = |x: Real, to: To| {
-            // The size is raised with rounding that makes it smaller or larger, as the sign asks.
-            let to = if x.sign() < 0 { to.other() } else { to };
-            let size = if x.sign() < 0 { -x } else { x };
-            let power = (0..n).fold(Real::whole(1), |power, _| power.times(size, to));
-            if x.sign() < 0 && n % 2 == 1 { -power } else { power }
-        };
-        Self::new(raise(a, To::Below), raise(b, To::Above))
+        let base = if n.is_multiple_of(2) { self.abs() } else { self };
+        base.rising(|end| (0..n).fold(Self::whole(1), |power, _| power * end))
     }
 
     /// Square roots of what is not negative.
@@ -179,14 +172,9 @@ impl Interval {
             return ((Self::ENTIRE, false), (Self::ENTIRE, false));
         };
         let one = Self::whole(1);
-        let sine = inside.rising(|x| ((one - x) * (one + x)).sqrt().0.meet(one.hull(Self::ZERO)).angle_to(x));
+        let sine = inside.rising(|x| ((one - x) * (one + x)).sqrt().0.meet(one.hull(Self::ZERO)).atan2(x));
         let total = self.ends.is_some() && inside == self;
         ((sine, total), (pi().scaled(-1) - sine, total))
-    }
-
-    /// The angle of thin points with abscissa `self`, which is not negative, and ordinate `y`.
-    fn angle_to(self, y: Self) -> Self {
-        if self.is_positive() { atan(y.over(self)) } else { self.atan2(y) }
     }
 
     /// The angle of the points with abscissae `self` and ordinates `y`.
@@ -318,9 +306,8 @@ fn cosine(x: Interval) -> Interval {
     let Some(n) = nearest else { return Interval::whole(-1).hull(Interval::whole(1)) };
     let r = x - Interval::whole(n) * pi().scaled(-1);
     let z = -r.square();
-    let (even, odd) = (|| series(Interval::whole(1), z, 12, |n| 2 * n * (2 * n - 1)), || {
-        series(r, z, 12, |n| 2 * n * (2 * n + 1))
-    });
+    let (even, odd) =
+        (|| series(Interval::whole(1), z, 12, |n| 2 * n * (2 * n - 1)), || series(r, z, 12, |n| 2 * n * (2 * n + 1)));
     match n.rem_euclid(4) {
         0 => even(),
         1 => -odd(),

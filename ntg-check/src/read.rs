@@ -4,7 +4,6 @@ use crate::interval::Interval;
 use crate::real::Real;
 
 /// An operation of a graph on operations before it.
-#[derive(Clone, Debug)]
 pub(crate) enum Node {
     /// A number.
     Constant(Interval),
@@ -21,7 +20,6 @@ pub(crate) enum Node {
 }
 
 /// What an input of a function is.
-#[derive(Clone, Debug)]
 pub(crate) enum Input {
     /// A derivative of a spline at the time of evaluation, at the start (`Some(false)`) or at the end of its phase.
     Flat(usize, Option<bool>),
@@ -36,7 +34,6 @@ pub(crate) enum Input {
 }
 
 /// A function: the nodes up to its result, and its inputs.
-#[derive(Clone, Debug)]
 pub(crate) struct Function {
     pub(crate) graph: usize,
     pub(crate) root: usize,
@@ -44,14 +41,12 @@ pub(crate) struct Function {
 }
 
 /// Operations, and which of them are results.
-#[derive(Clone, Debug)]
 pub(crate) struct Graph {
     pub(crate) nodes: Vec<Node>,
     pub(crate) rows: Vec<usize>,
 }
 
 /// A spline of a phase.
-#[derive(Clone, Debug)]
 pub(crate) struct Spline {
     pub(crate) phase: usize,
     pub(crate) order: usize,
@@ -60,7 +55,6 @@ pub(crate) struct Spline {
 }
 
 /// An argument of a table.
-#[derive(Clone, Debug)]
 pub(crate) struct Axis {
     pub(crate) symmetry: String,
     pub(crate) low: Real,
@@ -73,7 +67,6 @@ pub(crate) struct Axis {
 }
 
 /// A table.
-#[derive(Clone, Debug)]
 pub(crate) struct Table {
     pub(crate) linear: bool,
     pub(crate) axes: Vec<Axis>,
@@ -89,14 +82,12 @@ pub(crate) enum Over {
 }
 
 /// A function at all times of a phase, or a sum.
-#[derive(Clone, Debug)]
 pub(crate) enum Quantity {
     Path(usize, usize),
     Sum(Vec<(usize, Over)>),
 }
 
 /// What is claimed of a subject.
-#[derive(Clone, Debug)]
 pub(crate) struct Claim {
     pub(crate) name: String,
     pub(crate) quantity: Quantity,
@@ -111,7 +102,7 @@ pub(crate) struct Claim {
 }
 
 /// Everything that a certificate says.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(crate) struct Certificate {
     pub(crate) problem: String,
     pub(crate) numbers: Vec<Interval>,
@@ -144,6 +135,12 @@ impl Words<'_> {
     fn below(&mut self, count: usize) -> Read<usize> {
         let index = self.number()?;
         if index < count { Ok(index) } else { Err(format!("there is no number {index} of {count}")) }
+    }
+
+    /// A list of references to `count` things.
+    fn list(&mut self, count: usize) -> Read<Vec<usize>> {
+        let length: usize = self.number()?;
+        (0..length.min(MOST)).map(|_| self.below(count)).collect()
     }
 
     fn real(&mut self) -> Read<Real> {
@@ -253,10 +250,7 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
         "graph" => out.graphs.push(Graph { nodes: vec![], rows: vec![] }),
         "rows" => {
             let graph = out.graphs.last_mut().ok_or("no graph")?;
-            let count: usize = words.number()?;
-            for _ in 0..count.min(MOST) {
-                graph.rows.push(words.below(graph.nodes.len())?);
-            }
+            graph.rows = words.list(graph.nodes.len())?;
         }
         "function" => {
             let graph = words.below(out.graphs.len())?;
@@ -273,7 +267,9 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
             words.next()?;
             let bound = |words: &mut Words<'_>| match words.next()? {
                 "-" => Ok(None),
-                word => word.parse().ok().filter(|f| *f < out.functions.len()).map(Some).ok_or("no such bound".to_owned()),
+                word => {
+                    word.parse().ok().filter(|f| *f < out.functions.len()).map(Some).ok_or("no such bound".to_owned())
+                }
             };
             let bounds = (bound(words)?, bound(words)?);
             let quantity = match words.next()? {
@@ -348,8 +344,7 @@ fn input(out: &Certificate, words: &mut Words<'_>) -> Read<Input> {
                 "min" => '<',
                 _ => '>',
             };
-            let count: usize = words.number()?;
-            Input::Join(how, (0..count.min(MOST)).map(|_| words.below(out.functions.len())).collect::<Read<_>>()?)
+            Input::Join(how, words.list(out.functions.len())?)
         }
         word => return Err(format!("`{word}` is no input")),
     })
@@ -357,8 +352,8 @@ fn input(out: &Certificate, words: &mut Words<'_>) -> Read<Input> {
 
 fn node(word: &str, words: &mut Words<'_>, (before, tables): (usize, &[Table])) -> Read<Node> {
     const ONE: [&str; 17] = [
-        "neg", "sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "abs", "sign",
-        "logistic", "softplus",
+        "neg", "sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "abs",
+        "sign", "logistic", "softplus",
     ];
     const TWO: [&str; 10] = ["add", "sub", "mul", "div", "pow", "atan2", "hypot", "min", "max", "less_eq"];
     Ok(match word {

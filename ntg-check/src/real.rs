@@ -27,13 +27,6 @@ pub(crate) enum To {
     Above,
 }
 
-impl To {
-    /// The other direction.
-    pub(crate) fn other(self) -> Self {
-        if self == Self::Below { Self::Above } else { Self::Below }
-    }
-}
-
 /// A shift to the right, rounded.
 fn shifted(m: i128, by: u32, to: To) -> i128 {
     let floor = if by >= 127 { m >> 127 } else { m >> by };
@@ -174,12 +167,16 @@ mod tests {
         assert!(third[0] < third[1]);
         for (value, to) in third.into_iter().zip([Ordering::Less, Ordering::Greater]) {
             // Three times it, exactly: 64 bits fit into a sum of three.
-            let thrice = value.plus(value, To::Below).plus(value, if to == Ordering::Less { To::Above } else { To::Below });
+            let thrice =
+                value.plus(value, To::Below).plus(value, if to == Ordering::Less { To::Above } else { To::Below });
             assert!(thrice.cmp(&Real::whole(1)) != to.reverse());
         }
         let roots = [To::Below, To::Above].map(|to| Real::whole(2).root(to));
         assert!(roots[0].times(roots[0], To::Above) <= Real::whole(2).plus(Real::dyadic(1, -59), To::Above));
-        assert!(roots[0].times(roots[0], To::Below) < Real::whole(2) && roots[1].times(roots[1], To::Above) > Real::whole(2));
+        assert!(
+            roots[0].times(roots[0], To::Below) < Real::whole(2)
+                && roots[1].times(roots[1], To::Above) > Real::whole(2)
+        );
         assert_eq!(Real::whole(9).root(To::Above), Real::whole(3));
     }
 

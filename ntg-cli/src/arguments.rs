@@ -80,8 +80,10 @@ pub(crate) enum Command {
     ///   ntg solve mission.ntg --set "v_max=250 [m/s]" --set start_x=-100,-97 --save run.json
     ///   ntg solve specs/low_observable.ntg --route "x, y: -100, -100; 0, -100; 5, -15 [km]"
     ///   ntg solve specs/low_observable.ntg --starts 50 --seed 2
+    ///   ntg solve specs/low_observable.ntg --guarantee     # every constraint proved for all times
     #[command(verbatim_doc_comment)]
     Solve(Solve),
+    Certify(crate::certify::Arguments),
     Plot(crate::plot::Arguments),
     Report(crate::report::Arguments),
     Sweep(crate::sweep::Arguments),
@@ -162,6 +164,10 @@ pub(crate) struct Solve {
     /// error; with `--starts`, every minimum.
     #[arg(long, value_name = "ERROR")]
     pub(crate) refine: Option<f64>,
+    /// Prove every constraint for all times; where one fails between the points, tighten it or hold it at more points
+    /// and solve again, until all is proved.
+    #[arg(long, conflicts_with_all = ["count", "refine"])]
+    pub(crate) guarantee: bool,
     /// Largest scaled residual of the optimality conditions.
     #[arg(long, value_name = "RESIDUAL", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,

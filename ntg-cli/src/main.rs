@@ -4,6 +4,7 @@
 //! Ctrl-C.
 
 mod arguments;
+mod certify;
 mod check;
 mod completions;
 mod expand;
@@ -56,6 +57,7 @@ impl Exit {
 
 fn main() -> ExitCode {
     let exit = match Ntg::parse().command {
+        Command::Certify(arguments) => said(certify::run(&arguments)),
         Command::Check(arguments) => check::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

@@ -6,6 +6,8 @@ mod text;
 
 use std::time::{Duration, Instant};
 
+use ntg_certify::guarantee::{Guaranteed, Task};
+use ntg_certify::summary::Summary;
 use ntg_interp::Interpreted;
 use ntg_report::run::Recording;
 use ntg_runtime::explain::Explanation;
@@ -18,7 +20,7 @@ use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
-use crate::{Exit, files, guess, route, setup, values, write};
+use crate::{Exit, certify, files, guess, route, setup, values, write};
 
 pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
     crate::said(solve(arguments))
@@ -30,6 +32,8 @@ struct Solved<'a> {
     report: &'a Report,
     starts: Option<&'a MultiReport>,
     explanation: Option<&'a Explanation>,
+    /// What is proved for all times, and what the guarantee did, where one was asked for.
+    proved: Option<(&'a Summary, &'a Guaranteed)>,
     samples: usize,
     compile_seconds: f64,
 }
@@ -73,21 +77,37 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         Found::One(report) => (&**report, None),
         Found::Many(starts) => (starts.best().ok_or_else(|| starts.to_string())?, Some(starts)),
     };
+    let mended = match arguments.guarantee && report.is_solved() {
+        true => {
+            let task = Task { program: &compiled.program, problem: &problem, spec: &source.text };
+            interrupt.over(&mut settings);
+            let mended = certify::mend(task, report.clone(), &settings);
+            Some(mended.map_err(|error| setup::words(&error, &source))?)
+        }
+        false => None,
+    };
+    let report = mended.as_ref().map_or(report, |mended| &mended.report);
+    let summary = mended.as_ref().map(|mended| mended.certificate.summary(&compiled.program.structure));
     let explanation = explained(report, &problem, &settings, &interrupt);
 
     let samples = arguments.samples as usize;
     let explanation = explanation.as_ref();
-    let solved = Solved { problem: &problem, report, starts, explanation, samples, compile_seconds };
+    let proved = summary.as_ref().zip(mended.as_ref());
+    let solved = Solved { problem: &problem, report, starts, explanation, proved, samples, compile_seconds };
     match arguments.format {
         Format::Text => files::print(&text::document(&solved)),
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
         let (source, notes, iterations) = (&source, &compiled.notes, &iterations[..]);
-        let run = Recording { problem: &problem, report, explanation, starts, source, notes, iterations }.run();
+        let mut run = Recording { problem: &problem, report, explanation, starts, source, notes, iterations }.run();
+        if let Some(summary) = &summary {
+            certify::into_run(summary, &mut run);
+        }
         write::whole(path, arguments.force, run.text().as_bytes())?;
     }
-    Ok(match report.is_solved() && report.refined.as_ref().is_none_or(Refined::is_met) {
+    let proved = summary.as_ref().is_none_or(Summary::is_proved);
+    Ok(match proved && report.is_solved() && report.refined.as_ref().is_none_or(Refined::is_met) {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,
         false => Exit::NotSolved,

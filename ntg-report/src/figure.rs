@@ -100,13 +100,14 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
                 points: series.t.iter().copied().zip(series.value.iter().copied()).collect(),
                 ..Line::default()
             };
+            let lines = std::iter::once(line).chain(bands(runs, index, (path, series)));
             match panels.iter_mut().find(|panel| panel.y == y) {
-                Some(panel) => panel.lines.push(line),
+                Some(panel) => panel.lines.extend(lines),
                 None => panels.push(Panel {
                     title: name.to_owned(),
                     x: "t [s]".to_owned(),
                     y,
-                    lines: vec![line],
+                    lines: lines.collect(),
                     marks: marks(runs),
                     ..Panel::default()
                 }),
@@ -114,6 +115,20 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
         }
     }
     panels
+}
+
+/// What is proved of a quantity: a line that no value is below, and one that none is above.
+fn bands(runs: &Runs<'_>, run: usize, (path, series): (&str, &Series)) -> Vec<Line> {
+    if series.bands.is_empty() {
+        return vec![];
+    }
+    let side = |which: usize, words: &str| Line {
+        name: format!("{} {words}", label(runs, run, path)),
+        run,
+        points: series.bands.iter().flat_map(|band| [(band[0], band[which]), (band[1], band[which])]).collect(),
+        ..Line::default()
+    };
+    vec![side(2, "proved from"), side(3, "proved to")]
 }
 
 /// One panel for each constraint along a trajectory, with its bounds.

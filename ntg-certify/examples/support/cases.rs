@@ -38,7 +38,8 @@ fn exact(x: f64) -> BigRational {
 
 /// Whether an interval holds a rational.
 fn holds(x: Interval, value: &BigRational) -> bool {
-    (x.low() == f64::NEG_INFINITY || exact(x.low()) <= *value) && (x.high() == f64::INFINITY || *value <= exact(x.high()))
+    (x.low() == f64::NEG_INFINITY || exact(x.low()) <= *value)
+        && (x.high() == f64::INFINITY || *value <= exact(x.high()))
 }
 
 /// Sums, differences, products, quotients, squares and powers of random intervals; the description of what escaped.

@@ -40,6 +40,13 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
     if let Some(explanation) = solved.explanation {
         document["explanation"] = json!(ntg_report::run::Explanation::from(explanation));
     }
+    if let Some((summary, found)) = solved.proved {
+        for (number, proof) in summary.numbers.iter().zip(&summary.constraints) {
+            document["constraints"][*number]["proof"] = crate::certify::proof(proof);
+        }
+        document["certificate"] = crate::certify::document(summary);
+        document["guarantee"] = crate::certify::cost(found);
+    }
     if let Some(refined) = &report.refined {
         document["refinement"] = json!(ntg_report::run::Refinement::from(refined));
     }

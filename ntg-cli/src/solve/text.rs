@@ -14,6 +14,9 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
     let mut lines: Vec<String> = solved.starts.map(|starts| format!("{starts}\n")).into_iter().collect();
     lines.push(solved.report.to_string());
     lines.extend(solved.explanation.map(ToString::to_string));
+    lines.extend(
+        solved.proved.map(|(summary, found)| format!("\n{summary}{}", crate::certify::words(found).trim_end())),
+    );
     lines.push(String::new());
     let problem: &dyn Problem = solved.problem;
     let solution = &solved.report.solution;

@@ -76,6 +76,7 @@ pub(super) fn terms(run: &Run) -> Markup {
 
 /// Every constraint with its state, violations and multiplier.
 pub(super) fn constraints(run: &Run) -> Markup {
+    let proved = run.constraints.iter().any(|constraint| constraint.proof.is_some());
     html! {
         @if !run.constraints.is_empty() {
             section #table {
@@ -83,7 +84,9 @@ pub(super) fn constraints(run: &Run) -> Markup {
                 div.scroll { table {
                     thead { tr {
                         th { "constraint" } th { "block" } th.n { "line" } th { "state" }
-                        th.n { "missed at points" } th.n { "between" } th.n { "largest multiplier" } th.n { "at t" }
+                        th.n { "missed at points" } th.n { "between" }
+                        @if proved { th { "for all times" } }
+                        th.n { "largest multiplier" } th.n { "at t" }
                         th.n title="when the bound moves everywhere at once" { "dJ*/d(bound)" } th { "unit" }
                     } }
                     tbody { @for constraint in &run.constraints {
@@ -95,6 +98,9 @@ pub(super) fn constraints(run: &Run) -> Markup {
                             td { mark class=(state.class()) { (state.word()) } }
                             td.n { @if let Some(worst) = &constraint.points { (small(worst.relative)) } }
                             td.n { @if let Some(worst) = &constraint.between { (small(worst.relative)) } }
+                            @if proved { td { @if let Some(proof) = &constraint.proof {
+                                mark.equality[proof.holds()].violated[!proof.holds()] title=(proof.words) { (proof.verdict) }
+                            } } }
                             @if let Some(multiplier) = &constraint.multiplier {
                                 td.n { (multiplier_words(multiplier)) }
                                 td.n { @if let Some(t) = multiplier.t { (number(t)) } }
@@ -105,6 +111,7 @@ pub(super) fn constraints(run: &Run) -> Markup {
                     } }
                 } }
                 p.quiet { "Violations are relative to the size of the bounds. Multipliers are dJ*/d(bound) in units of the objective per unit of the constraint; along a trajectory they are densities over time." }
+                @if proved { p.quiet { "For all times: `proved` and `within` hold between the points, too, in real arithmetic; the words appear under the pointer." } }
             }
         }
     }

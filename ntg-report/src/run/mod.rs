@@ -137,6 +137,9 @@ pub struct Series {
     /// Values in the unit.
     #[serde(with = "numbers::many")]
     pub value: Vec<f64>,
+    /// Proved bounds, stretch by stretch: from, to, no value below, none above. Empty where nobody asked.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bands: Vec<[f64; 4]>,
 }
 
 /// A phase and its times.
@@ -202,6 +205,32 @@ pub struct Constraint {
     pub sensitivity: f64,
     /// Its members over time.
     pub members: Vec<Member>,
+    /// What is proved of it for all times; none where nobody asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proof: Option<Proof>,
+}
+
+/// What is proved of a constraint for all times, over all of its members.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Proof {
+    /// `proved`, `within`, `refuted` or `undecided`.
+    pub verdict: String,
+    /// The same in words, with numbers.
+    pub words: String,
+    /// No value is below,
+    #[serde(with = "numbers::one")]
+    pub low: f64,
+    /// and none above, in the constraint's unit.
+    #[serde(with = "numbers::one")]
+    pub high: f64,
+}
+
+impl Proof {
+    /// Whether the constraint holds at all times; an equality to within its residual.
+    pub fn holds(&self) -> bool {
+        matches!(self.verdict.as_str(), "proved" | "within")
+    }
 }
 
 impl Constraint {

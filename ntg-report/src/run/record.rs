@@ -152,7 +152,7 @@ impl Recording<'_> {
 }
 
 fn over(unit: &Unit, doc: String, t: Vec<f64>, value: Vec<f64>) -> Series {
-    Series { unit: unit.symbol.clone(), factor: unit.factor, doc, t, value }
+    Series { unit: unit.symbol.clone(), factor: unit.factor, doc, t, value, bands: vec![] }
 }
 
 fn quantity(value: f64, unit: &Unit) -> Quantity {
@@ -197,6 +197,7 @@ fn constraint(report: &ConstraintReport, traces: &[&Trace]) -> Constraint {
         }),
         sensitivity: report.sensitivity,
         members: traces.iter().map(|trace| member(trace)).collect(),
+        proof: None,
     }
 }
 

@@ -1,0 +1,205 @@
+//! What a certificate says of the spec's constraints, terms and named expressions, one entry for each, in units that a
+//! person uses: what reports show.
+
+use std::fmt;
+
+use ntg_structure::{Structure, Unit};
+
+use crate::certify::{Certificate, Finding, Verdict};
+use crate::statement::{Kind, Quantity, Subject};
+
+/// What is proved of one constraint of the spec, over all of its members.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// Its name, or its text in the spec.
+    pub name: String,
+    /// The worst of its members' verdicts, in `unit`.
+    pub verdict: Verdict,
+    /// Encloses all values of all members, in `unit`.
+    pub values: (f64, f64),
+    /// Where a bound is missed, in seconds of mission time, and the value there.
+    pub witness: Option<(f64, f64)>,
+    /// How many members and phases it has.
+    pub members: usize,
+    /// The unit of all of these.
+    pub unit: Unit,
+}
+
+/// The enclosure of a quantity over a stretch of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Where it begins, in seconds of mission time.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What no value is below,
+    pub low: f64,
+    /// and above.
+    pub high: f64,
+}
+
+/// What is proved of a term of the objective or a named expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// Its name.
+    pub name: String,
+    /// Encloses all of its values, in `unit`.
+    pub values: (f64, f64),
+    /// Its enclosure over time; empty for a number.
+    pub bands: Vec<Band>,
+    /// The unit.
+    pub unit: Unit,
+}
+
+/// Everything that a report shows of a certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// One for each constraint of the spec that has a row, in order.
+    pub constraints: Vec<Proof>,
+    /// For each of these its index in the structure.
+    pub numbers: Vec<usize>,
+    /// Terms of the objective, in the user's sense.
+    pub terms: Vec<Bounds>,
+    /// Named expressions, member by member and phase by phase.
+    pub named: Vec<Bounds>,
+    /// How many boxes of time were looked at.
+    pub boxes: usize,
+    /// How long that took.
+    pub seconds: f64,
+}
+
+impl Certificate {
+    /// What reports show.
+    pub fn summary(&self, structure: &Structure) -> Summary {
+        let (mut constraints, mut numbers) = (vec![], vec![]);
+        for number in 0..structure.constraints.len() {
+            if let Some(proof) = self.proof(structure, number) {
+                constraints.push(proof);
+                numbers.push(number);
+            }
+        }
+        let of = |wanted: fn(&Kind) -> bool, sign: f64| {
+            let own = self.each().filter(move |(subject, _)| wanted(&subject.kind));
+            own.map(|(subject, finding)| self.bounds(subject, finding, sign)).collect()
+        };
+        Summary {
+            constraints,
+            numbers,
+            terms: of(|kind| matches!(kind, Kind::Term(_)), if structure.maximize { -1.0 } else { 1.0 }),
+            named: of(|kind| matches!(kind, Kind::Named(_)), 1.0),
+            boxes: self.findings.iter().flat_map(|finding| &finding.covers).map(Vec::len).sum(),
+            seconds: self.seconds,
+        }
+    }
+
+    fn proof(&self, structure: &Structure, number: usize) -> Option<Proof> {
+        let worst = self.constraint(number)?;
+        let own = || self.each().filter(|(subject, _)| subject.kind == Kind::Constraint(number));
+        let declared = &structure.constraints[number];
+        let unit = declared.unit.factor;
+        let values = own().map(|(_, finding)| finding.values).reduce(|a, b| a.hull(b))?;
+        let (subject, _) = own().find(|(_, finding)| std::ptr::eq(*finding, worst))?;
+        let witness = worst
+            .witness
+            .and_then(|witness| self.witness_time(subject, &witness).map(|t| (t, witness.value.middle() / unit)));
+        let verdict = match worst.verdict {
+            Verdict::Within(residual) => Verdict::Within(residual / unit),
+            Verdict::Refuted(least, most) => Verdict::Refuted(least / unit, most / unit),
+            Verdict::Undecided(most) => Verdict::Undecided(most / unit),
+            other => other,
+        };
+        let name = declared.name.as_deref().unwrap_or(&declared.place.text).to_owned();
+        let values = (values.low() / unit, values.high() / unit);
+        Some(Proof { name, verdict, values, witness, members: own().count(), unit: declared.unit.clone() })
+    }
+
+    fn bounds(&self, subject: &Subject, finding: &Finding, sign: f64) -> Bounds {
+        let unit = subject.unit.factor;
+        let of = |low: f64, high: f64| {
+            let (low, high) = (sign * low / unit, sign * high / unit);
+            (low.min(high), low.max(high))
+        };
+        let mut bands = vec![];
+        if let Quantity::Path(_, phase) = subject.quantity {
+            for leaf in finding.covers.iter().flatten() {
+                let (low, high) = of(leaf.values.low(), leaf.values.high());
+                let from = self.time(phase, leaf.cell, leaf.start());
+                let to = self.time(phase, leaf.cell, leaf.start() + leaf.length());
+                bands.push(Band { from, to, low, high });
+            }
+        }
+        let values = of(finding.values.low(), finding.values.high());
+        Bounds { name: subject.name.clone(), values, bands, unit: subject.unit.clone() }
+    }
+}
+
+impl Summary {
+    /// Whether every constraint is proved, equalities to within their stated residual.
+    pub fn is_proved(&self) -> bool {
+        self.constraints.iter().all(|proof| proof.verdict.holds())
+    }
+}
+
+impl Proof {
+    /// One word: `proved`, `within`, `refuted`, `undecided`.
+    pub fn word(&self) -> &'static str {
+        match self.verdict {
+            Verdict::Bounded | Verdict::Proved => "proved",
+            Verdict::Within(_) => "within",
+            Verdict::Refuted(..) => "refuted",
+            Verdict::Undecided(_) => "undecided",
+        }
+    }
+
+    /// The verdict in words, with its numbers.
+    pub fn words(&self) -> String {
+        let unit = if self.unit.symbol.is_empty() { String::new() } else { format!(" {}", self.unit.symbol) };
+        match self.verdict {
+            Verdict::Bounded | Verdict::Proved => "proved for all times".to_owned(),
+            Verdict::Within(residual) => format!("holds to within {residual:.1e}{unit}, proved"),
+            Verdict::Refuted(least, most) => {
+                let at = self.witness.map_or(String::new(), |(t, value)| format!(", value {value:.6} at t = {t:.4} s"));
+                format!("REFUTED: missed by {least:.3e} to {most:.3e}{unit}{at}")
+            }
+            Verdict::Undecided(most) if most.is_finite() => format!("undecided: missed by {most:.1e}{unit} at most"),
+            Verdict::Undecided(_) => "undecided: no bound is known".to_owned(),
+        }
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = |word: &str| self.constraints.iter().filter(|proof| proof.word() == word).count();
+        let open = count("refuted") + count("undecided");
+        writeln!(
+            f,
+            "Between the points: {} ({} boxes of time, {:.3} s)",
+            if open == 0 {
+                "every constraint is proved for all times".to_owned()
+            } else {
+                format!("{open} of {} constraints not proved", self.constraints.len())
+            },
+            self.boxes,
+            self.seconds
+        )?;
+        let width = self.constraints.iter().map(|proof| proof.name.chars().count().min(MOST_NAME)).max().unwrap_or(0);
+        for proof in &self.constraints {
+            let name: String = proof.name.chars().take(MOST_NAME).collect();
+            let (low, high) = proof.values;
+            let unit = &proof.unit.symbol;
+            writeln!(f, "  {name:<width$}  {:<22} {low:.6} .. {high:.6} {unit}", proof.words())?;
+        }
+        for term in &self.terms {
+            let ((low, high), unit) = (term.values, &term.unit.symbol);
+            writeln!(
+                f,
+                "  cost {:<width$} {low:.9} .. {high:.9} {unit}",
+                term.name.chars().take(MOST_NAME).collect::<String>()
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Letters of a name that a line shows.
+const MOST_NAME: usize = 40;

@@ -1,0 +1,209 @@
+//! `ntg certify`: what of a solution is proved for all times.
+
+use std::path::{Path, PathBuf};
+
+use ntg_certify::guarantee::{Ending, Guaranteed, Task, guarantee, proved_from};
+use ntg_certify::summary::Summary;
+use ntg_certify::{Certificate, Guarantee, write as file};
+use ntg_interp::Interpreted;
+use ntg_runtime::guess::Guess;
+use ntg_runtime::report::Report;
+use ntg_runtime::settings::Settings;
+use serde_json::{Value, json};
+
+use crate::arguments::Format;
+use crate::watch::Interrupt;
+use crate::{Exit, files, setup, values, write};
+
+/// Solve a spec and prove its constraints for all times, not only at points.
+///
+/// Every constraint is proved, refuted with a time at which it fails, or left undecided at the limit of the
+/// arithmetic. The certificate is a file that `ntg-check` proves again, without any code of ntg.
+/// Exit status: 0 when every constraint is proved, 1 when one is not, 2 on errors.
+///
+/// Examples:
+///   ntg certify specs/gates.ntg
+///   ntg certify specs/low_observable.ntg --guarantee -o mission.cert && ntg-check mission.cert
+#[derive(clap::Args, Debug)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Arguments {
+    /// The spec file.
+    spec: PathBuf,
+    /// Set a parameter, as in `ntg solve`.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+    /// Where a constraint fails, tighten it or hold it at more points and solve again, until all is proved.
+    #[arg(long)]
+    guarantee: bool,
+    /// Write the certificate.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace an existing file.
+    #[arg(long)]
+    force: bool,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
+    if let Some(path) = &arguments.output {
+        write::may_write(path, arguments.force)?;
+    }
+    let Some((source, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
+    let mut problem = Interpreted::new(&compiled.program);
+    for assignment in &arguments.set {
+        values::set(&mut problem, assignment)?;
+    }
+    let mut settings = Settings::default();
+    let interrupt = Interrupt::install();
+    interrupt.over(&mut settings);
+    let task = Task { program: &compiled.program, problem: &problem, spec: &source.text };
+    // Without `--guarantee` the first solve is all there is.
+    let wanted =
+        Guarantee { rounds: if arguments.guarantee { Guarantee::default().rounds } else { 0 }, ..Guarantee::default() };
+    let found =
+        guarantee(task, &Guess::default(), &settings, &wanted).map_err(|error| setup::words(&error, &source))?;
+    let summary = found.certificate.summary(&compiled.program.structure);
+    match arguments.format {
+        Format::Text => {
+            let mut text = format!("{}: {}\n{summary}", found.report.problem, found.report.status);
+            if arguments.guarantee {
+                text.push_str(&words(&found));
+            }
+            files::print_raw(&text);
+        }
+        Format::Json => {
+            let mut document = document(&summary);
+            document["status"] = json!(found.report.status.to_string());
+            document["objective"] = json!(found.report.objective);
+            if arguments.guarantee {
+                document["guarantee"] = cost(&found);
+            }
+            files::print(&format!("{document:#}"));
+        }
+    }
+    if let Some(path) = &arguments.output {
+        save(path, arguments.force, &found.certificate)?;
+    }
+    Ok(match found.report.is_solved() && summary.is_proved() {
+        true => Exit::Done,
+        false if interrupt.is_pressed() => Exit::Interrupted,
+        false => Exit::NotSolved,
+    })
+}
+
+/// Writes a certificate.
+pub(crate) fn save(path: &Path, force: bool, certificate: &Certificate) -> Result<(), String> {
+    write::whole(path, force, file::text(certificate).as_bytes())
+}
+
+/// Tightens and solves again, from a report.
+pub(crate) fn mend(task: Task<'_>, report: Report, settings: &Settings) -> Result<Guaranteed, ntg_runtime::Error> {
+    proved_from(task, report, settings, &Guarantee::default())
+}
+
+/// What a guarantee did and cost, in words.
+pub(crate) fn words(found: &Guaranteed) -> String {
+    let ending = match &found.ending {
+        Ending::Proved if found.rounds.len() == 1 => "Guarantee: everything was proved at once".to_owned(),
+        Ending::Proved => format!("Guarantee: proved after {} more solves", found.rounds.len() - 1),
+        Ending::NotSolved => return "Guarantee: none, because there is no solution\n".to_owned(),
+        Ending::Rounds => format!("Guarantee: NOT had after {} more solves", found.rounds.len() - 1),
+        Ending::Tightened(status) => {
+            format!("Guarantee: NOT had; with its constraints tightened the problem ends with: {status}")
+        }
+    };
+    let mut text = format!("{ending}; it costs {:+.2e} of the objective\n", found.cost());
+    let structure = found.report.solution.structure();
+    for (number, change) in &found.changes {
+        let constraint = &structure.constraints[*number];
+        let name = constraint.name.as_deref().unwrap_or(&constraint.place.text);
+        let (unit, symbol) = (constraint.unit.factor, &constraint.unit.symbol);
+        let mut done = vec![];
+        if change.points > 1 {
+            done.push(format!("held at {} times as many points", change.points));
+        }
+        for (side, by) in [("lower", change.below), ("upper", change.above)] {
+            if by > 0.0 {
+                done.push(format!("{side} bound tightened by {:.2e} {symbol}", by / unit).trim_end().to_owned());
+            }
+        }
+        text.push_str(&format!("  {name}: {}\n", done.join(", ")));
+    }
+    text
+}
+
+/// What a guarantee did and cost, for programs.
+pub(crate) fn cost(found: &Guaranteed) -> Value {
+    json!({
+        "proved": found.ending == Ending::Proved,
+        "cost": found.cost(),
+        "rounds": found.rounds.iter().map(|round| json!({
+            "objective": round.objective, "open": round.open, "missed": round.missed,
+            "seconds": { "solve": round.solve, "certify": round.certify },
+        })).collect::<Vec<_>>(),
+        "changes": found.changes.iter().map(|(number, change)| json!({
+            "constraint": found.report.solution.structure().constraints[*number].name,
+            "line": found.report.solution.structure().constraints[*number].place.line,
+            "points": change.points, "lower_raised": change.below, "upper_lowered": change.above,
+        })).collect::<Vec<_>>(),
+    })
+}
+
+/// Puts proofs beside the constraints of a saved run, and bands beside its named expressions.
+pub(crate) fn into_run(summary: &Summary, run: &mut ntg_report::Run) {
+    for (number, proof) in summary.numbers.iter().zip(&summary.constraints) {
+        let (low, high) = proof.values;
+        let own = ntg_report::run::Proof { verdict: proof.word().to_owned(), words: proof.words(), low, high };
+        if let Some(constraint) = run.constraints.get_mut(*number) {
+            constraint.proof = Some(own);
+        }
+    }
+    for named in &summary.named {
+        // `speed in uav[1].covert` belongs to `uav[1].speed`, and where the agent has no name to `speed`.
+        let (name, path) = named.name.split_once(" in ").unwrap_or((&named.name, ""));
+        let agent = path.split('.').next().unwrap_or_default();
+        let key = if run.lets.contains_key(name) { name.to_owned() } else { format!("{agent}.{name}") };
+        if let Some(series) =
+            run.lets.get_mut(&key).filter(|_| named.values.0.is_finite() && named.values.1.is_finite())
+        {
+            series.bands.extend(named.bands.iter().map(|band| [band.from, band.to, band.low, band.high]));
+        }
+    }
+}
+
+/// Proofs for programs. Numbers that are not finite are null.
+pub(crate) fn document(summary: &Summary) -> Value {
+    let bounds = |all: &[ntg_certify::summary::Bounds]| -> Vec<Value> {
+        let one = |b: &ntg_certify::summary::Bounds| {
+            let bands: Vec<[f64; 4]> = b.bands.iter().map(|band| [band.from, band.to, band.low, band.high]).collect();
+            json!({ "name": b.name, "unit": b.unit.symbol, "low": b.values.0, "high": b.values.1, "bands": bands })
+        };
+        all.iter().map(one).collect()
+    };
+    json!({
+        "proved": summary.is_proved(),
+        "constraints": summary.constraints.iter().map(proof).collect::<Vec<_>>(),
+        "terms": bounds(&summary.terms),
+        "lets": bounds(&summary.named),
+        "boxes": summary.boxes,
+        "seconds": summary.seconds,
+    })
+}
+
+/// What is proved of one constraint, for programs.
+pub(crate) fn proof(proof: &ntg_certify::summary::Proof) -> Value {
+    use ntg_certify::Verdict;
+    let (missed, residual) = match proof.verdict {
+        Verdict::Refuted(least, most) => (Some([least, most]), None),
+        Verdict::Undecided(most) => (Some([0.0, most]), None),
+        Verdict::Within(residual) => (None, Some(residual)),
+        Verdict::Proved | Verdict::Bounded => (None, None),
+    };
+    json!({
+        "name": proof.name, "verdict": proof.word(), "unit": proof.unit.symbol,
+        "low": proof.values.0, "high": proof.values.1, "missed": missed, "residual": residual,
+        "witness": proof.witness.map(|(t, value)| json!({ "t": t, "value": value })),
+    })
+}
