@@ -186,10 +186,12 @@ fn residual(values: Interval, bound: Option<Interval>) -> f64 {
     (values - bound.unwrap_or(Interval::ENTIRE)).size()
 }
 
-/// Widened by a part in 10^12 of its size: an arithmetic of other roundings, even of the same number of digits, finds
-/// the same enclosure inside.
+/// Four to eight units of the last place.
+const ROUNDINGS: f64 = 1e-15;
+
+/// Widened by some roundings: an arithmetic of more digits finds its enclosure inside.
 fn outward(values: Interval) -> Interval {
-    let slack = 1e-12 * values.size();
+    let slack = ROUNDINGS * values.size();
     Interval::new(values.low() - slack - f64::MIN_POSITIVE, values.high() + slack + f64::MIN_POSITIVE)
 }
 

@@ -10,7 +10,7 @@ use std::time::Instant;
 use ntg_compiler::program::Program;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
-use ntg_runtime::report::Report;
+use ntg_runtime::report::{ConstraintReport, Report, Worst};
 use ntg_runtime::settings::Settings;
 use ntg_runtime::status::Status;
 use ntg_runtime::{Error, solve_from};
@@ -72,9 +72,10 @@ pub struct Round {
 }
 
 /// A solution with its certificate, and what they cost.
-#[derive(Debug)]
-pub struct Guaranteed {
-    /// The last solution. Its violations are those of the tightened bounds.
+pub struct Guaranteed<'p> {
+    /// The tightened problem, which the solution is one of.
+    pub problem: Tightened<'p>,
+    /// The last solution. Violations of constraints that were changed are those that are proved, of the spec's own bounds.
     pub report: Report,
     /// What is proved of it, with the bounds of the spec.
     pub certificate: Certificate,
@@ -86,7 +87,7 @@ pub struct Guaranteed {
     pub ending: Ending,
 }
 
-impl Guaranteed {
+impl Guaranteed<'_> {
     /// What the guarantee costs: by what part the objective is worse than without it; negative where it is better.
     pub fn cost(&self) -> f64 {
         let (first, last) = match &self.rounds[..] {
@@ -113,7 +114,12 @@ pub struct Task<'a> {
 ///
 /// # Errors
 /// [`Error`] if the problem cannot be set up.
-pub fn guarantee(task: Task<'_>, guess: &Guess, settings: &Settings, wanted: &Guarantee) -> Result<Guaranteed, Error> {
+pub fn guarantee<'p>(
+    task: Task<'p>,
+    guess: &Guess,
+    settings: &Settings,
+    wanted: &Guarantee,
+) -> Result<Guaranteed<'p>, Error> {
     let report = solve_from(task.problem, guess, settings)?;
     proved_from(task, report, settings, wanted)
 }
@@ -122,12 +128,12 @@ pub fn guarantee(task: Task<'_>, guess: &Guess, settings: &Settings, wanted: &Gu
 ///
 /// # Errors
 /// [`Error`] if the problem cannot be set up.
-pub fn proved_from(
-    task: Task<'_>,
+pub fn proved_from<'p>(
+    task: Task<'p>,
     mut report: Report,
     settings: &Settings,
     wanted: &Guarantee,
-) -> Result<Guaranteed, Error> {
+) -> Result<Guaranteed<'p>, Error> {
     let mut changes: BTreeMap<usize, Change> = BTreeMap::new();
     let (mut rounds, mut certificate) = (vec![], of(task, &report, wanted)?);
     let ending = loop {
@@ -138,17 +144,20 @@ pub fn proved_from(
         if certificate.is_proved() {
             break Ending::Proved;
         }
-        if rounds.len() > wanted.rounds || !change(&certificate, &mut changes, wanted) {
+        let mut more = changes.clone();
+        if rounds.len() > wanted.rounds || !change(&certificate, &mut more, wanted) {
             break Ending::Rounds;
         }
-        let next = again(task, &report, &changes, settings)?;
+        let next = again(task, &report, &more, settings)?;
         if !next.is_solved() {
             break Ending::Tightened(next.status);
         }
         certificate = of(task, &next, wanted)?;
-        report = next;
+        (report, changes) = (next, more);
     };
-    Ok(Guaranteed { report, certificate, changes, rounds, ending })
+    own_bounds(&mut report, &certificate, &changes);
+    let problem = Tightened::new(task.problem, &changes, true);
+    Ok(Guaranteed { problem, report, certificate, changes, rounds, ending })
 }
 
 fn of(task: Task<'_>, report: &Report, wanted: &Guarantee) -> Result<Certificate, Error> {
@@ -157,6 +166,28 @@ fn of(task: Task<'_>, report: &Report, wanted: &Guarantee) -> Result<Certificate
     let mut certificate = certify(statement, &wanted.options);
     certificate.seconds = began.elapsed().as_secs_f64();
     Ok(certificate)
+}
+
+/// Of constraints that were changed the report knows the tightened bounds; what it says of them is replaced by what is
+/// proved of the spec's.
+fn own_bounds(report: &mut Report, certificate: &Certificate, changes: &BTreeMap<usize, Change>) {
+    for number in changes.keys() {
+        let (Some(finding), Some(own)) = (certificate.constraint(*number), report.constraints.get_mut(*number)) else {
+            continue;
+        };
+        let missed = match finding.verdict {
+            Verdict::Refuted(_, most) | Verdict::Undecided(most) => most,
+            _ => 0.0,
+        };
+        for worst in [&mut own.points, &mut own.between].into_iter().flatten() {
+            (worst.violation, worst.relative) = (missed / own.unit.factor, missed / size(finding.required));
+        }
+    }
+    let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
+        report.constraints.iter().filter_map(worst).fold(0.0, |most: f64, worst| most.max(worst.relative))
+    };
+    (report.violation.points, report.violation.between) =
+        (largest(|own| own.points.as_ref()), largest(|own| own.between.as_ref()));
 }
 
 /// Solves with the changes, from the last solution; should that fail, from the beginning.

@@ -20,14 +20,15 @@ pub struct Interval {
 #[inline]
 fn sum_below(a: f64, b: f64) -> f64 {
     let sum = a + b;
-    if rest_of_sum(a, b, sum) < 0.0 || !sum.is_finite() { sum.next_down() } else { sum }
+    // A rest that is not a number comes of overflow.
+    if rest_of_sum(a, b, sum) >= 0.0 && sum.is_finite() { sum } else { sum.next_down() }
 }
 
 /// The smallest double that is not below the sum of two.
 #[inline]
 fn sum_above(a: f64, b: f64) -> f64 {
     let sum = a + b;
-    if rest_of_sum(a, b, sum) > 0.0 || !sum.is_finite() { sum.next_up() } else { sum }
+    if rest_of_sum(a, b, sum) <= 0.0 && sum.is_finite() { sum } else { sum.next_up() }
 }
 
 /// What rounding took from a sum, exactly (D. E. Knuth, *The Art of Computer Programming* 2, section 4.2.2).

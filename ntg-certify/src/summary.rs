@@ -185,20 +185,30 @@ impl fmt::Display for Summary {
         let width = self.constraints.iter().map(|proof| proof.name.chars().count().min(MOST_NAME)).max().unwrap_or(0);
         for proof in &self.constraints {
             let name: String = proof.name.chars().take(MOST_NAME).collect();
-            let (low, high) = proof.values;
-            let unit = &proof.unit.symbol;
-            writeln!(f, "  {name:<width$}  {:<22} {low:.6} .. {high:.6} {unit}", proof.words())?;
+            let values = match proof.verdict {
+                Verdict::Within(_) => String::new(),
+                _ => range(proof.values, SHOWN, &proof.unit.symbol),
+            };
+            writeln!(f, "{}", format!("  {name:<width$}  {:<22} {values}", proof.words()).trim_end())?;
         }
         for term in &self.terms {
-            let ((low, high), unit) = (term.values, &term.unit.symbol);
-            writeln!(
-                f,
-                "  cost {:<width$} {low:.9} .. {high:.9} {unit}",
-                term.name.chars().take(MOST_NAME).collect::<String>()
-            )?;
+            let name: String = term.name.chars().take(MOST_NAME).collect();
+            writeln!(f, "  cost {name:<width$} {}", range(term.values, OF_COSTS, &term.unit.symbol).trim_end())?;
         }
         Ok(())
     }
+}
+
+/// Decimals of values, and of costs.
+const SHOWN: i32 = 6;
+const OF_COSTS: i32 = 9;
+
+/// Both ends, rounded outward to so many decimals.
+fn range((low, high): (f64, f64), decimals: i32, unit: &str) -> String {
+    let scale = 10_f64.powi(decimals);
+    // The last rounding may be wrong by one unit of the last place, far below a decimal that is shown.
+    let (low, high) = ((low * scale).floor() / scale + 0.0, (high * scale).ceil() / scale + 0.0);
+    format!("in {low:.n$} .. {high:.n$} {unit}", n = decimals as usize)
 }
 
 /// Letters of a name that a line shows.

@@ -99,12 +99,16 @@ pub(crate) fn save(path: &Path, force: bool, certificate: &Certificate) -> Resul
 }
 
 /// Tightens and solves again, from a report.
-pub(crate) fn mend(task: Task<'_>, report: Report, settings: &Settings) -> Result<Guaranteed, ntg_runtime::Error> {
+pub(crate) fn mend<'p>(
+    task: Task<'p>,
+    report: Report,
+    settings: &Settings,
+) -> Result<Guaranteed<'p>, ntg_runtime::Error> {
     proved_from(task, report, settings, &Guarantee::default())
 }
 
 /// What a guarantee did and cost, in words.
-pub(crate) fn words(found: &Guaranteed) -> String {
+pub(crate) fn words(found: &Guaranteed<'_>) -> String {
     let ending = match &found.ending {
         Ending::Proved if found.rounds.len() == 1 => "Guarantee: everything was proved at once".to_owned(),
         Ending::Proved => format!("Guarantee: proved after {} more solves", found.rounds.len() - 1),
@@ -135,7 +139,7 @@ pub(crate) fn words(found: &Guaranteed) -> String {
 }
 
 /// What a guarantee did and cost, for programs.
-pub(crate) fn cost(found: &Guaranteed) -> Value {
+pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
     json!({
         "proved": found.ending == Ending::Proved,
         "cost": found.cost(),

@@ -13,6 +13,7 @@ use ntg_report::run::Recording;
 use ntg_runtime::explain::Explanation;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::multistart::MultiReport;
+use ntg_runtime::problem::Problem;
 use ntg_runtime::refine::{Refined, Refinement};
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::{Method, Settings};
@@ -28,12 +29,12 @@ pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
 
 /// What is printed beside the report.
 struct Solved<'a> {
-    problem: &'a Interpreted,
+    problem: &'a dyn Problem,
     report: &'a Report,
     starts: Option<&'a MultiReport>,
     explanation: Option<&'a Explanation>,
     /// What is proved for all times, and what the guarantee did, where one was asked for.
-    proved: Option<(&'a Summary, &'a Guaranteed)>,
+    proved: Option<(&'a Summary, &'a Guaranteed<'a>)>,
     samples: usize,
     compile_seconds: f64,
 }
@@ -93,14 +94,15 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let samples = arguments.samples as usize;
     let explanation = explanation.as_ref();
     let proved = summary.as_ref().zip(mended.as_ref());
-    let solved = Solved { problem: &problem, report, starts, explanation, proved, samples, compile_seconds };
+    let problem: &dyn Problem = mended.as_ref().map_or(&problem as &dyn Problem, |mended| &mended.problem);
+    let solved = Solved { problem, report, starts, explanation, proved, samples, compile_seconds };
     match arguments.format {
         Format::Text => files::print(&text::document(&solved)),
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
         let (source, notes, iterations) = (&source, &compiled.notes, &iterations[..]);
-        let mut run = Recording { problem: &problem, report, explanation, starts, source, notes, iterations }.run();
+        let mut run = Recording { problem, report, explanation, starts, source, notes, iterations }.run();
         if let Some(summary) = &summary {
             certify::into_run(summary, &mut run);
         }

@@ -1,0 +1,91 @@
+//! Shipped specs: what is proved encloses what the runtime computes, the checker agrees, a guarantee mends.
+
+use std::path::{Path, PathBuf};
+
+use ntg_certify::certify::certify;
+use ntg_certify::guarantee::{Ending, Task, proved_from};
+use ntg_certify::prove::Options;
+use ntg_certify::{Certificate, Guarantee, Verdict, statement, write};
+use ntg_compiler::model::Loader;
+use ntg_compiler::program::Program;
+use ntg_compiler::source::Source;
+use ntg_interp::Interpreted;
+use ntg_runtime::prelude::*;
+
+struct Beside(PathBuf);
+
+impl Loader for Beside {
+    fn load(&self, path: &str) -> Result<String, String> {
+        std::fs::read_to_string(self.0.join(path)).map_err(|error| error.to_string())
+    }
+}
+
+struct Solved {
+    program: Program,
+    problem: Interpreted,
+    report: Report,
+    text: String,
+}
+
+fn solved(spec: &str) -> Solved {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs");
+    let text = std::fs::read_to_string(folder.join(spec)).expect("a spec");
+    let source = Source::new(spec, text.clone());
+    let program = ntg_compiler::compile(&source, &Beside(folder)).expect("a sound spec").program;
+    let problem = Interpreted::new(&program);
+    let report = solve(&problem, &Settings::default()).expect("a problem");
+    assert!(report.is_solved(), "{spec}: {report}");
+    Solved { program, problem, report, text }
+}
+
+fn certified(of: &Solved) -> Certificate {
+    let statement = statement(&of.program, &of.report.solution, &of.text).expect("a solution");
+    certify(statement, &Options::default())
+}
+
+#[test]
+fn bounds_enclose_what_the_runtime_computes_and_the_checker_agrees() {
+    for spec in ["missile_intercept.ntg", "multi_vehicle_separated.ntg", "radar_net.ntg", "launch.ntg"] {
+        let of = solved(spec);
+        let certificate = certified(&of);
+        let summary = certificate.summary(&of.program.structure);
+        for signal in of.report.solution.signals(&of.problem) {
+            let name = signal.name().rsplit('.').next().unwrap_or_default().to_owned();
+            let own: Vec<_> = summary.named.iter().filter(|b| b.name.split(" in ").next() == Some(&name)).collect();
+            assert!(!own.is_empty(), "{spec}: nothing is said of {name}");
+            let low = own.iter().map(|b| b.values.0).fold(f64::INFINITY, f64::min);
+            let high = own.iter().map(|b| b.values.1).fold(f64::NEG_INFINITY, f64::max);
+            let (start, end) = signal.span().unwrap_or((0.0, 0.0));
+            for i in 0..=200 {
+                let value = signal.at(start + (end - start) * f64::from(i) / 200.0);
+                let slack = 1e-9 * (1.0 + value.abs());
+                let inside = low - slack <= value && value <= high + slack;
+                assert!(inside || value.is_nan(), "{spec}: {name} = {value} is not in {low} .. {high}");
+            }
+        }
+        for (term, bounds) in of.report.terms.iter().zip(&summary.terms) {
+            let slack = 1e-6 * (1.0 + term.fine.abs());
+            let inside = bounds.values.0 - slack <= term.fine && term.fine <= bounds.values.1 + slack;
+            assert!(inside, "{spec}: {} = {} is not in {:?}", term.name, term.fine, bounds.values);
+        }
+        let checked = ntg_check::verify(&write::text(&certificate));
+        let refuted = certificate.findings.iter().filter(|f| matches!(f.verdict, Verdict::Refuted(..))).count();
+        assert_eq!(checked.map(|checked| checked.refuted), Ok(refuted), "{spec}");
+    }
+}
+
+#[test]
+fn what_fails_between_the_points_is_mended_at_little_cost() {
+    for spec in ["gates.ntg", "missile_intercept.ntg", "low_observable_gauss.ntg"] {
+        let of = solved(spec);
+        assert!(!certified(&of).is_proved(), "{spec} is to fail between the points");
+        let task = Task { program: &of.program, problem: &of.problem, spec: &of.text };
+        let wanted = Guarantee::default();
+        let found = proved_from(task, of.report.clone(), &Settings::default(), &wanted).expect("a problem");
+        assert_eq!(found.ending, Ending::Proved, "{spec}: {:?}", found.rounds);
+        assert!((-1e-6..1e-3).contains(&found.cost()), "{spec} costs {}", found.cost());
+        assert!(found.report.violation.between < 1e-6, "{spec}: {}", found.report);
+        let checked = ntg_check::verify(&write::text(&found.certificate)).expect("a sound certificate");
+        assert_eq!((checked.refuted, checked.undecided), (0, 0), "{spec}");
+    }
+}
