@@ -86,8 +86,13 @@ impl Reference {
     }
 }
 
+/// The number itself. The library misreads numbers below the normal ones, so these are moved up and back.
 fn big(x: f64) -> BigFloat {
-    BigFloat::from_f64(x, BITS)
+    const UP: f64 = 18_446_744_073_709_551_616.0; // 2^64
+    if x == 0.0 || x.is_normal() || !x.is_finite() {
+        return BigFloat::from_f64(x, BITS);
+    }
+    BigFloat::from_f64(x * UP, BITS).div(&BigFloat::from_f64(UP, BITS), BITS, RM)
 }
 
 /// Whether an interval holds a number, and how far the number is from a double, in units of the last place.
