@@ -77,13 +77,25 @@ impl<P: Problem, S> Solver<P, S> {
     /// # Errors
     /// As [`Solver::solve`].
     pub fn resolve(&mut self) -> Result<S, Error> {
-        if let Some(last) = self.last.clone()
-            && let Some(report) = self.session.solve_again(&self.problem, &last, &self.settings)?
-        {
-            let report = refined(&self.problem, report, &self.settings)?;
-            return Ok(self.keep(report));
+        match self.last.clone() {
+            Some(last) => self.resolve_from(&last),
+            None => self.solve(),
         }
-        self.solve()
+    }
+
+    /// As [`Solver::resolve`], from any solution of the same problem: what is found depends on that solution and on
+    /// the parameters, not on what was solved in between.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn resolve_from(&mut self, from: &Solution) -> Result<S, Error> {
+        match self.session.solve_again(&self.problem, from, &self.settings)? {
+            Some(report) => {
+                let report = refined(&self.problem, report, &self.settings)?;
+                Ok(self.keep(report))
+            }
+            None => self.solve(),
+        }
     }
 
     /// The last solution that was found; none before the first.

@@ -4,6 +4,7 @@
 //! thing a slot stands for ([`Source`]) and the number that a datum is. Finds: indices outside
 //! families and arrays, parameters that are not finite.
 
+use super::batch::evaluators;
 use super::error::SetupError;
 use super::instances::index_at;
 use super::layout::Layout;
@@ -59,6 +60,18 @@ impl Frame<'_> {
         let mut work = node.work();
         node.values(self.problem, self.tables, &slots, &mut work);
         Ok(work.values)
+    }
+
+    /// The first result of any call at many sites, for known variables: one number for each, in their order, where
+    /// all sites are of one phase and have the same indices.
+    pub(crate) fn evaluate_all(&self, call: &Call, sites: Vec<Site>, x: &[f64]) -> Result<Vec<f64>, SetupError> {
+        let mut values = vec![];
+        for batch in evaluators(self, call, sites)? {
+            let mut work = batch.work();
+            batch.values(self.problem, self.tables, x, &mut work);
+            values.extend_from_slice(&work.node.values[..batch.sites.len()]);
+        }
+        Ok(values)
     }
 
     /// What a slot stands for.
