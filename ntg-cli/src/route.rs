@@ -5,8 +5,6 @@ use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::{Structure, Unit};
 
-use crate::values;
-
 /// What is wrong, and what is right.
 const FORM: &str = "write OUTPUTS: POINT; POINT, such as `x, y: -100, -100; -100, -15; 5, -15 [km]`";
 
@@ -54,7 +52,7 @@ fn unit(structure: &Structure, name: &str) -> Result<Unit, String> {
 /// One number, in the declared unit.
 fn number(cell: &str, shared: &str, unit: &Unit) -> Result<f64, String> {
     let text = if cell.contains('[') { cell.to_owned() } else { format!("{cell} {shared}") };
-    match values::given(&text, unit)?[..] {
+    match ntg_interp::quantity(&text, unit)?[..] {
         [value] => Ok(value / unit.factor),
         _ => Err(format!("`{cell}` is not one number; {FORM}")),
     }

@@ -6,13 +6,17 @@
 //! Tape and generated code compute the same operations in the same order through the same `math`
 //! module, so that they agree bit for bit.
 
+mod finding;
 mod parameters;
 mod run;
 mod tape;
+mod text;
 
-pub use parameters::SetError;
+pub use finding::finding;
+pub use parameters::{Place, SetError};
+pub use text::{quantity, target};
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use ntg_compiler::program::Program;
 use ntg_runtime::problem::{Derivatives, Lanes, Problem};
@@ -23,9 +27,11 @@ use run::{Columns, run};
 use tape::Tape;
 
 /// A problem that is interpreted. Parameters are set by name; see [`Interpreted::set`].
+///
+/// Clones have parameters of their own and share the tapes.
 pub struct Interpreted {
     structure: Structure,
-    kernels: Vec<Tapes>,
+    kernels: Arc<[Tapes]>,
     /// Registers that a finished call has left for the next: one set for each thread at work.
     spare: Mutex<Vec<Vec<f64>>>,
 }
@@ -58,6 +64,12 @@ impl Interpreted {
         let mut registers = lock().pop().unwrap_or_default();
         work(&mut registers);
         lock().push(registers);
+    }
+}
+
+impl Clone for Interpreted {
+    fn clone(&self) -> Self {
+        Self { structure: self.structure.clone(), kernels: Arc::clone(&self.kernels), spare: Mutex::default() }
     }
 }
 

@@ -33,7 +33,46 @@ impl std::fmt::Display for SetError {
 
 impl std::error::Error for SetError {}
 
+/// Where one number of a parameter stands: for programs that set it again and again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    parameter: usize,
+    member: usize,
+    /// SI units in one declared unit.
+    factor: f64,
+}
+
 impl Interpreted {
+    /// Where the number stands that a name (`v_max`) or a member (`start_x[2]`) is.
+    ///
+    /// # Errors
+    /// Unknown name, an index outside the array; an array without an index.
+    pub fn place(&self, name: &str, index: Option<i64>) -> Result<Place, SetError> {
+        let parameter = self.find(name)?;
+        let declared = &self.structure.parameters[parameter];
+        let factor = declared.unit.factor;
+        let member = match index {
+            None if declared.value.len() == 1 => Some(0),
+            None => return Err(SetError::Count(name.to_owned(), declared.value.len(), 1)),
+            Some(index) => usize::try_from(index - 1).ok().filter(|k| declared.array && *k < declared.value.len()),
+        };
+        let member = member.ok_or_else(|| SetError::Index(name.to_owned(), index.unwrap_or(1)))?;
+        Ok(Place { parameter, member, factor })
+    }
+
+    /// Sets one number in its declared unit. The place is one of this problem or of a clone.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn put(&mut self, place: Place, value: f64) -> Result<(), SetError> {
+        let parameter = &mut self.structure.parameters[place.parameter];
+        if !value.is_finite() {
+            return Err(SetError::NotFinite(parameter.name.clone()));
+        }
+        parameter.value[place.member] = value * place.factor;
+        Ok(())
+    }
+
     /// Sets all values of a parameter, in SI units: one for a scalar, as many as an array has.
     ///
     /// # Errors

@@ -1,0 +1,79 @@
+//! Parameters set by text, as a person writes them: `0.2`, `200 [m/s]`, `200 m/s`, `-100, -97 [km]`.
+
+use ntg_compiler::diagnostic::{Code, Diagnostic};
+use ntg_compiler::source::Source;
+use ntg_structure::{Structure, Unit};
+
+use crate::Interpreted;
+
+impl Interpreted {
+    /// Sets a parameter, all members of an array (`a`, `1, 2, 3`), or one member (`a[2]`, `1`); numbers without a
+    /// unit are in the declared one.
+    ///
+    /// # Errors
+    /// In words: unknown names, values that cannot be read, units that do not fit.
+    pub fn assign(&mut self, target_text: &str, text: &str) -> Result<(), String> {
+        let (name, index) = target(target_text.trim())?;
+        if let Some(found) = bounded(&self.structure).find(|bounded| *bounded == name) {
+            return Err(format!("`{found}` is no parameter but declared with bounds: change them in the spec"));
+        }
+        let unit = self.structure.parameters.iter().find(|p| p.name == name).map(|p| p.unit.clone());
+        let values = quantity(text, &unit.unwrap_or_default())?;
+        let done = match (index, values.as_slice()) {
+            (None, values) => self.set(name, values),
+            (Some(index), [value]) => self.set_member(name, index, *value),
+            (Some(index), values) => {
+                return Err(format!("`{name}[{index}]` takes one value, but {} are given", values.len()));
+            }
+        };
+        done.map_err(|error| error.to_string())
+    }
+}
+
+/// The names of durations and variables.
+fn bounded(structure: &Structure) -> impl Iterator<Item = &str> {
+    let durations = structure.phases.iter().filter_map(|phase| phase.duration_name.as_deref());
+    durations.chain(structure.variables.iter().map(|variable| variable.name.as_str()))
+}
+
+/// `name` or `name[index]`.
+///
+/// # Errors
+/// In words: an index that is no whole number in brackets.
+pub fn target(target: &str) -> Result<(&str, Option<i64>), String> {
+    let Some((name, rest)) = target.split_once('[') else { return Ok((target, None)) };
+    let index = rest.strip_suffix(']').and_then(|i| i.trim().parse().ok());
+    let index =
+        index.ok_or_else(|| format!("`{target}`: the index is a whole number in brackets, as in `{name}[2]`"))?;
+    Ok((name.trim(), Some(index)))
+}
+
+/// Values in SI units; numbers without a unit are in `unit`.
+///
+/// # Errors
+/// In words: what cannot be read, units that do not fit.
+pub fn quantity(text: &str, unit: &Unit) -> Result<Vec<f64>, String> {
+    let source = Source::new("the command line", bracketed(text));
+    ntg_compiler::model::given(&source, unit).map_err(|found| {
+        if found.iter().any(|finding| finding.code == Code::UnknownName) {
+            let unit = if unit.symbol.is_empty() { "1" } else { &unit.symbol };
+            return format!("write a number, alone or with a unit such as `1 [{unit}]`");
+        }
+        let one = |finding: &Diagnostic| match &finding.help {
+            Some(help) => format!("{}; {help}", finding.message),
+            None => finding.message.clone(),
+        };
+        format!("`{}`: {}", text.trim(), found.iter().map(one).collect::<Vec<_>>().join("; "))
+    })
+}
+
+/// `240 m/s` as the language writes it: `240 [m/s]`.
+fn bracketed(text: &str) -> String {
+    let parts = text.trim().split_once(char::is_whitespace);
+    match parts.map(|(number, unit)| (number, unit.trim())) {
+        Some((number, unit)) if number.parse::<f64>().is_ok() && unit.starts_with(char::is_alphabetic) => {
+            format!("{number} [{unit}]")
+        }
+        _ => text.to_owned(),
+    }
+}
