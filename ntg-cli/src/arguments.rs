@@ -87,6 +87,8 @@ pub(crate) enum Command {
     Plot(crate::plot::Arguments),
     Report(crate::report::Arguments),
     Sweep(crate::sweep::Arguments),
+    Merge(crate::merge::Arguments),
+    Summary(crate::summary::Arguments),
     /// Start the language server on standard input and output; editors run `ntg lsp`.
     ///
     /// Example, in Helix's languages.toml:

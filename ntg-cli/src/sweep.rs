@@ -1,31 +1,35 @@
 //! `ntg sweep`: one problem with many parameter sets.
 
+mod dispersion;
 mod inputs;
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use ntg_compiler::program::Program;
-use ntg_interp::Interpreted;
+use ntg_interp::{Interpreted, Place};
 use ntg_runtime::problem::Problem;
-use ntg_runtime::report::Report;
-use ntg_runtime::settings::{Control, Settings};
-use ntg_runtime::status::Status;
-use ntg_sweep::{Ended, Format, Row, Study, Value, Watcher, journal};
+use ntg_runtime::settings::Settings;
+use ntg_sweep::{Ended, Format, Plan, Results, Rows, Shard, Study, Wanted, Watcher, blocks, journal, usual_block};
 
 use crate::watch::Interrupt;
-use crate::{Exit, files, values, write};
+use crate::{Exit, files, write};
 
 /// Solve a spec for many parameter sets, one row of a table each, on all cores.
 ///
 /// An interrupted study, even by kill -9, goes on when the same command is given again: finished
 /// rows stand in FILE.journal until the table is complete. A row that fails says why in `status`.
 ///
+/// Rows are cut into blocks of neighbours; all rows of a block start from the solution of one of them.
+/// So a row is the same on one core and on many, in one process and in shards.
+///
 /// Examples:
 ///   ntg sweep mission.ntg --set v_max=0.2:0.3:11 --set "reach=500:2000:4 [m]" -o study.csv
 ///   ntg sweep mission.ntg --from sets.csv --value "final(x)" --value "max(speed)" -o study.parquet
+///   ntg sweep mission.ntg --disperse "mass ~ normal(1000, 20) [kg]" --disperse "wind ~ uniform(-5, 5)" \\
+///     --design sobol --samples 1024 --seed 7 -o study.csv
+///   ntg sweep mission.ntg --from sets.csv -o study.csv --shard 3/16    # one of 16 processes
+///   ntg merge study.csv                                                # when all 16 are done
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Arguments {
@@ -38,6 +42,8 @@ pub(crate) struct Arguments {
     /// A table of parameter sets, .csv or .parquet: a column for each parameter, named after it.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
+    #[command(flatten)]
+    dispersion: dispersion::Dispersed,
     /// Add a column: initial(NAME), final(NAME), min(NAME), max(NAME) of an output or named
     /// expression, violation(CONSTRAINT), sensitivity(CONSTRAINT), or the name of a number.
     /// Objective, violations, times and variables are always there.
@@ -46,6 +52,14 @@ pub(crate) struct Arguments {
     /// Where to write, `.csv` or `.parquet`.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    /// Solve one of several parts, such as 3/16, and leave its rows in a journal beside the output
+    /// for `ntg merge`.
+    #[arg(long, value_name = "PART/PARTS")]
+    shard: Option<Shard>,
+    /// Rows that start from one solution, that of a neighbour; 1 starts every row from the guess of
+    /// the spec. By default 4 to 32, more in larger studies.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    block: Option<u32>,
     /// Rows at a time; 0 for one on each core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     jobs: usize,
@@ -65,55 +79,79 @@ const REDRAW: Duration = Duration::from_millis(100);
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     let format = Format::of(&arguments.output)?;
-    write::may_write(&arguments.output, arguments.force)?;
+    if arguments.shard.is_none() {
+        write::may_write(&arguments.output, arguments.force)?;
+    }
     // Findings have been said.
     let (source, compiled) = files::compile(&arguments.spec).ok_or_else(String::new)?;
-    let mut first = Interpreted::new(&compiled.program);
-    let sets = inputs::sets(&mut first, &arguments.set, arguments.from.as_deref())?;
-    let structure = first.structure();
-    let wanted = arguments.value.iter().map(|text| Value::parse(text, &structure)).collect::<Result<Vec<_>, _>>()?;
+    let mut problem = Interpreted::new(&compiled.program);
+    let sets = inputs::sets(&mut problem, (&arguments.set, arguments.from.as_deref()), &arguments.dispersion)?;
+    let structure = problem.structure();
+    let wanted = arguments.value.iter().map(|text| Wanted::parse(text, &structure)).collect::<Result<Vec<_>, _>>()?;
     let settings = settings(arguments)?;
     // The structure holds tables and fixed parameters, which the spec's text does not.
     let mut about = vec![source.text.clone(), format!("{structure:?}"), format!("{settings:?}")];
     about.extend(arguments.value.iter().cloned());
-    let study = Study { inputs: sets.names, sets: sets.rows, about };
+    let block = arguments.block.map_or_else(|| usual_block(sets.rows.len()), |block| block as usize);
+    let study = Study { inputs: sets.names, sets: sets.rows, block, about };
 
-    let fixed = inputs::fixed(&arguments.set);
     let interrupt = Interrupt::install();
-    let solver = Solver {
-        program: &compiled.program,
-        study: &study,
-        fixed,
-        wanted,
-        settings,
-        interrupt: interrupt.clone(),
-        idle: Mutex::default(),
-    };
-    let journal = journal::beside(&arguments.output);
-    let progress = Progress::new(study.sets.len(), interrupt);
-    let ended = ntg_sweep::run(&study, &journal, arguments.jobs, &progress, |row, set| solver.row(row, set));
+    let places = study.inputs.iter().map(|name| inputs::place(&problem, name)).collect::<Result<Vec<_>, _>>()?;
+    let rows = Rows::new(problem, Box::new(move |problem, set| put(problem, &places, set)), wanted, {
+        let mut settings = settings;
+        interrupt.over(&mut settings);
+        settings
+    });
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    let journal = journal::beside(&arguments.output, shard);
+    let count = shard.blocks(blocks(&study.sets, study.block)).iter().map(|block| 1 + block.rest.len()).sum();
+    let progress = Progress::new(count, interrupt);
+    let plan = Plan { jobs: arguments.jobs, shard, journal: &journal };
+    let ended = ntg_sweep::run(&study, plan, &progress, &rows);
     progress.line.finish_and_clear();
     match ended? {
-        Ended::Finished(rows) => {
-            write::whole(&arguments.output, arguments.force, &ntg_sweep::write(&study, &rows, format)?)?;
-            Ok(finished(&rows, &arguments.output, &journal))
+        Ended::Finished(results) if arguments.shard.is_some() => Ok(shard_done(&results, arguments, &journal)),
+        Ended::Finished(results) => {
+            write::whole(&arguments.output, arguments.force, &ntg_sweep::write(&results, format)?)?;
+            remove(&[journal]);
+            Ok(finished(&results, &arguments.output))
         }
         Ended::Stopped(there) => {
-            let all = study.sets.len();
-            eprintln!("stopped by Ctrl-C after {there} of {all} rows; the same command goes on from there");
+            eprintln!("stopped by Ctrl-C after {there} of {count} rows; the same command goes on from there");
             Ok(Exit::Interrupted)
         }
     }
 }
 
-/// Says how it ended, and takes the journal away: the table holds everything now.
-fn finished(rows: &[Row], output: &Path, journal: &Path) -> Exit {
-    if let Err(error) = std::fs::remove_file(journal) {
-        eprintln!("warning: the journal `{}` could not be removed: {error}", journal.display());
+fn put(problem: &mut Interpreted, places: &[Place], set: &[f64]) -> Result<(), String> {
+    for (place, value) in places.iter().zip(set) {
+        problem.put(*place, *value).map_err(|error| error.to_string())?;
     }
-    let solved = rows.iter().filter(|row| row.status == "solved").count();
+    Ok(())
+}
+
+/// Says that a shard is solved; its journal is what `ntg merge` takes.
+fn shard_done(results: &Results, arguments: &Arguments, journal: &Path) -> Exit {
+    let output = arguments.output.display();
+    eprintln!("{}: {} rows; when all shards are there: ntg merge {output}", journal.display(), results.rows.len());
+    Exit::Done
+}
+
+/// Takes journals away: the table holds everything now.
+pub(crate) fn remove(journals: &[PathBuf]) {
+    for journal in journals {
+        if let Err(error) = std::fs::remove_file(journal) {
+            eprintln!("warning: the journal `{}` could not be removed: {error}", journal.display());
+        }
+    }
+}
+
+/// Says how a study ended.
+pub(crate) fn finished(results: &Results, output: &Path) -> Exit {
+    let rows = &results.rows;
+    let solved = rows.iter().filter(|row| row.is_solved()).count();
     eprintln!("{}: {} rows, {solved} solved", output.display(), rows.len());
-    if let Some(row) = rows.iter().find(|row| row.status != "solved") {
+    if let Some(row) = rows.iter().find(|row| !row.is_solved()) {
         eprintln!("the first that is not: row {}, {}", row.row, row.status);
     }
     if solved == rows.len() { Exit::Done } else { Exit::NotSolved }
@@ -130,88 +168,6 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
     }
     settings.validate().map_err(|invalid| invalid.to_string())?;
     Ok(settings)
-}
-
-/// Makes rows.
-struct Solver<'a> {
-    program: &'a Program,
-    study: &'a Study,
-    fixed: Vec<String>,
-    wanted: Vec<Value>,
-    settings: Settings,
-    interrupt: Interrupt,
-    /// Solvers that no thread uses now. What they keep changes no answer, and spares most of a small solve.
-    idle: Mutex<Vec<ntg_runtime::Solver<Interpreted>>>,
-}
-
-impl Solver<'_> {
-    /// The row of one parameter set; none when Ctrl-C came first.
-    fn row(&self, row: usize, set: &[f64]) -> Option<Row> {
-        let mut problem = Interpreted::new(self.program);
-        if let Err(message) = self.prepare(&mut problem, set) {
-            return Some(Row::failed(row, one_line(&message)));
-        }
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut solver = match idle {
-            Some(mut solver) => {
-                solver.problem = problem;
-                solver
-            }
-            None => ntg_runtime::Solver::new(problem, &self.cancellable()),
-        };
-        let solved = solver.solve();
-        let row = match solved {
-            Ok(report) if report.status == Status::Cancelled => None,
-            Ok(report) => Some(self.results(row, &solver.problem, &report)),
-            Err(error) => Some(Row::failed(row, one_line(&error.to_string()))),
-        };
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
-        row
-    }
-
-    /// The settings, with Ctrl-C.
-    fn cancellable(&self) -> Settings {
-        let interrupt = self.interrupt.clone();
-        let watch = move |_: &_| if interrupt.is_pressed() { Control::Cancel } else { Control::Continue };
-        Settings { on_iteration: Some(Arc::new(watch)), ..self.settings.clone() }
-    }
-
-    fn prepare(&self, problem: &mut Interpreted, set: &[f64]) -> Result<(), String> {
-        for assignment in &self.fixed {
-            values::set(problem, assignment)?;
-        }
-        for (name, value) in self.study.inputs.iter().zip(set) {
-            inputs::put(problem, name, *value)?;
-        }
-        Ok(())
-    }
-
-    fn results(&self, number: usize, problem: &Interpreted, report: &Report) -> Row {
-        let status = if report.is_solved() { "solved".to_owned() } else { one_line(&report.status.to_string()) };
-        let mut row = Row { row: number, status, numbers: vec![] };
-        row.push("objective", report.objective);
-        row.push("objective_fine", report.objective_fine);
-        row.push("violation_points", report.violation.points);
-        row.push("violation_between", report.violation.between);
-        row.push("iterations", report.iterations as f64);
-        row.push("seconds", report.seconds);
-        for (name, seconds) in report.solution.event_times() {
-            row.push(name, seconds);
-        }
-        for variable in report.solution.variables() {
-            row.push(variable.name, variable.value);
-        }
-        for value in &self.wanted {
-            if row.numbers.iter().all(|(name, _)| *name != value.text) {
-                row.push(value.text.clone(), value.of(problem, report));
-            }
-        }
-        row
-    }
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The line of progress, and Ctrl-C.

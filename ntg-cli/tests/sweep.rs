@@ -87,6 +87,83 @@ fn a_study_that_is_killed_twice_ends_with_every_row_once_and_the_same_numbers() 
 }
 
 #[test]
+fn shards_one_core_and_two_give_the_same_rows_and_merge_says_what_is_missing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let flight = spec("low_observable.ntg");
+    let study = [&flight, "--set", "signature_max=7", "--set", "v_max=0.24:0.26:3", "--set", "reach=500:3000:5 [m]"];
+    let study = [&study[..], &["--value", "max(speed)", "--block", "4"]].concat();
+    for (jobs, output) in [("1", "one.csv"), ("2", "two.csv")] {
+        let ran = ntg(folder.path(), &[&study[..], &["--jobs", jobs, "-o", output]].concat());
+        assert_eq!(ran.status.code(), Some(0), "{}", String::from_utf8_lossy(&ran.stderr));
+    }
+    let merge = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ntg"));
+        let output = command.current_dir(folder.path()).arg("merge").args(more).output().expect("the command starts");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    assert!(merge(&["s.csv"]).1.contains("there is no journal `s.csv.1-of-N.journal`"));
+    for part in ["3/3", "1/3", "2/3"] {
+        if part == "2/3" {
+            let (code, said) = merge(&["s.csv"]);
+            assert!(code == Some(2) && said.contains("1 of 3 shards have no journal: 2/3"), "{said}");
+        }
+        let ran = ntg(folder.path(), &[&study[..], &["-o", "s.csv", "--shard", part]].concat());
+        assert_eq!(ran.status.code(), Some(0), "{}", String::from_utf8_lossy(&ran.stderr));
+        assert!(!folder.path().join("s.csv").exists());
+    }
+    let (code, said) = merge(&["s.csv"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!folder.path().join("s.csv.1-of-3.journal").exists());
+    let [one, two, merged] = ["one.csv", "two.csv", "s.csv"].map(|name| table(folder.path().join(name)));
+    let clock = one[0].iter().position(|name| name == "seconds").expect("a clock");
+    assert_eq!(one.len(), 16);
+    for (a, (b, c)) in one.iter().zip(two.iter().zip(&merged)) {
+        for (i, cell) in a.iter().enumerate().filter(|(i, _)| *i != clock) {
+            assert_eq!((cell, cell), (&b[i], &c[i]));
+        }
+    }
+    assert!(column(&one, "binding").iter().all(|names| names == "arrival"), "{:?}", column(&one, "binding"));
+    // Neighbours lead to the minima that each row's own guess leads to.
+    let alone = ntg(folder.path(), &[&study[..], &["--block", "1", "-o", "alone.csv"]].concat());
+    assert_eq!(alone.status.code(), Some(2), "an option given twice is refused");
+    let study = [&study[..study.len() - 2], &["--block", "1", "-o", "alone.csv"]].concat();
+    assert_eq!(ntg(folder.path(), &study).status.code(), Some(0));
+    let alone = table(folder.path().join("alone.csv"));
+    for (a, b) in column(&one, "objective").iter().zip(column(&alone, "objective")) {
+        let number = |text: &str| text.parse::<f64>().expect("a number");
+        assert!((number(a) / number(&b) - 1.0).abs() < 1e-6, "{a} {b}");
+    }
+    let iterations = |table: &[Vec<String>]| -> f64 {
+        column(table, "iterations").iter().map(|text| text.parse::<f64>().expect("a number")).sum()
+    };
+    assert!(iterations(&one) < 0.8 * iterations(&alone));
+}
+
+#[test]
+fn dispersed_parameters_are_sampled_alike_every_time_and_summarised() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let car = spec("kinematic_car.ntg");
+    let study = |design: &str, output: &str| {
+        let words = [&car, "--disperse", "wheel_base ~ normal(300, 10) [cm]", "--samples", "16", "--design", design];
+        let ran =
+            ntg(folder.path(), &[&words[..], &["--seed", "7", "--value", "max(steering)", "-o", output]].concat());
+        assert_eq!(ran.status.code(), Some(0), "{}", String::from_utf8_lossy(&ran.stderr));
+        column(&table(folder.path().join(output)), "wheel_base")
+    };
+    for design in ["monte-carlo", "latin-hypercube", "sobol"] {
+        let (one, two) = (study(design, &format!("{design}-1.csv")), study(design, &format!("{design}-2.csv")));
+        assert_eq!(one, two);
+        let bases: Vec<f64> = one.iter().map(|text| text.parse().expect("a number")).collect();
+        let mean = bases.iter().sum::<f64>() / 16.0;
+        assert!((mean - 3.0).abs() < 0.1 && bases.iter().all(|base| (2.5..3.5).contains(base)), "{bases:?}");
+    }
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ntg"));
+    let output = command.current_dir(folder.path()).args(["summary", "sobol-1.csv"]).output().expect("it starts");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.starts_with("16 rows, 16 solved (100.0 %)") && said.contains("max(steering)"), "{said}");
+}
+
+#[test]
 fn a_changed_study_is_refused_and_the_old_one_goes_on() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let car = spec("low_observable.ntg");
@@ -149,13 +226,13 @@ fn parquet_is_written_and_read_back_and_a_column_that_is_no_parameter_is_refused
     let first = [&study[..], &["--set", "v_max=0.22:0.26:3", "-o", "first.parquet"]].concat();
     assert_eq!(ntg(folder.path(), &first).status.code(), Some(0));
     let read = ntg_sweep::read(&folder.path().join("first.parquet")).expect("a table");
-    assert_eq!(read.names[..4], ["row", "v_max", "status", "objective"]);
+    assert_eq!(read.names[..5], ["row", "v_max", "status", "binding", "objective"]);
     assert_eq!(read.rows.len(), 3);
 
     // Its parameter column is the table of another study.
-    let study_of = ntg_sweep::Study { inputs: vec!["v_max".into()], sets: vec![vec![0.22], vec![0.26]], about: vec![] };
-    let rows = [ntg_sweep::Row::failed(0, ""), ntg_sweep::Row::failed(1, "")];
-    let bytes = ntg_sweep::write(&study_of, &rows, ntg_sweep::Format::Parquet).expect("bytes");
+    let rows = vec![ntg_sweep::Row::failed(0, &[0.22], ""), ntg_sweep::Row::failed(1, &[0.26], "")];
+    let results = ntg_sweep::Results { inputs: vec!["v_max".into()], names: vec![], rows };
+    let bytes = ntg_sweep::write(&results, ntg_sweep::Format::Parquet).expect("bytes");
     std::fs::write(folder.path().join("sets.parquet"), bytes).expect("a table");
     let refused = ntg(folder.path(), &[&study[..], &["--from", "sets.parquet", "-o", "second.csv"]].concat());
     assert!(String::from_utf8_lossy(&refused.stderr).contains("there is no parameter `row`"));
@@ -183,6 +260,11 @@ fn what_is_no_study_is_refused_with_words() {
         (&["--set", "v_max=1:2:2", "-o", "o.xlsx"], "tables are .csv or .parquet files"),
         (&["--set", "v_max=1:2:2", "-o", "mine.csv"], "give --force"),
         (&["--set", "v_max=1:2:2", "--value", "final(w)", "-o", "o.csv"], "`w` is none of: `x`, `y`"),
+        (&["--disperse", "v_max = 3", "--samples", "4", "-o", "o.csv"], "a dispersed parameter is"),
+        (&["--disperse", "v_max ~ gauss(1)", "--samples", "4", "-o", "o.csv"], "a distribution is normal(MEAN"),
+        (&["--disperse", "v_max ~ normal(1, 2) [kg]", "--samples", "4", "-o", "o.csv"], "1 [km/s]"),
+        (&["--disperse", "v_max ~ normal(1, 2)", "-o", "o.csv"], "--samples"),
+        (&["--set", "v_max=1:2:2", "--shard", "4/3", "-o", "o.csv"], "there is no shard 4 of 3"),
         (&["--set", "v_max=1:2:2", "--value", "mean(x)", "-o", "o.csv"], "write initial(NAME), final(NAME)"),
     ] {
         let output = ntg(folder.path(), &[&[flight.as_str()], arguments].concat());

@@ -10,6 +10,8 @@ pub struct Study {
     pub inputs: Vec<String>,
     /// One set a row, in declared units.
     pub sets: Vec<Vec<f64>>,
+    /// How many rows start from one solution, see [`crate::blocks`]; 1 for rows that all start from the spec's guess.
+    pub block: usize,
     /// Everything else that decides the results: the spec, its tables, settings, wanted values.
     pub about: Vec<String>,
 }
@@ -24,6 +26,8 @@ impl Study {
             hash.update(text.as_bytes());
         };
         text(env!("CARGO_PKG_VERSION"));
+        text(&self.block.to_string());
+        text(&self.about.len().to_string());
         for part in self.about.iter().chain(&self.inputs) {
             text(part);
         }
@@ -42,21 +46,56 @@ impl Study {
 pub struct Row {
     /// Its number, from 0.
     pub row: usize,
+    /// The parameter set, in declared units.
+    #[serde(with = "numbers")]
+    pub set: Vec<f64>,
     /// `solved`, or why not.
     pub status: String,
-    /// Results by name; none where a number is not finite.
-    pub numbers: Vec<(String, Option<f64>)>,
+    /// The constraints that bind, `; ` between them.
+    pub binding: String,
+    /// Results in the order of [`Results::names`], NaN where there is none; empty where the row could not be solved
+    /// at all.
+    #[serde(with = "numbers")]
+    pub numbers: Vec<f64>,
 }
 
 impl Row {
     /// A row that could not be solved at all.
-    pub fn failed(row: usize, status: impl Into<String>) -> Self {
-        Self { row, status: status.into(), numbers: vec![] }
+    pub fn failed(row: usize, set: &[f64], status: impl Into<String>) -> Self {
+        Self { row, set: set.to_vec(), status: status.into(), ..Self::default() }
     }
 
-    /// Adds a result.
-    pub fn push(&mut self, name: impl Into<String>, value: f64) {
-        self.numbers.push((name.into(), value.is_finite().then_some(value)));
+    /// Whether it was solved.
+    pub fn is_solved(&self) -> bool {
+        self.status == SOLVED
+    }
+}
+
+/// The status of a row that was solved.
+pub const SOLVED: &str = "solved";
+
+/// Rows, and what their numbers are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Results {
+    /// What was set in every row.
+    pub inputs: Vec<String>,
+    /// What the numbers of a row are.
+    pub names: Vec<String>,
+    /// The rows, by increasing number.
+    pub rows: Vec<Row>,
+}
+
+/// JSON has no NaN: `null` stands for it.
+mod numbers {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(values: &[f64], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(values.iter().map(|value| value.is_finite().then_some(*value)))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
+        let values = Vec::<Option<f64>>::deserialize(from)?;
+        Ok(values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
     }
 }
 
@@ -66,18 +105,18 @@ mod tests {
 
     #[test]
     fn whatever_is_changed_changes_the_fingerprint() {
-        let study = Study { inputs: vec!["a".into()], sets: vec![vec![1.0], vec![2.0]], about: vec!["spec".into()] };
+        let study =
+            Study { inputs: vec!["a".into()], sets: vec![vec![1.0], vec![2.0]], block: 8, about: vec!["spec".into()] };
         let mut prints = vec![study.fingerprint()];
         prints.push(Study { inputs: vec!["b".into()], ..study.clone() }.fingerprint());
         prints.push(Study { sets: vec![vec![1.0]], ..study.clone() }.fingerprint());
         prints.push(Study { sets: vec![vec![1.0], vec![2.0 + f64::EPSILON * 2.0]], ..study.clone() }.fingerprint());
         prints.push(Study { about: vec!["spe".into(), "c".into()], ..study.clone() }.fingerprint());
         prints.push(Study { about: vec!["spec".into(), "a".into()], inputs: vec![], ..study.clone() }.fingerprint());
-        let last = prints.pop().expect("six");
+        prints.push(Study { block: 1, ..study.clone() }.fingerprint());
         for (i, print) in prints.iter().enumerate() {
             assert!(prints[..i].iter().all(|other| other != print));
         }
-        assert_ne!(last, prints[1]);
         assert_eq!(study.fingerprint(), study.clone().fingerprint());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::study::{Row, Study};
+use crate::study::Results;
 
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub fn read(path: &Path) -> Result<Table, String> {
 
 /// One column of results.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Column {
+pub enum Column {
     /// Numbers of rows.
     Count(Vec<i64>),
     /// Numbers; none for what a row does not have.
@@ -72,8 +72,8 @@ pub(crate) enum Column {
 ///
 /// # Errors
 /// In words.
-pub fn write(study: &Study, rows: &[Row], format: Format) -> Result<Vec<u8>, String> {
-    let columns = columns(study, rows);
+pub fn write(results: &Results, format: Format) -> Result<Vec<u8>, String> {
+    let columns = columns(results);
     match format {
         Format::Csv => crate::csv::write(&columns),
         #[cfg(feature = "parquet")]
@@ -83,28 +83,25 @@ pub fn write(study: &Study, rows: &[Row], format: Format) -> Result<Vec<u8>, Str
     }
 }
 
-/// Columns in order: those of results as they first appear, which does not depend on when rows
-/// were solved.
-fn columns(study: &Study, rows: &[Row]) -> Vec<(String, Column)> {
-    let mut columns =
-        vec![("row".to_owned(), Column::Count(rows.iter().map(|row| i64::try_from(row.row).unwrap_or(-1)).collect()))];
-    for (i, name) in study.inputs.iter().enumerate() {
-        let values = rows.iter().map(|row| study.sets.get(row.row).and_then(|set| set.get(i)).copied());
-        columns.push((name.clone(), Column::Number(values.collect())));
+/// A column with its name.
+pub type Named = (String, Column);
+
+/// All columns in order: the row's number from 0, inputs, status, the constraints that bind, results.
+pub fn columns(results: &Results) -> Vec<Named> {
+    let rows = &results.rows;
+    let finite = |value: Option<&f64>| value.copied().filter(|value| value.is_finite());
+    let number = |row: &crate::Row| i64::try_from(row.row).unwrap_or(i64::MAX);
+    let mut columns = vec![("row".to_owned(), Column::Count(rows.iter().map(number).collect()))];
+    for (i, name) in results.inputs.iter().enumerate() {
+        columns.push((name.clone(), Column::Number(rows.iter().map(|row| finite(row.set.get(i))).collect())));
     }
     columns.push(("status".to_owned(), Column::Words(rows.iter().map(|row| row.status.clone()).collect())));
-    let mut names: Vec<&str> = vec![];
-    for (name, _) in rows.iter().flat_map(|row| &row.numbers) {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
-    for name in names {
-        let value = |row: &Row| row.numbers.iter().find(|(own, _)| own == name).and_then(|(_, value)| *value);
+    columns.push(("binding".to_owned(), Column::Words(rows.iter().map(|row| row.binding.clone()).collect())));
+    for (i, name) in results.names.iter().enumerate() {
         // A result that bears the name of an input would be a second column of that name.
         let taken = columns.iter().any(|(known, _)| known == name);
-        let shown = if taken { format!("{name} (result)") } else { name.to_owned() };
-        columns.push((shown, Column::Number(rows.iter().map(value).collect())));
+        let shown = if taken { format!("{name} (result)") } else { name.clone() };
+        columns.push((shown, Column::Number(rows.iter().map(|row| finite(row.numbers.get(i))).collect())));
     }
     columns
 }
@@ -112,19 +109,24 @@ fn columns(study: &Study, rows: &[Row]) -> Vec<(String, Column)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::Row;
+
+    fn solved(input: f64, numbers: Vec<f64>) -> Row {
+        Row { row: 1, set: vec![input], status: "solved".into(), binding: "fast".into(), numbers }
+    }
 
     #[test]
     fn a_failed_row_has_empty_cells_and_all_others_keep_theirs() {
-        let study = Study { inputs: vec!["v, max".into()], sets: vec![vec![0.1], vec![f64::MAX]], about: vec![] };
-        let mut second = Row { row: 1, status: "solved".into(), numbers: vec![] };
-        second.push("T", 1.0 / 3.0);
-        second.push("bad", f64::NAN);
-        let rows = [Row::failed(0, "it says \"no\""), second];
-        let text = String::from_utf8(write(&study, &rows, Format::Csv).expect("bytes")).expect("text");
+        let rows = vec![Row::failed(0, &[0.1], "it says \"no\""), solved(f64::MAX, vec![1.0 / 3.0, f64::NAN])];
+        let results = Results { inputs: vec!["v, max".into()], names: vec!["T".into(), "bad".into()], rows };
+        let text = String::from_utf8(write(&results, Format::Csv).expect("bytes")).expect("text");
         let third = 1.0 / 3.0;
         assert_eq!(
             text,
-            format!("row,\"v, max\",status,T,bad\n0,0.1,\"it says \"\"no\"\"\",,\n1,{:e},solved,{third},\n", f64::MAX)
+            format!(
+                "row,\"v, max\",status,binding,T,bad\n0,0.1,\"it says \"\"no\"\"\",,,\n1,{:e},solved,fast,{third},\n",
+                f64::MAX
+            )
         );
     }
 
@@ -133,16 +135,15 @@ mod tests {
     fn parquet_gives_back_what_it_was_given() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("t.parquet");
-        let study = Study { inputs: vec!["a".into()], sets: vec![vec![0.1], vec![-2.5e-300]], about: vec![] };
-        let rows =
-            [Row::failed(0, "no"), Row { row: 1, status: "solved".into(), numbers: vec![("T".into(), Some(7.25))] }];
-        std::fs::write(&path, write(&study, &rows, Format::Parquet).expect("bytes")).expect("written");
+        let rows = vec![Row::failed(0, &[0.1], "no"), solved(-2.5e-300, vec![7.25])];
+        let results = Results { inputs: vec!["a".into()], names: vec!["T".into()], rows };
+        std::fs::write(&path, write(&results, Format::Parquet).expect("bytes")).expect("written");
         let table = read(&path).expect("a table");
-        assert_eq!(table.names, ["row", "a", "status", "T"]);
+        assert_eq!(table.names, ["row", "a", "status", "binding", "T"]);
         let number = |cell: &str| cell.parse::<f64>().expect("a number");
         assert_eq!(table.rows[0][..1], ["0"]);
-        assert_eq!((number(&table.rows[0][1]), table.rows[0][2].as_str(), table.rows[0][3].as_str()), (0.1, "no", ""));
-        assert_eq!((number(&table.rows[1][1]), number(&table.rows[1][3])), (-2.5e-300, 7.25));
+        assert_eq!((number(&table.rows[0][1]), table.rows[0][2].as_str(), table.rows[0][4].as_str()), (0.1, "no", ""));
+        assert_eq!((number(&table.rows[1][1]), number(&table.rows[1][4])), (-2.5e-300, 7.25));
         std::fs::write(&path, "no parquet").expect("written");
         assert!(read(&path).is_err());
     }

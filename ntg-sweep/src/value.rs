@@ -9,7 +9,7 @@ const SAMPLES: usize = 401;
 
 /// A wanted value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Value {
+pub struct Wanted {
     /// As it was written: the column's name.
     pub text: String,
     kind: Kind,
@@ -30,7 +30,7 @@ enum Kind {
     Sensitivity,
 }
 
-impl Value {
+impl Wanted {
     /// Reads a wanted value and looks its name up in a problem.
     ///
     /// # Errors
@@ -112,21 +112,29 @@ impl Value {
     fn over_time(&self, problem: &dyn Problem, report: &Report) -> Option<f64> {
         let solution = &report.solution;
         if let Some(output) = solution.output(&self.name) {
-            return Some(self.pick(output.start(), output.end(), |t| output.at(t)));
+            let times = self.times(output.start(), output.end());
+            return Some(self.pick(times.iter().map(|t| output.at(*t))));
         }
         let signal = solution.signal(problem, &self.name)?;
         let (start, end) = signal.span().unwrap_or((0.0, 0.0));
-        Some(self.pick(start, end, |t| signal.at(t)))
+        Some(self.pick(signal.values(&self.times(start, end)).into_iter()))
     }
 
-    fn pick(&self, start: f64, end: f64, at: impl Fn(f64) -> f64) -> f64 {
+    /// Where it is looked at.
+    fn times(&self, start: f64, end: f64) -> Vec<f64> {
         let last = (SAMPLES - 1) as f64;
-        let all = || (0..SAMPLES).map(|i| at(start + (end - start) * i as f64 / last));
         match self.kind {
-            Kind::Initial => at(start),
-            Kind::Least => all().fold(f64::INFINITY, f64::min),
-            Kind::Greatest => all().fold(f64::NEG_INFINITY, f64::max),
-            _ => at(end),
+            Kind::Initial => vec![start],
+            Kind::Least | Kind::Greatest => (0..SAMPLES).map(|i| start + (end - start) * i as f64 / last).collect(),
+            _ => vec![end],
+        }
+    }
+
+    fn pick(&self, mut values: impl Iterator<Item = f64>) -> f64 {
+        match self.kind {
+            Kind::Least => values.fold(f64::INFINITY, f64::min),
+            Kind::Greatest => values.fold(f64::NEG_INFINITY, f64::max),
+            _ => values.next().unwrap_or(f64::NAN),
         }
     }
 }

@@ -147,6 +147,23 @@ fn a_moved_start_takes_a_third_of_a_cold_solve_at_most() {
 }
 
 #[test]
+fn from_a_given_solution_a_solver_finds_the_same_bits_whatever_it_solved_before() {
+    let mut used = Shipped::spec("low_observable").solver();
+    let start = solved(used.solve()).solution;
+    let mut found = vec![];
+    for x in [-98.0, -102.0, -99.0] {
+        Shipped::set(&mut used, "x_start", x);
+        let kept = numbers(&solved(used.resolve_from(&start)));
+        let mut fresh = Shipped::spec("low_observable").solver();
+        Shipped::set(&mut fresh, "x_start", x);
+        assert_eq!(kept, numbers(&solved(fresh.resolve_from(&start))), "x_start = {x}");
+        found.push(kept);
+    }
+    Shipped::set(&mut used, "x_start", -98.0);
+    assert_eq!(numbers(&solved(used.resolve_from(&start))), found[0]);
+}
+
+#[test]
 fn a_thousand_random_moves_in_a_row_are_all_solved_and_none_wrong() {
     let mut solver = Shipped::spec("low_observable").solver();
     solved(solver.solve());

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use ntg_interp::Interpreted;
+use ntg_interp::{Interpreted, Place, quantity, target};
 use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::Parameter;
 use ntg_sweep::{Range, grid};
 
+use super::dispersion;
 use crate::files;
-use crate::values::{self, given, target_of};
+use crate::values;
 
 /// How a range is written.
 const FORM: &str = "a range is NAME=FIRST:LAST:COUNT, such as `v_max=0.2:0.3:11` or `v_max=\"200:300:11 [m/s]\"`";
@@ -24,9 +25,13 @@ pub(super) fn fixed(set: &[String]) -> Vec<String> {
     set.iter().filter(|text| !text.contains(':')).cloned().collect()
 }
 
-/// All parameter sets: every row of the table with every combination of the ranges. The problem
-/// takes the values that hold for all rows.
-pub(super) fn sets(problem: &mut Interpreted, set: &[String], from: Option<&Path>) -> Result<Sets, String> {
+/// All parameter sets: every row of the table with every combination of the ranges and with every sample of what is
+/// dispersed. The problem takes the values that hold for all rows.
+pub(super) fn sets(
+    problem: &mut Interpreted,
+    (set, from): (&[String], Option<&Path>),
+    dispersion: &dispersion::Dispersed,
+) -> Result<Sets, String> {
     for assignment in fixed(set) {
         values::set(problem, &assignment).map_err(|message| match assignment.contains("..") {
             true => format!("{message}; {FORM}"),
@@ -44,38 +49,42 @@ pub(super) fn sets(problem: &mut Interpreted, set: &[String], from: Option<&Path
         names.push(name);
         ranges.push(range);
     }
+    let samples = dispersion.samples(problem)?;
+    names.extend(samples.names);
     if names.is_empty() {
-        return Err("nothing is varied; give a range, such as `--set v_max=0.2:0.3:11`, or a table with --from".into());
+        return Err("nothing is varied; give a range, such as `--set v_max=0.2:0.3:11`, a table with --from, or what \
+                    is dispersed with --disperse"
+            .into());
     }
     if let Some(name) = names.iter().enumerate().find_map(|(i, name)| names[..i].contains(name).then_some(name)) {
         return Err(format!("`{name}` is varied twice"));
     }
-    let combinations = grid(&ranges)?;
-    let joined = |row: &Vec<f64>| {
-        let one = |more: &Vec<f64>| row.iter().chain(more).copied().collect();
-        combinations.iter().map(one).collect::<Vec<Vec<f64>>>()
-    };
-    let rows: Vec<Vec<f64>> = rows.iter().flat_map(joined).collect();
+    let rows = product(&product(&rows, &grid(&ranges)?), &samples.rows);
     if rows.is_empty() {
         return Err("there is no parameter set: the table has no rows, or a range no values".into());
     }
     Ok(Sets { names, rows })
 }
 
-/// Sets one parameter or member to a value in its declared unit.
-pub(super) fn put(problem: &mut Interpreted, name: &str, value: f64) -> Result<(), String> {
-    let factor = parameter(problem, name)?.unit.factor;
-    let (base, index) = target_of(name)?;
-    match index {
-        Some(index) => problem.set_member(base, index, value * factor),
-        None => problem.set(base, &[value * factor]),
-    }
-    .map_err(|error| error.to_string())
+/// Every row with every other one, the others running fastest.
+fn product(rows: &[Vec<f64>], others: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let joined = |row: &Vec<f64>| {
+        let one = |more: &Vec<f64>| row.iter().chain(more).copied().collect();
+        others.iter().map(one).collect::<Vec<Vec<f64>>>()
+    };
+    rows.iter().flat_map(joined).collect()
+}
+
+/// Where the number of a parameter or member stands.
+pub(super) fn place(problem: &Interpreted, name: &str) -> Result<Place, String> {
+    parameter(problem, name)?;
+    let (base, index) = target(name)?;
+    problem.place(base, index).map_err(|error| error.to_string())
 }
 
 /// The parameter that a name or member belongs to.
-fn parameter(problem: &Interpreted, name: &str) -> Result<Parameter, String> {
-    let (base, _) = target_of(name)?;
+pub(super) fn parameter(problem: &Interpreted, name: &str) -> Result<Parameter, String> {
+    let (base, _) = target(name)?;
     let structure = problem.structure();
     let known: Vec<String> = structure.parameters.iter().map(|p| p.name.clone()).collect();
     structure.parameters.into_iter().find(|p| p.name == base).ok_or_else(|| match known.is_empty() {
@@ -86,14 +95,14 @@ fn parameter(problem: &Interpreted, name: &str) -> Result<Parameter, String> {
 
 /// One number, in the declared unit of a parameter.
 fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
-    match given(text, &parameter.unit)?[..] {
+    match quantity(text, &parameter.unit)?[..] {
         [value] => Ok(value / parameter.unit.factor),
         _ => Err(format!("`{text}` is not one number")),
     }
 }
 
 /// `name=first:last:count [unit]`.
-fn range(problem: &mut Interpreted, text: &str) -> Result<(String, Range), String> {
+fn range(problem: &Interpreted, text: &str) -> Result<(String, Range), String> {
     let (name, range) = text.split_once('=').ok_or(FORM)?;
     let name = name.trim();
     let (range, unit) = range.find('[').map_or((range, ""), |at| range.split_at(at));
@@ -105,14 +114,14 @@ fn range(problem: &mut Interpreted, text: &str) -> Result<(String, Range), Strin
     let count: usize = count.parse().map_err(|_| format!("`{count}` is no number of values; {FORM}"))?;
     let range = Range { first: end(first)?, last: end(last)?, count };
     // Whatever is wrong with the name shows here and not in every row.
-    put(problem, name, range.first)?;
+    place(problem, name)?;
     Ok((name.to_owned(), range))
 }
 
 type Read = (Vec<String>, Vec<Vec<f64>>);
 
 /// A table of parameter sets.
-fn table(problem: &mut Interpreted, path: &Path) -> Result<Read, String> {
+fn table(problem: &Interpreted, path: &Path) -> Result<Read, String> {
     if let Err(error) = std::fs::File::open(path) {
         return Err(files::unread(path, &error));
     }
@@ -132,10 +141,8 @@ fn table(problem: &mut Interpreted, path: &Path) -> Result<Read, String> {
         }
         rows.push(set);
     }
-    if let Some(set) = rows.first() {
-        for (name, value) in table.names.iter().zip(set) {
-            put(problem, name, *value).map_err(|message| format!("`{}`: {message}", path.display()))?;
-        }
+    for name in &table.names {
+        place(problem, name).map_err(|message| format!("`{}`: {message}", path.display()))?;
     }
     Ok((table.names, rows))
 }

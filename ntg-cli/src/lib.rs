@@ -1,0 +1,97 @@
+//! The `ntg` command: one file a verb, no mathematics. A library, so that other programs may offer the same command.
+//!
+//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, 130 stopped by
+//! Ctrl-C.
+
+mod arguments;
+mod certify;
+mod check;
+mod completions;
+mod expand;
+mod explain;
+mod files;
+mod fmt;
+mod guess;
+mod lsp;
+mod merge;
+mod new;
+mod plot;
+mod report;
+mod route;
+mod runs;
+mod setup;
+mod solve;
+mod starts;
+mod summary;
+mod sweep;
+mod values;
+mod watch;
+mod write;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use arguments::{Command, Ntg};
+
+/// How a verb ended, as an exit status.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Exit {
+    Done,
+    NotSolved,
+    NotFormatted,
+    Bad,
+    Interrupted,
+}
+
+impl Exit {
+    /// The number that the shell sees.
+    fn status(self) -> i32 {
+        match self {
+            Self::Done => 0,
+            Self::NotSolved | Self::NotFormatted => 1,
+            Self::Bad => 2,
+            // What shells say of a command that ended by SIGINT.
+            Self::Interrupted => 130,
+        }
+    }
+}
+
+/// Runs the command with the words of a command line, its own name first; gives its exit status.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let parsed = match Ntg::try_parse_from(words) {
+        Ok(parsed) => parsed,
+        Err(said) => {
+            // Help and version are no errors. A reader that has gone away is none either.
+            let _ = said.print();
+            return u8::try_from(said.exit_code()).unwrap_or(u8::MAX);
+        }
+    };
+    let exit = match parsed.command {
+        Command::Certify(arguments) => said(certify::run(&arguments)),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Fmt(arguments) => fmt::run(&arguments),
+        Command::Lsp => lsp::run(),
+        Command::New(arguments) => new::run(&arguments),
+        Command::Expand(arguments) => expand::run(&arguments),
+        Command::Solve(arguments) => solve::run(&arguments),
+        Command::Plot(arguments) => said(plot::run(&arguments)),
+        Command::Report(arguments) => said(report::run(&arguments)),
+        Command::Sweep(arguments) => said(sweep::run(&arguments)),
+        Command::Merge(arguments) => said(merge::run(&arguments)),
+        Command::Summary(arguments) => said(summary::run(&arguments)),
+    };
+    u8::try_from(exit.status()).unwrap_or(u8::MAX)
+}
+
+/// Says what went wrong; an empty message has been said already.
+fn said(ended: Result<Exit, String>) -> Exit {
+    ended.unwrap_or_else(|message| {
+        if !message.is_empty() {
+            eprintln!("error: {message}");
+        }
+        Exit::Bad
+    })
+}

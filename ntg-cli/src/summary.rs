@@ -1,0 +1,28 @@
+//! `ntg summary`: what the rows of a study say together.
+
+use std::path::PathBuf;
+
+use ntg_sweep::Summary;
+
+use crate::{Exit, files};
+
+/// Summarise a table of `ntg sweep`: share solved, limits that bind, quantiles of every number.
+///
+/// Examples:
+///   ntg summary study.csv
+#[derive(clap::Args, Debug)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Arguments {
+    /// The table, `.csv` or `.parquet`.
+    table: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
+    if let Err(error) = std::fs::File::open(&arguments.table) {
+        return Err(files::unread(&arguments.table, &error));
+    }
+    let table = ntg_sweep::read(&arguments.table)?;
+    let summary = Summary::of(&table).map_err(|message| format!("`{}`: {message}", arguments.table.display()))?;
+    files::print(&summary.to_string());
+    Ok(Exit::Done)
+}
