@@ -1,0 +1,56 @@
+"""Optimal control and trajectory generation from a readable problem file.
+
+>>> import ntg
+>>> flight = ntg.load("specs/low_observable.ntg")            # doctest: +SKIP
+>>> solution = flight.solve(v_max="240 m/s")                 # doctest: +SKIP
+>>> solution["x"]([0.0, 60.0, 120.0])                        # doctest: +SKIP
+
+A `Problem` is a compiled spec, a `Solution` what a solve found, a `Solver` one that is kept for many solves;
+`Problem.solve_many` solves a table of parameter sets on all cores. Values are in the units that the spec declares,
+times in seconds. Whatever is wrong raises a subclass of `ntg.Error`; a solve that ends without a solution does not, see
+`Solution.status` and `Solution.raise_if_unsolved`.
+"""
+
+from __future__ import annotations
+
+from ._errors import (
+    BusyError,
+    Error,
+    Finding,
+    ParameterError,
+    SettingsError,
+    SetupError,
+    SpecError,
+    TableError,
+    UnsolvedError,
+)
+from ._ntg import __version__
+from ._problem import Parameter, Problem, load, loads
+from ._settings import Progress, Settings
+from ._solution import Constraint, Curve, Phase, Solution, Worst
+from ._solver import Solver
+
+__all__ = [
+    "BusyError",
+    "Constraint",
+    "Curve",
+    "Error",
+    "Finding",
+    "Parameter",
+    "ParameterError",
+    "Phase",
+    "Problem",
+    "Progress",
+    "Settings",
+    "SettingsError",
+    "SetupError",
+    "Solution",
+    "Solver",
+    "SpecError",
+    "TableError",
+    "UnsolvedError",
+    "Worst",
+    "__version__",
+    "load",
+    "loads",
+]

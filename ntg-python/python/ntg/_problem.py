@@ -1,0 +1,217 @@
+"""A compiled spec."""
+
+from __future__ import annotations
+
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, Sequence, Union
+
+from . import _ntg
+from ._errors import Finding
+from ._settings import DEFAULT, Settings, watcher
+from ._solution import Solution
+from ._solver import Solver
+
+if TYPE_CHECKING:
+    from ._settings import ProgressArgument
+
+    Value = Union[float, str, Sequence[Union[float, str]]]
+    """A number in the declared unit, a text with a unit ("240 m/s"), or a sequence of these for an array."""
+
+
+class Parameter(NamedTuple):
+    """A parameter of a problem."""
+
+    name: str
+    """Its name."""
+    value: "float | list[float]"
+    """Its value in `unit`; a list for an array."""
+    unit: str
+    """The declared unit; empty for a pure number."""
+    doc: str
+    """Its documentation in the spec."""
+
+
+class Problem:
+    """A compiled spec with values of its parameters. It never changes: `with_parameters` gives another one.
+
+    Made by `ntg.load` and `ntg.loads`. It can be pickled, with the tables that its spec names.
+    """
+
+    def __init__(self, core: "_ntg.Compiled") -> None:
+        self._core = core
+
+    @property
+    def name(self) -> str:
+        """The problem's name."""
+        return self._core.name
+
+    @property
+    def doc(self) -> str:
+        """The problem's documentation."""
+        return self._core.doc
+
+    @property
+    def text(self) -> str:
+        """The text of the spec."""
+        return self._core.source[1]
+
+    @property
+    def objective_unit(self) -> str:
+        """The unit of the objective; empty for a pure number."""
+        return self._core.objective_unit
+
+    @property
+    def notes(self) -> tuple[Finding, ...]:
+        """Warnings and notes of the compiler."""
+        return tuple(Finding(**found) for found in self._core.notes)
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """The parameters by name, with their present values."""
+        return {
+            name: Parameter(name, values if array else values[0], unit, doc)
+            for name, doc, unit, values, array in self._core.parameters
+        }
+
+    def with_parameters(self, parameters: "Mapping[str, Value] | None" = None, /, **named: "Value") -> "Problem":
+        """The same problem with other values of parameters.
+
+        Values are numbers in declared units, texts with units (`"240 m/s"`), or sequences of these for arrays; one
+        member of an array is set by `{"a[2]": 1.0}`.
+
+        Raises `ParameterError` for unknown names, values that are no numbers, and units that do not fit.
+        """
+        return Problem(self._core.with_parameters(merged(parameters, named)))
+
+    def solve(
+        self,
+        parameters: "Mapping[str, Value] | None" = None,
+        /,
+        *,
+        settings: Settings = DEFAULT,
+        guess: Optional[Solution] = None,
+        progress: "ProgressArgument" = None,
+        **named: "Value",
+    ) -> Solution:
+        """Solves the problem, from the guess of the spec or from `guess`, a solution of the same spec.
+
+        Parameters are given as for `with_parameters`; one that is called `settings`, `guess` or `progress` goes into
+        the mapping. `progress=True` shows a line of progress; a function is called with a `Progress` in every iteration,
+        and stops the solve by returning `False`. Ctrl-C raises `KeyboardInterrupt`. Other threads run meanwhile.
+
+        A solve that ends without a solution raises nothing: see `Solution.status`.
+
+        Raises `ParameterError`, `SettingsError`, and `SetupError` where the problem makes no sense with these values.
+        """
+        core = self._core.with_parameters(merged(parameters, named))
+        return Solution(core.solve(settings, None if guess is None else guess._core, watcher(progress)))
+
+    def solver(
+        self,
+        parameters: "Mapping[str, Value] | None" = None,
+        /,
+        *,
+        settings: Settings = DEFAULT,
+        **named: "Value",
+    ) -> Solver:
+        """A solver that is kept and solves again and again, with other parameters or from the last solution."""
+        return Solver(self._core.with_parameters(merged(parameters, named)).solver(settings))
+
+    def solve_many(
+        self,
+        table: Any,
+        *,
+        columns: Optional[Sequence[str]] = None,
+        values: Sequence[str] = (),
+        settings: Settings = DEFAULT,
+        jobs: int = 0,
+        block: Optional[int] = None,
+        progress: Any = None,
+        journal: "str | os.PathLike[str] | None" = None,
+        parameters: "Mapping[str, Value] | None" = None,
+    ) -> Any:
+        """Solves every row of a table of parameter sets, on all cores; gives a table of the same kind.
+
+        `table` is a pandas or polars DataFrame, an Arrow table, a mapping of columns, a NumPy array with named fields,
+        or one of two dimensions with `columns`. Its columns are named after parameters; cells are numbers in declared
+        units or texts with units. For arrays and mappings the result is a dictionary of NumPy arrays.
+
+        `values` adds columns, as in `ntg sweep --value`: `"final(x)"`, `"max(speed)"`, `"sensitivity(turn)"`.
+        `parameters` holds for all rows. `jobs` is the number of rows at a time, 0 for one on each core.
+
+        Rows are cut into blocks of neighbours; one row of each block is solved from the guess of the spec, the others
+        from its solution. `block` is how many rows a block has, 4 to 32 where it is not given; `block=1` solves every row
+        from the guess. A row does not depend on `jobs`, and on nothing
+        but its own parameters and those of its block's first row; only the column `seconds` is a clock's.
+
+        With `journal`, finished rows survive the process: the same call goes on from there, and the file stays.
+        Without it Ctrl-C loses them. A row that cannot be solved says why in `status`.
+
+        Raises `TableError` for tables that cannot be used, `ParameterError` for unknown names and values.
+        """
+        from . import _table
+
+        core = self._core.with_parameters(merged(parameters, {}))
+        inputs, sets, back = _table.read(core, table, columns)
+        how = _table.How(list(values), jobs, block, [], None if journal is None else (Path(journal), (1, 1)))
+        found = _ntg.sweep(core, inputs, sets, settings, how, _table.watcher(progress))
+        return back(dict(found))
+
+    def __reduce__(self) -> Any:
+        name, text = self._core.source
+        return _restored, (name, text, self._core.tables, self._core.state)
+
+    def __repr__(self) -> str:
+        count = len(self._core.parameters)
+        return f"<ntg.Problem {self.name}: {count} parameter{'' if count == 1 else 's'}>"
+
+
+def load(path: "str | os.PathLike[str]") -> Problem:
+    """Compiles a spec file; tables that it names are read beside it.
+
+    Raises `SpecError` with all findings of the compiler, and `OSError` where the file cannot be read.
+    """
+    place = Path(path)
+    try:
+        text = place.read_bytes().decode("utf-8")
+    except UnicodeDecodeError as error:
+        from ._errors import SpecError
+
+        raise SpecError(f"`{place}` is not UTF-8 text: {error}") from None
+    return Problem(_ntg.compile(str(path), text, place.parent, {}))
+
+
+def loads(
+    text: str,
+    *,
+    name: str = "<text>",
+    folder: "str | os.PathLike[str] | None" = None,
+    tables: Optional[Mapping[str, str]] = None,
+) -> Problem:
+    """Compiles the text of a spec. Tables come from `tables`, texts by the paths that the spec names, or from `folder`.
+
+    Raises `SpecError` with all findings of the compiler.
+    """
+    return Problem(_ntg.compile(name, text, None if folder is None else Path(folder), dict(tables or {})))
+
+
+def merged(parameters: "Mapping[str, Value] | None", named: "Mapping[str, Value]") -> dict[str, Any]:
+    """Both ways of giving parameters; one that is given twice is a mistake."""
+    if parameters is None:
+        return dict(named)
+    twice = [name for name in named if name in parameters]
+    if twice:
+        raise TypeError(f"parameter `{twice[0]}` is given twice")
+    return {**parameters, **named}
+
+
+def _restored(name: str, text: str, tables: dict[str, str], state: list[tuple[str, list[float]]]) -> Problem:
+    return Problem(_compiled(name, text, tuple(sorted(tables.items()))).with_state(state))
+
+
+@lru_cache(maxsize=8)
+def _compiled(name: str, text: str, tables: tuple[tuple[str, str], ...]) -> "_ntg.Compiled":
+    """A worker gets the same problem with every batch, and compiles it once."""
+    return _ntg.compile(name, text, None, dict(tables))

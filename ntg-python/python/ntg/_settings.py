@@ -1,0 +1,88 @@
+"""How a problem is solved, and how far it is."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Union
+
+if TYPE_CHECKING:
+    ProgressArgument = Union[None, bool, Callable[["Progress"], Any]]
+
+
+class Progress(NamedTuple):
+    """One iteration of a solve."""
+
+    iteration: int
+    """Iterations completed; 0 at the start of a solve or of a step of a continuation."""
+    objective: float
+    """The minimised objective, in its unit."""
+    violation: float
+    """Largest scaled violation of a constraint or bound."""
+    stationarity: float
+    """Largest scaled component of the Lagrangian's gradient."""
+    step: float
+    """Length of the last step, as a fraction of the one proposed."""
+    seconds: float
+    """Seconds since the solve began."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a problem is solved. The defaults suit most problems."""
+
+    method: str = "auto"
+    """`auto`, `newton` (the structured Newton method alone) or `sqp`."""
+    tolerance: float = 1e-8
+    """Largest scaled residual of stationarity and complementarity of a solution."""
+    constraint_tolerance: float = 1e-8
+    """Largest scaled violation of a constraint of a solution."""
+    max_iterations: int = 500
+    """Iterations after which a solve is given up."""
+    time_limit: Optional[float] = None
+    """Seconds after which a solve is given up; none for no limit."""
+    samples: int = 20
+    """Points of the check after a solve for each point of the transcription."""
+    refine: Optional[float] = None
+    """Solve again on finer meshes until cost and constraints are exact to this relative error."""
+    scales: Mapping[str, float] = field(default_factory=dict)
+    """Typical sizes of outputs and variables by name, in their units."""
+
+
+DEFAULT = Settings()
+
+
+class Line:
+    """A line of progress on standard error, which notebooks and terminals show alike."""
+
+    def __init__(self) -> None:
+        self._last = 0.0
+        self._width = 0
+
+    def show(self, text: str, now: float, *, last: bool = False) -> None:
+        """Shows a text, at most ten times a second."""
+        if not last and now - self._last < 0.1:
+            return
+        self._last = now
+        end = "\n" if last else ""
+        sys.stderr.write("\r" + text.ljust(self._width) + end)
+        sys.stderr.flush()
+        self._width = len(text)
+
+
+def watcher(progress: "ProgressArgument") -> Optional[Callable[..., Any]]:
+    """The callback that the extension module calls in every iteration, or none."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        line = Line()
+
+        def show(iteration: int, objective: float, violation: float, dual: float, step: float, seconds: float) -> None:
+            text = f"iteration {iteration}: objective {objective:.6g}, violation {violation:.1e}, stationarity {dual:.1e}"
+            line.show(text, seconds)
+
+        return show
+    if not callable(progress):
+        raise TypeError("progress is True, or a function of a Progress that returns False to stop")
+    callback = progress
+    return lambda *parts: callback(Progress(*parts))

@@ -1,0 +1,429 @@
+"""What a solve found."""
+
+from __future__ import annotations
+
+import html
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Iterator, NamedTuple, Optional, Sequence, Union, overload
+
+from ._errors import UnsolvedError
+from ._settings import Progress
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from . import _ntg
+    from ._problem import Problem
+
+POINTS = 401
+"""Times of a table where none are said."""
+
+
+class Curve:
+    """An output or a named expression as a function of mission time: `curve(t)`.
+
+    Times are in seconds, clamped to its own start and end; values are in `unit`.
+    """
+
+    def __init__(self, core: "_ntg.Found", data: tuple[str, str, str, float, float]) -> None:
+        self._core = core
+        self.name: str
+        """Its path: `x`, `uav[2].x`, `covert.speed`."""
+        self.unit: str
+        """The unit of its values; empty for pure numbers."""
+        self.doc: str
+        """Its documentation in the spec."""
+        self.start: float
+        """Its start in seconds."""
+        self.end: float
+        """Its end in seconds."""
+        self.name, self.unit, self.doc, self.start, self.end = data
+
+    @overload
+    def __call__(self, t: float) -> float: ...
+    @overload
+    def __call__(self, t: "ArrayLike") -> "NDArray[np.float64]": ...
+    def __call__(self, t: Any) -> Any:
+        """The values at mission times in seconds, of the same shape."""
+        return self.derivative(t, 0)
+
+    def derivative(self, t: Any, order: int = 1) -> Any:
+        """A derivative with respect to time, in `unit` per second to the power of `order`. Of outputs only."""
+        import numpy as np
+
+        times = np.asarray(t, dtype=np.float64)
+        values = self._core.values(self.name, np.ascontiguousarray(times.reshape(-1)), order)
+        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
+
+    def sample(self, count: int = POINTS) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
+        """Equally spaced times from start to end in seconds, and the values there."""
+        import numpy as np
+
+        times = np.linspace(self.start, self.end, count)
+        return times, self(times)
+
+    def __repr__(self) -> str:
+        unit = f" [{self.unit}]" if self.unit else ""
+        return f"<ntg.Curve {self.name}{unit}, {self.start:g} .. {self.end:g} s>"
+
+
+class Phase(NamedTuple):
+    """A phase and its times."""
+
+    name: str
+    """Its path; empty without one."""
+    start: float
+    """Its start in seconds."""
+    end: float
+    """Its end in seconds."""
+
+
+class Worst(NamedTuple):
+    """Where a constraint is violated most."""
+
+    violation: float
+    """By how much the nearer bound is missed, in the constraint's unit; 0 where all is met."""
+    relative: float
+    """The same, relative to the scale of the bounds."""
+    value: float
+    """The constraint's value there, in its unit."""
+    time: Optional[float]
+    """When, in seconds; none for a constraint at no point."""
+
+
+class Constraint(NamedTuple):
+    """One constraint of the spec, over all of its members and points."""
+
+    name: str
+    """Its name, or its text."""
+    text: str
+    """Its text in the spec."""
+    line: int
+    """Its line in the spec."""
+    block: str
+    """`initial`, `trajectory`, `final`, `temporal` or `continuity`."""
+    unit: str
+    """The unit of values and violations."""
+    points: Optional[Worst]
+    """Where it is violated most at the points of the transcription."""
+    between: Optional[Worst]
+    """Where it is violated most on a finer grid."""
+    multiplier: Optional[float]
+    """The largest multiplier: derivative of the objective by the bound, per second along a trajectory."""
+    multiplier_time: Optional[float]
+    """When, in seconds."""
+    sensitivity: float
+    """Derivative of the objective by the bound, moved everywhere at once: objective's unit per `unit`."""
+
+
+class Solution:
+    """What a solve found: functions of time, numbers, checks. Where it is not solved, the last point.
+
+    `solution["x"]` is a `Curve` for an output or named expression, a number for a time, a variable or a constant.
+    """
+
+    def __init__(self, core: "_ntg.Found") -> None:
+        self._core = core
+        self._page: Optional[str] = None
+
+    # How it ended.
+
+    @property
+    def status(self) -> str:
+        """Why the solve ended, in one word: `solved`, `infeasible`, `iteration_limit`, `time_limit`, `cancelled`, ..."""
+        return self._core.status
+
+    @property
+    def solved(self) -> bool:
+        """Whether a solution was found."""
+        return self._core.is_solved
+
+    @property
+    def message(self) -> str:
+        """Why the solve ended, in words."""
+        return self._core.message
+
+    @property
+    def advice(self) -> str:
+        """What to try next; empty when solved."""
+        return self._core.advice
+
+    def raise_if_unsolved(self) -> "Solution":
+        """The solution itself; raises `UnsolvedError` where there is none."""
+        if self.solved:
+            return self
+        words = f"{self.problem.name}: {self.message}"
+        raise UnsolvedError(f"{words}. {self.advice}" if self.advice else words, solution=self)
+
+    def explain(self) -> str:
+        """Which constraints cannot hold together, where, and by how much; empty for a solution."""
+        return self._core.explain()
+
+    # Numbers.
+
+    @property
+    def objective(self) -> float:
+        """The objective, in `objective_unit`."""
+        return self._core.objective
+
+    @property
+    def objective_fine(self) -> float:
+        """The objective integrated on a finer grid: closer to what flying would cost."""
+        return self._core.objective_fine
+
+    @property
+    def objective_unit(self) -> str:
+        """The unit of the objective; empty for a pure number."""
+        return self._core.objective_unit
+
+    @property
+    def terms(self) -> dict[str, float]:
+        """The terms of the objective by name, each in its unit."""
+        return {name: value for name, value, _ in self._core.terms}
+
+    @property
+    def violation_points(self) -> float:
+        """Largest violation of a constraint at the points of the transcription, relative to its bounds."""
+        return self._core.violation[0]
+
+    @property
+    def violation_between(self) -> float:
+        """The same on a finer grid, between the points."""
+        return self._core.violation[1]
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of all steps of a continuation."""
+        return self._core.iterations
+
+    @property
+    def seconds(self) -> float:
+        """Seconds of the solve on the clock, checks included."""
+        return self._core.seconds
+
+    @property
+    def history(self) -> list[Progress]:
+        """All iterations that were made."""
+        return [Progress(*step) for step in self._core.history]
+
+    @property
+    def constraints(self) -> dict[str, Constraint]:
+        """The constraints by name, in the order of the spec; `name (line 12)` where a name stands twice."""
+        found: dict[str, Constraint] = {}
+        for data in self._core.constraints:
+            for part in ("points", "between"):
+                data[part] = None if data[part] is None else Worst(**data[part])
+            one = Constraint(**data)
+            found[one.name if one.name not in found else f"{one.name} (line {one.line})"] = one
+        return found
+
+    @property
+    def problem(self) -> "Problem":
+        """The problem with the parameters that were solved."""
+        from ._problem import Problem
+
+        return Problem(self._core.problem)
+
+    # Functions of time.
+
+    @property
+    def start(self) -> float:
+        """When the first agent starts, in seconds of mission time."""
+        return self._core.span[0]
+
+    @property
+    def end(self) -> float:
+        """When the last agent ends, in seconds of mission time."""
+        return self._core.span[1]
+
+    @property
+    def duration(self) -> float:
+        """From start to end, in seconds."""
+        return self.end - self.start
+
+    @property
+    def phases(self) -> list[Phase]:
+        """All phases of all agents, each agent's in order of time."""
+        return [Phase(*phase) for phase in self._core.phases]
+
+    @property
+    def outputs(self) -> dict[str, Curve]:
+        """The flat outputs by path."""
+        return {data[0]: Curve(self._core, data) for data in self._core.outputs}
+
+    @property
+    def expressions(self) -> dict[str, Union[Curve, float]]:
+        """The named expressions by path: functions of time, and numbers in their units."""
+        curves, numbers = self._core.expressions
+        found: dict[str, Union[Curve, float]] = {data[0]: Curve(self._core, data) for data in curves}
+        found.update({name: value for name, value, _ in numbers})
+        return found
+
+    @property
+    def times(self) -> dict[str, float]:
+        """Durations and event times in seconds, by name: `T`, `boost.burn`, `start(boost)`."""
+        return dict(self._core.times)
+
+    @property
+    def variables(self) -> dict[str, float]:
+        """The declared variables by name, in their units."""
+        return {name: value for name, value, _ in self._core.variables}
+
+    def __getitem__(self, name: str) -> Union[Curve, float]:
+        data = self._core.curve(name)
+        if data is not None:
+            return Curve(self._core, data)
+        numbers = {**self.times, **self.variables}
+        if name in numbers:
+            return numbers[name]
+        known = self.expressions
+        if name in known:
+            return known[name]
+        names = ", ".join(f"`{one}`" for one in self)
+        raise KeyError(f"there is no `{name}`; there are: {names}")
+
+    def __contains__(self, name: object) -> bool:
+        return name in set(self)
+
+    def __iter__(self) -> Iterator[str]:
+        curves, numbers = self._core.expressions
+        names = [data[0] for data in self._core.outputs] + [data[0] for data in curves]
+        names += [*self.times, *self.variables, *(number[0] for number in numbers)]
+        return iter(dict.fromkeys(names))
+
+    def keys(self) -> list[str]:
+        """All names that `solution[name]` takes."""
+        return list(self)
+
+    # Tables.
+
+    def sample(self, times: "int | ArrayLike" = POINTS) -> "dict[str, NDArray[np.float64]]":
+        """Outputs and named expressions at times in seconds, or at so many equally spaced ones; the times are `t`.
+
+        Outside the span of an agent its columns are NaN.
+        """
+        import numpy as np
+
+        t = np.linspace(self.start, self.end, times) if isinstance(times, (int, np.integer)) else np.asarray(times, float)
+        if t.ndim != 1:
+            raise ValueError("times are a number of them, or an array of one dimension")
+        table = {"t": t}
+        curves = [*self.outputs.values(), *(one for one in self.expressions.values() if isinstance(one, Curve))]
+        for curve in curves:
+            near = 1e-12 * max(abs(curve.start), abs(curve.end), 1.0)
+            inside = (t >= curve.start - near) & (t <= curve.end + near)
+            table[curve.name] = np.where(inside, curve(t), np.nan)
+        return table
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of the columns of `sample` and of the tables; empty for pure numbers."""
+        curves = [*self._core.outputs, *self._core.expressions[0]]
+        return {"t": "s", **{data[0]: data[1] for data in curves}}
+
+    def to_pandas(self, times: "int | ArrayLike" = POINTS) -> Any:
+        """`sample` as a pandas DataFrame; the units are in its `attrs["units"]`."""
+        import pandas
+
+        table = pandas.DataFrame(self.sample(times))
+        table.attrs["units"] = self.units
+        return table
+
+    def to_polars(self, times: "int | ArrayLike" = POINTS) -> Any:
+        """`sample` as a polars DataFrame."""
+        import polars
+
+        return polars.DataFrame(self.sample(times))
+
+    def to_arrow(self, times: "int | ArrayLike" = POINTS) -> Any:
+        """`sample` as an Arrow table; every field has its unit in its metadata."""
+        import pyarrow
+
+        units = self.units
+        columns = self.sample(times)
+        fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": units[name]}) for name in columns]
+        return pyarrow.table([pyarrow.array(values) for values in columns.values()], schema=pyarrow.schema(fields))
+
+    # For people.
+
+    def report(self) -> str:
+        """The report in words."""
+        return self._core.text()
+
+    def html(self, tracks: Sequence[tuple[str, str]] = ()) -> str:
+        """The report as one HTML page that needs no network; `tracks` are pairs of quantities to draw as maps."""
+        return self._core.html(list(tracks))
+
+    def save(self, path: "str | os.PathLike[str]", *, overwrite: bool = False) -> None:
+        """Saves as `ntg solve --save` does, for `ntg plot`, `ntg report` and `--guess`; or as HTML for `.html`.
+
+        Raises `FileExistsError` for a file that exists, unless `overwrite` is given.
+        """
+        place = Path(path)
+        if place.exists() and not overwrite:
+            raise FileExistsError(f"`{place}` exists; give overwrite=True to replace it, or another name")
+        text = self.html() if place.suffix.lower() in (".html", ".htm") else self._core.json()
+        partial = place.with_name(f".{place.name}.{os.getpid()}")
+        try:
+            partial.write_text(text, encoding="utf-8")
+            partial.replace(place)
+        finally:
+            partial.unlink(missing_ok=True)
+
+    def plot(self, *names: str, times: "int | ArrayLike" = POINTS, axes: Any = None) -> Any:
+        """Draws quantities over time with matplotlib, one below the other; all outputs where none are named.
+
+        Gives the axes. `axes` are those to draw in, as many as names.
+        """
+        import matplotlib.pyplot as plt
+        import numpy as np
+
+        curves = [self._curve(name) for name in names] or list(self.outputs.values())
+        if axes is None:
+            _, axes = plt.subplots(len(curves), 1, sharex=True, squeeze=False, layout="constrained")
+        places = np.atleast_1d(axes).reshape(-1)
+        for curve, place in zip(curves, places):
+            t = np.linspace(curve.start, curve.end, times) if isinstance(times, int) else np.asarray(times, float)
+            place.plot(t, curve(t))
+            place.set_ylabel(f"{curve.name} [{curve.unit}]" if curve.unit else curve.name)
+            place.margins(x=0)
+            place.grid(alpha=0.3)
+        places[-1].set_xlabel("t [s]")
+        return axes
+
+    def plot_track(self, x: str, y: str, times: int = POINTS, axes: Any = None) -> Any:
+        """Draws one quantity over another with matplotlib, in equal scales where their units are the same."""
+        import matplotlib.pyplot as plt
+        import numpy as np
+
+        across, up = self._curve(x), self._curve(y)
+        place = axes if axes is not None else plt.subplots(layout="constrained")[1]
+        t = np.linspace(across.start, across.end, times)
+        (line,) = place.plot(across(t), up(t))
+        place.plot(*[[curve(curve.start)] for curve in (across, up)], "o", color=line.get_color())
+        for curve, label in ((across, place.set_xlabel), (up, place.set_ylabel)):
+            label(f"{curve.name} [{curve.unit}]" if curve.unit else curve.name)
+        if across.unit == up.unit:
+            place.set_aspect("equal", adjustable="datalim")
+        place.grid(alpha=0.3)
+        return place
+
+    def _curve(self, name: str) -> Curve:
+        found = self[name]
+        if isinstance(found, Curve):
+            return found
+        raise ValueError(f"`{name}` is a number, not a function of time")
+
+    def __repr__(self) -> str:
+        unit = f" {self.objective_unit}" if self.objective_unit else ""
+        return f"<ntg.Solution of {self.problem.name}: {self.status}, objective {self.objective:.9g}{unit}>"
+
+    def _repr_html_(self) -> str:
+        if self._page is None:
+            self._page = self.html()
+        return (
+            f'<iframe srcdoc="{html.escape(self._page, quote=True)}" title="report of {html.escape(self.problem.name)}" '
+            'style="width: 100%; height: 720px; border: 1px solid #8884; border-radius: 4px" loading="lazy"></iframe>'
+        )

@@ -1,0 +1,294 @@
+//! What a solve found.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use ntg_interp::Interpreted;
+use ntg_report::html::{self, Page};
+use ntg_report::run::Recording;
+use ntg_runtime::report::{ConstraintReport, Report, Worst};
+use ntg_runtime::settings::{Progress, Settings};
+use ntg_runtime::status::Status;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors;
+use crate::problem::{Compiled, Spec};
+use crate::watch::Watch;
+
+/// A report with its problem.
+#[pyclass(frozen, module = "ntg._ntg")]
+pub(crate) struct Found {
+    spec: Arc<Spec>,
+    problem: Arc<Interpreted>,
+    pub(crate) report: Report,
+    iterations: Vec<Progress>,
+}
+
+/// Name, unit, documentation, start and end in seconds of a function of time.
+type CurveData = (String, String, String, f64, f64);
+/// Name, value and unit.
+type NumberData = (String, f64, String);
+
+impl Found {
+    pub(crate) fn new(spec: Arc<Spec>, problem: Arc<Interpreted>, report: Report, iterations: Vec<Progress>) -> Self {
+        Self { spec, problem, report, iterations }
+    }
+
+    fn record<T>(&self, py: Python<'_>, make: impl FnOnce(&ntg_report::Run) -> T + Send) -> PyResult<T>
+    where
+        T: Send,
+    {
+        let mut settings = Settings::default();
+        let watch = Watch::new(None);
+        watch.over(&mut settings);
+        let made = py.detach(|| {
+            let explanation = self.report.explain(&*self.problem, &settings).ok().flatten();
+            let recording = Recording {
+                problem: &*self.problem,
+                report: &self.report,
+                explanation: explanation.as_ref(),
+                starts: None,
+                source: &self.spec.source,
+                notes: &self.spec.notes,
+                iterations: &self.iterations,
+            };
+            make(&recording.run())
+        });
+        watch.end()?;
+        Ok(made)
+    }
+}
+
+/// The status as one word: the name of the runtime's variant, `IterationLimit` as `iteration_limit`.
+fn word(status: &Status) -> String {
+    let shown = format!("{status:?}");
+    let name = shown.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or_default();
+    let mut word = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !word.is_empty() {
+            word.push('_');
+        }
+        word.extend(letter.to_lowercase());
+    }
+    word
+}
+
+#[pymethods]
+impl Found {
+    #[getter]
+    fn status(&self) -> String {
+        word(&self.report.status)
+    }
+
+    #[getter]
+    fn message(&self) -> String {
+        self.report.status.to_string()
+    }
+
+    #[getter]
+    fn advice(&self) -> &'static str {
+        self.report.advice
+    }
+
+    #[getter]
+    fn is_solved(&self) -> bool {
+        self.report.is_solved()
+    }
+
+    #[getter]
+    fn objective(&self) -> f64 {
+        self.report.objective
+    }
+
+    #[getter]
+    fn objective_fine(&self) -> f64 {
+        self.report.objective_fine
+    }
+
+    #[getter]
+    fn objective_unit(&self) -> &str {
+        &self.report.objective_unit.symbol
+    }
+
+    #[getter]
+    fn violation(&self) -> (f64, f64) {
+        (self.report.violation.points, self.report.violation.between)
+    }
+
+    #[getter]
+    fn iterations(&self) -> usize {
+        self.report.iterations
+    }
+
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.report.seconds
+    }
+
+    #[getter]
+    fn span(&self) -> (f64, f64) {
+        (self.report.solution.start(), self.report.solution.end())
+    }
+
+    /// Name, value in its unit and unit of every term of the objective.
+    #[getter]
+    fn terms(&self) -> Vec<NumberData> {
+        self.report.terms.iter().map(|term| (term.name.clone(), term.value, term.unit.symbol.clone())).collect()
+    }
+
+    /// Iteration, objective, violation, stationarity, step and seconds of every iteration that was made.
+    #[getter]
+    fn history(&self) -> Vec<(usize, f64, f64, f64, f64, f64)> {
+        let seen = self.iterations.iter();
+        seen.map(|p| (p.iteration, p.objective, p.primal, p.dual, p.step, p.seconds)).collect()
+    }
+
+    /// The problem with the parameters that were solved.
+    #[getter]
+    fn problem(&self) -> Compiled {
+        Compiled { spec: self.spec.clone(), problem: self.problem.clone() }
+    }
+
+    /// Durations and event times in seconds.
+    #[getter]
+    fn times(&self) -> Vec<(String, f64)> {
+        self.report.solution.event_times()
+    }
+
+    /// Declared variables in their units.
+    #[getter]
+    fn variables(&self) -> Vec<NumberData> {
+        let variables = self.report.solution.variables().into_iter();
+        variables.map(|value| (value.name, value.value, value.unit.symbol)).collect()
+    }
+
+    /// Name, start and end of every phase.
+    #[getter]
+    fn phases(&self) -> Vec<(String, f64, f64)> {
+        self.report.phases().into_iter().map(|phase| (phase.name, phase.start, phase.end)).collect()
+    }
+
+    /// The flat outputs.
+    #[getter]
+    fn outputs(&self) -> Vec<CurveData> {
+        let structure = self.report.solution.structure();
+        let doc = |name: &str| {
+            let last = name.rsplit('.').next().unwrap_or(name);
+            let base = last.split('[').next().unwrap_or(last);
+            let mut outputs = structure.phases.iter().flat_map(|phase| &phase.outputs);
+            outputs.find(|output| output.name == base).map(|output| output.doc.clone()).unwrap_or_default()
+        };
+        let trajectories = self.report.solution.trajectories().into_iter();
+        let data =
+            trajectories.map(|t| (t.name().to_owned(), t.unit().symbol.clone(), doc(t.name()), t.start(), t.end()));
+        data.collect()
+    }
+
+    /// The named expressions that are functions of time, and those that are numbers.
+    #[getter]
+    fn expressions(&self) -> (Vec<CurveData>, Vec<NumberData>) {
+        let (mut curves, mut numbers) = (vec![], vec![]);
+        for signal in self.report.solution.signals(&*self.problem) {
+            let (name, unit) = (signal.name().to_owned(), signal.unit().symbol.clone());
+            match signal.span() {
+                Some((start, end)) => curves.push((name, unit, signal.doc().to_owned(), start, end)),
+                None => numbers.push((name, signal.at(0.0), unit)),
+            }
+        }
+        (curves, numbers)
+    }
+
+    /// The function of time of any name, also in one phase alone: unit, documentation, start and end.
+    fn curve(&self, name: &str) -> Option<CurveData> {
+        let solution = &self.report.solution;
+        if let Some(output) = solution.output(name) {
+            let doc = self.outputs().into_iter().find(|known| known.0 == name).map(|known| known.2);
+            let (unit, doc) = (output.unit().symbol.clone(), doc.unwrap_or_default());
+            return Some((name.to_owned(), unit, doc, output.start(), output.end()));
+        }
+        let signal = solution.signal(&*self.problem, name)?;
+        let (start, end) = signal.span()?;
+        Some((name.to_owned(), signal.unit().symbol.clone(), signal.doc().to_owned(), start, end))
+    }
+
+    /// Values of an output or named expression at mission times in seconds; of an output also a derivative with
+    /// respect to time.
+    fn values<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        times: PyReadonlyArray1<'py, f64>,
+        order: usize,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let times = times.as_slice()?;
+        let solution = &self.report.solution;
+        let values: Option<Vec<f64>> = match (solution.output(name), order) {
+            (Some(output), _) => Some(times.iter().map(|t| output.derivative(*t, order)).collect()),
+            (None, 0) => solution.signal(&*self.problem, name).map(|signal| signal.values(times)),
+            (None, _) => {
+                let words =
+                    format!("`{name}` is no output: only outputs have derivatives; name it by a `let` of the spec");
+                return Err(errors::plain(py, "Error", &words));
+            }
+        };
+        let values = values.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+        Ok(values.into_pyarray(py))
+    }
+
+    /// Everything about every constraint.
+    #[getter]
+    fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        self.report.constraints.iter().map(|constraint| data(py, constraint)).collect()
+    }
+
+    /// The report in words.
+    fn text(&self) -> String {
+        self.report.to_string()
+    }
+
+    /// Why there is no solution, in words; empty for a solution.
+    fn explain(&self, py: Python<'_>) -> PyResult<String> {
+        let mut settings = Settings::default();
+        let watch = Watch::new(None);
+        watch.over(&mut settings);
+        let explained = py.detach(|| self.report.explain(&*self.problem, &settings));
+        watch.end()?;
+        Ok(explained.ok().flatten().map_or_else(String::new, |explanation| explanation.to_string()))
+    }
+
+    /// The saved form: what `ntg solve --save` writes.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        self.record(py, ntg_report::Run::text)
+    }
+
+    /// The report as one HTML page that needs no network.
+    fn html(&self, py: Python<'_>, tracks: Vec<(String, String)>) -> PyResult<String> {
+        let name = self.report.problem.clone();
+        let page = self.record(py, |run| html::page(&[(name, run)], &Page { tracks }))?;
+        page.map_err(|message| errors::plain(py, "Error", &message))
+    }
+}
+
+fn data<'py>(py: Python<'py>, constraint: &ConstraintReport) -> PyResult<Bound<'py, PyDict>> {
+    let worst = |worst: &Option<Worst>| -> Option<BTreeMap<&'static str, Option<f64>>> {
+        worst.as_ref().map(|worst| {
+            let parts = [("violation", Some(worst.violation)), ("relative", Some(worst.relative))];
+            parts.into_iter().chain([("value", Some(worst.value)), ("time", worst.time)]).collect()
+        })
+    };
+    let data = PyDict::new(py);
+    data.set_item("name", &constraint.name)?;
+    data.set_item("text", &constraint.place.text)?;
+    data.set_item("line", constraint.place.line)?;
+    data.set_item("block", format!("{:?}", constraint.block).to_lowercase())?;
+    data.set_item("unit", &constraint.unit.symbol)?;
+    data.set_item("points", worst(&constraint.points))?;
+    data.set_item("between", worst(&constraint.between))?;
+    data.set_item("multiplier", constraint.multiplier.as_ref().map(|multiplier| multiplier.value))?;
+    data.set_item("multiplier_time", constraint.multiplier.as_ref().and_then(|multiplier| multiplier.time))?;
+    data.set_item("sensitivity", constraint.sensitivity)?;
+    Ok(data)
+}

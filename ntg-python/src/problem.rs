@@ -1,0 +1,246 @@
+//! A compiled spec with values of its parameters.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ntg_compiler::diagnostic::Diagnostic;
+use ntg_compiler::model::Loader;
+use ntg_compiler::source::Source;
+use ntg_interp::Interpreted;
+use ntg_runtime::guess::Guess;
+use ntg_runtime::problem::Problem;
+use ntg_runtime::solve_from;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors;
+use crate::found::Found;
+use crate::settings::Given;
+use crate::solver::KeptSolver;
+use crate::watch::Watch;
+
+/// The text of a spec and what the compiler had to say.
+pub(crate) struct Spec {
+    pub(crate) source: Source,
+    pub(crate) notes: Vec<Diagnostic>,
+    /// The tables that it names, by path: with these it compiles anywhere.
+    tables: BTreeMap<String, String>,
+}
+
+/// A compiled spec.
+#[pyclass(frozen, module = "ntg._ntg")]
+pub(crate) struct Compiled {
+    pub(crate) spec: Arc<Spec>,
+    pub(crate) problem: Arc<Interpreted>,
+}
+
+/// Finds tables in memory and then in a folder, and remembers them.
+struct Tables {
+    folder: Option<PathBuf>,
+    found: Mutex<BTreeMap<String, String>>,
+}
+
+impl Loader for Tables {
+    fn load(&self, path: &str) -> Result<String, String> {
+        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(text) = found.get(path) {
+            return Ok(text.clone());
+        }
+        let Some(folder) = &self.folder else {
+            return Err(format!("`{path}`: a spec given as text reads no files; give `folder` or `tables`"));
+        };
+        let place = folder.join(path);
+        let text =
+            std::fs::read_to_string(&place).map_err(|error| format!("cannot read `{}`: {error}", place.display()))?;
+        found.insert(path.to_owned(), text.clone());
+        Ok(text)
+    }
+}
+
+/// Compiles a spec.
+#[pyfunction]
+pub(crate) fn compile(
+    py: Python<'_>,
+    name: String,
+    text: String,
+    folder: Option<PathBuf>,
+    tables: BTreeMap<String, String>,
+) -> PyResult<Compiled> {
+    let source = Source::new(name, text);
+    let loader = Tables { folder, found: Mutex::new(tables) };
+    match py.detach(|| ntg_compiler::compile(&source, &loader)) {
+        Ok(compiled) => {
+            let problem = Arc::new(Interpreted::new(&compiled.program));
+            let tables = loader.found.into_inner().unwrap_or_else(PoisonError::into_inner);
+            Ok(Compiled { spec: Arc::new(Spec { source, notes: compiled.notes, tables }), problem })
+        }
+        Err(found) => {
+            let data = errors::findings(py, found.iter(), &source)?;
+            Err(errors::raise(py, "SpecError", &found.render(&source), data))
+        }
+    }
+}
+
+/// Sets parameters: numbers and sequences in declared units, or text with a unit.
+pub(crate) fn assign(problem: &mut Interpreted, parameters: &Bound<'_, PyDict>) -> PyResult<()> {
+    let py = parameters.py();
+    for (name, value) in parameters {
+        let name: String = name.extract()?;
+        set(problem, &name, &value)
+            .map_err(|message| errors::plain(py, "ParameterError", &format!("parameter `{name}`: {message}")))?;
+    }
+    Ok(())
+}
+
+fn set(problem: &mut Interpreted, name: &str, value: &Bound<'_, PyAny>) -> Result<(), String> {
+    if let Ok(text) = value.extract::<String>() {
+        return problem.assign(name, &text);
+    }
+    let numbers = match value.extract::<f64>() {
+        Ok(number) => vec![number],
+        Err(_) => {
+            let parts: Vec<Bound<'_, PyAny>> = value.extract().map_err(|_| wrong(value))?;
+            if parts.iter().any(|part| part.extract::<String>().is_ok()) {
+                let parts: Vec<String> = parts.iter().map(ToString::to_string).collect();
+                return members(problem, name, &parts);
+            }
+            parts.iter().map(|part| part.extract()).collect::<Result<_, _>>().map_err(|_| wrong(value))?
+        }
+    };
+    // Names that are none, counts and bounds are found by the same code as those of text.
+    let text: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+    if let Some(bad) = numbers.iter().find(|number| !number.is_finite()) {
+        return Err(format!("{bad} is no finite number"));
+    }
+    // One number, the usual case, needs no parser.
+    let place = ntg_interp::target(name).ok().and_then(|(base, index)| problem.place(base, index).ok());
+    match (place, &numbers[..]) {
+        (Some(place), [number]) => problem.put(place, *number).map_err(|error| error.to_string()),
+        _ => problem.assign(name, &text.join(", ")),
+    }
+}
+
+/// Members of an array as text, each with its own unit.
+fn members(problem: &mut Interpreted, name: &str, parts: &[String]) -> Result<(), String> {
+    let structure = problem.structure();
+    let held = structure.parameters.iter().find(|parameter| parameter.name == name);
+    let held = held.map_or(parts.len(), |parameter| parameter.value.len());
+    if held != parts.len() {
+        return Err(format!("it holds {held} values, but {} are given", parts.len()));
+    }
+    (1..).zip(parts).try_for_each(|(index, part)| problem.assign(&format!("{name}[{index}]"), part))
+}
+
+fn wrong(value: &Bound<'_, PyAny>) -> String {
+    let kind = value.get_type().name().map_or_else(|_| "this".to_owned(), |name| name.to_string());
+    format!("{kind} is neither a number, a text such as \"240 m/s\", nor a sequence of them")
+}
+
+#[pymethods]
+impl Compiled {
+    #[getter]
+    fn name(&self) -> String {
+        self.problem.structure().name
+    }
+
+    #[getter]
+    fn doc(&self) -> String {
+        self.problem.structure().doc
+    }
+
+    #[getter]
+    fn source(&self) -> (String, String) {
+        (self.spec.source.name.clone(), self.spec.source.text.clone())
+    }
+
+    #[getter]
+    fn tables(&self) -> BTreeMap<String, String> {
+        self.spec.tables.clone()
+    }
+
+    #[getter]
+    fn objective_unit(&self) -> String {
+        self.problem.structure().objective_unit.symbol
+    }
+
+    /// Warnings and notes of the compiler.
+    #[getter]
+    fn notes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        errors::findings(py, self.spec.notes.iter(), &self.spec.source)
+    }
+
+    /// Name, documentation, unit, values in that unit, and whether it is an array, of every parameter.
+    #[getter]
+    fn parameters(&self) -> Vec<(String, String, String, Vec<f64>, bool)> {
+        let parameters = self.problem.structure().parameters;
+        let plain = parameters.into_iter().map(|p| {
+            let values = p.value.iter().map(|value| value / p.unit.factor).collect();
+            (p.name, p.doc, p.unit.symbol, values, p.array)
+        });
+        plain.collect()
+    }
+
+    /// The values of all parameters in SI units, to the last bit.
+    #[getter]
+    fn state(&self) -> Vec<(String, Vec<f64>)> {
+        self.problem.structure().parameters.into_iter().map(|parameter| (parameter.name, parameter.value)).collect()
+    }
+
+    /// The same problem with values that [`Compiled::state`] gave.
+    fn with_state(&self, py: Python<'_>, state: Vec<(String, Vec<f64>)>) -> PyResult<Self> {
+        let mut problem = (*self.problem).clone();
+        for (name, values) in state {
+            let set = problem.set(&name, &values);
+            set.map_err(|error| errors::plain(py, "ParameterError", &error.to_string()))?;
+        }
+        Ok(Self { spec: self.spec.clone(), problem: Arc::new(problem) })
+    }
+
+    /// The same problem with other values of parameters.
+    fn with_parameters(&self, parameters: &Bound<'_, PyDict>) -> PyResult<Self> {
+        if parameters.is_empty() {
+            return Ok(Self { spec: self.spec.clone(), problem: self.problem.clone() });
+        }
+        let mut problem = (*self.problem).clone();
+        assign(&mut problem, parameters)?;
+        Ok(Self { spec: self.spec.clone(), problem: Arc::new(problem) })
+    }
+
+    /// Solves once, from the guess of the spec or from a solution.
+    fn solve(
+        &self,
+        py: Python<'_>,
+        settings: Given,
+        guess: Option<Bound<'_, Found>>,
+        callback: Option<Py<PyAny>>,
+    ) -> PyResult<Found> {
+        let mut settings = settings.settings(py)?;
+        let watch = Watch::new(callback);
+        watch.over(&mut settings);
+        let guess = guess.map_or_else(Guess::new, |found| Guess::from(&found.get().report.solution));
+        let problem = &*self.problem;
+        let solved = py.detach(|| solve_from(problem, &guess, &settings));
+        let iterations = watch.end()?;
+        let report = solved.map_err(|error| errors::of(py, &error, &self.spec.source))?;
+        Ok(Found::new(self.spec.clone(), self.problem.clone(), report, iterations))
+    }
+
+    /// A solver that keeps what does not change between solves.
+    fn solver(&self, py: Python<'_>, settings: Given) -> PyResult<KeptSolver> {
+        Ok(KeptSolver::new(self.spec.clone(), (*self.problem).clone(), &settings.settings(py)?))
+    }
+
+    /// The number in the declared unit of a parameter that a text such as `240 m/s` stands for.
+    fn number(&self, py: Python<'_>, name: &str, text: &str) -> PyResult<f64> {
+        let invalid = |message: String| errors::plain(py, "ParameterError", &format!("`{name}`: {message}"));
+        let (base, _) = ntg_interp::target(name).map_err(invalid)?;
+        let structure = self.problem.structure();
+        let declared = structure.parameters.iter().find(|parameter| parameter.name == base);
+        let unit = declared.map(|parameter| parameter.unit.clone()).unwrap_or_default();
+        match ntg_interp::quantity(text, &unit).map_err(invalid)?[..] {
+            [value] => Ok(value / unit.factor),
+            _ => Err(invalid(format!("`{text}` is not one number"))),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! `ntg.Settings` as the solver's settings.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use ntg_runtime::refine::Refinement;
+use ntg_runtime::settings::{Method, Settings};
+use pyo3::prelude::*;
+
+use crate::errors;
+
+/// The attributes of `ntg.Settings`.
+#[derive(FromPyObject)]
+pub(crate) struct Given {
+    method: String,
+    tolerance: f64,
+    constraint_tolerance: f64,
+    max_iterations: usize,
+    time_limit: Option<f64>,
+    samples: usize,
+    scales: BTreeMap<String, f64>,
+    refine: Option<f64>,
+}
+
+impl Given {
+    /// The settings, checked against their ranges.
+    pub(crate) fn settings(self, py: Python<'_>) -> PyResult<Settings> {
+        let invalid = |message: &str| errors::plain(py, "SettingsError", message);
+        let method = match self.method.as_str() {
+            "auto" => Method::Auto,
+            "newton" => Method::Newton,
+            "sqp" => Method::Sqp,
+            other => return Err(invalid(&format!("setting `method`: `{other}` is none of `auto`, `newton`, `sqp`"))),
+        };
+        let time_limit = self.time_limit.map(Duration::try_from_secs_f64).transpose();
+        let time_limit = time_limit.map_err(|_| invalid("setting `time_limit`: a positive number of seconds"))?;
+        let settings = Settings {
+            method,
+            tolerance: self.tolerance,
+            constraint_tolerance: self.constraint_tolerance,
+            max_iterations: self.max_iterations,
+            time_limit,
+            samples: self.samples,
+            scales: self.scales.into_iter().collect(),
+            refine: self.refine.map(Refinement::to),
+            ..Settings::default()
+        };
+        settings.validate().map_err(|error| invalid(&error.to_string()))?;
+        Ok(settings)
+    }
+}
