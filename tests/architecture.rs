@@ -239,8 +239,28 @@ fn there_are_no_globals_and_nothing_is_unfinished() {
         "ntg-certify/src",
         "ntg-check/src",
         "ntg-cli/src",
+        "ntg-python/src",
     ] {
         forbid(folder, &["static mut", "thread_local!", "todo!(", "unimplemented!(", "#[ignore"], None);
+    }
+}
+
+#[test]
+fn one_version_everywhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, line) in [
+        ("CHANGELOG.md", format!("## {version}")),
+        ("CITATION.cff", format!("version: {version}")),
+        ("ntg-python/Cargo.toml", format!("version = \"{version}\"")),
+    ] {
+        let text = fs::read_to_string(root.join(file)).expect(file);
+        assert!(text.lines().any(|found| found.starts_with(&line)), "{file} has no line `{line}`");
+    }
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("Cargo.toml");
+    let own = manifest.lines().filter(|line| line.starts_with("ntg") && line.contains("path = "));
+    for line in own {
+        assert!(line.contains(&format!("version = \"{version}\"")), "{line}");
     }
 }
 
@@ -264,6 +284,7 @@ fn files_stay_small_enough_to_have_one_purpose() {
         "ntg-certify/src",
         "ntg-check/src",
         "ntg-cli/src",
+        "ntg-python/src",
     ] {
         for (path, text) in files(folder) {
             let lines = text.lines().count();

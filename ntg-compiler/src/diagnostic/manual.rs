@@ -3,7 +3,7 @@
 use super::Code;
 
 /// docs/errors.md, as it was when the compiler was built.
-const MANUAL: &str = include_str!("../../../docs/errors.md");
+const MANUAL: &str = include_str!("../../errors.md");
 
 impl Code {
     /// The entry of docs/errors.md, from its heading on, without a line break at its end.
