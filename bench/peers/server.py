@@ -4,14 +4,14 @@ import json
 import subprocess
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent.parent / "server"
+WORKSPACE = Path(__file__).resolve().parent.parent
 
 
 class Server:
     def __init__(self):
-        build = ["cargo", "build", "--release", "--quiet", "--manifest-path", str(HERE / "Cargo.toml")]
+        build = ["cargo", "build", "--release", "--quiet", "--package", "ntg-bench", "--manifest-path", str(WORKSPACE / "Cargo.toml")]
         subprocess.run(build, check=True)
-        binary = HERE / "target" / "release" / "ntg-bench"
+        binary = WORKSPACE / "target" / "release" / "ntg-bench"
         self.process = subprocess.Popen([str(binary)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def ask(self, by, question, **more):

@@ -7,7 +7,6 @@
 //! `by` is `ntg`, `ripopt`, or `start` for a description of the program and its first point. `route` is
 //! the coarse route in km, by default the spec's own guess; `intervals` are those of every spline.
 
-mod adapted;
 mod answer;
 mod by_ntg;
 mod by_ripopt;
@@ -17,6 +16,7 @@ mod start;
 use answer::Run;
 use ntg::prelude::Guess;
 use ntg::runtime::problem::WithStructure;
+use ntg_bench_program::adapted;
 use serde_json::{Value, json};
 use std::io::{BufRead, Write};
 

@@ -1,11 +1,11 @@
 //! What the program is and where it starts, so that another transcription can be held against it.
 
-use crate::adapted;
 use ntg::prelude::Guess;
 use ntg::runtime::guess::start;
 use ntg::runtime::nlp::Nlp;
 use ntg::runtime::problem::WithStructure;
 use ntg::runtime::transcribe::Transcription;
+use ntg_bench_program::adapted;
 use serde_json::{Value, json};
 
 /// Size, first point (SI) and objective there, for each step of the continuation (all of them

@@ -1,7 +1,7 @@
 //! Generated code on other knots, and a continuation as one problem for each of its steps.
 
-use ntg::runtime::problem::WithStructure;
-use ntg::runtime::structure::Points;
+use ntg_runtime::problem::WithStructure;
+use ntg_runtime::structure::Points;
 
 /// The same with this many equal intervals a spline, and as many points an interval as before.
 pub fn with_intervals<'p>(problem: &WithStructure<'p>, intervals: usize) -> WithStructure<'p> {
