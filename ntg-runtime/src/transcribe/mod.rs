@@ -11,6 +11,7 @@
 
 pub(crate) mod backward;
 pub(crate) mod batch;
+mod calls;
 pub(crate) mod compose;
 mod contradictions;
 pub(crate) mod elements;
@@ -34,6 +35,7 @@ pub(crate) mod slots;
 mod tables;
 pub(crate) mod times;
 
+pub use calls::{ElementCall, ElementInput};
 pub use error::{SetupError, Why};
 pub use evaluate::Workspace;
 pub use singular::Singular;

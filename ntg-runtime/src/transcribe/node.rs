@@ -158,6 +158,11 @@ impl Node {
         Ok(true)
     }
 
+    /// The data of every lane, one after the other.
+    pub(crate) fn data(&self) -> &[f64] {
+        &self.inputs[(self.slots + self.edges.len()) * self.lanes()..]
+    }
+
     /// How many lanes the kernel has.
     pub(crate) fn lanes(&self) -> usize {
         self.copies * self.elements

@@ -11,6 +11,7 @@
 
 mod axis;
 mod bicubic;
+mod cells;
 mod error;
 mod grid;
 mod joined;
@@ -24,6 +25,7 @@ mod search;
 mod spline;
 
 pub use axis::{Axis, Symmetry};
+pub use cells::Cells;
 pub use error::TableError;
 pub use report::FitReport;
 
