@@ -89,6 +89,8 @@ pub(crate) enum Command {
     Sweep(crate::sweep::Arguments),
     Merge(crate::merge::Arguments),
     Summary(crate::summary::Arguments),
+    Export(crate::export::Export),
+    CheckSolution(crate::export::CheckSolution),
     /// Start the language server on standard input and output; editors run `ntg lsp`.
     ///
     /// Example, in Helix's languages.toml:

@@ -9,6 +9,7 @@ mod check;
 mod completions;
 mod expand;
 mod explain;
+mod export;
 mod files;
 mod fmt;
 mod guess;
@@ -76,6 +77,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Lsp => lsp::run(),
         Command::New(arguments) => new::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
+        Command::Export(arguments) => said(export::run(&arguments)),
+        Command::CheckSolution(arguments) => said(export::check(&arguments)),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Plot(arguments) => said(plot::run(&arguments)),
         Command::Report(arguments) => said(report::run(&arguments)),

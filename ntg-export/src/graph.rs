@@ -39,7 +39,6 @@ pub(crate) struct Affine {
 pub(crate) enum Unary {
     Floor,
     Abs,
-    Neg,
     Tanh,
     Tan,
     Sqrt,

@@ -11,10 +11,10 @@ mod children;
 mod library;
 mod one;
 mod solve;
-mod specs;
 mod table;
 
 use clap::Parser;
+use ntg_bench_program::specs;
 use library::{Ipopt, Value as Setting};
 use ntg_runtime::settings::Method;
 use one::Ask;

@@ -2,10 +2,9 @@
 
 use crate::library::{Ipopt, Value as Setting};
 use crate::solve::{self, End};
-use crate::specs;
 use cpu_time::ProcessTime;
 use ntg_bench_program::program::set_sizes;
-use ntg_bench_program::{Program, RowSizes, adapted};
+use ntg_bench_program::{Program, RowSizes, adapted, specs};
 use ntg_runtime::guess::{Guess, start};
 use ntg_runtime::problem::WithStructure;
 use ntg_runtime::settings::{Method, Settings};

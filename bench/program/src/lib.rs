@@ -9,5 +9,6 @@
 
 pub mod adapted;
 pub mod program;
+pub mod specs;
 
 pub use program::{Bounds, Pattern, Program, RowSizes};

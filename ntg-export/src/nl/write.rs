@@ -290,7 +290,6 @@ fn unary(function: Unary) -> &'static str {
     match function {
         Unary::Floor => "o13",
         Unary::Abs => "o15",
-        Unary::Neg => "o16",
         Unary::Tanh => "o37",
         Unary::Tan => "o38",
         Unary::Sqrt => "o39",

@@ -2,6 +2,7 @@
 
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
+use ntg_compiler::program::Program;
 use ntg_interp::Interpreted;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// A path that cannot be read.
-pub(crate) fn below(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+pub fn below(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
     let mut found = vec![];
     for path in paths {
         collect(path, &mut found).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
@@ -41,16 +42,24 @@ impl Loader for BesideSpec<'_> {
     }
 }
 
-/// The problem of a spec, interpreted.
+/// The program of a spec.
 ///
 /// # Errors
 /// The findings of the compiler, in words.
-pub(crate) fn problem(path: &Path) -> Result<Interpreted, String> {
+pub fn program(path: &Path) -> Result<Program, String> {
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
     let source = Source::new(path.display().to_string(), text);
     let folder = path.parent().unwrap_or(Path::new(""));
     match ntg_compiler::compile(&source, &BesideSpec(folder)) {
-        Ok(compiled) => Ok(Interpreted::new(&compiled.program)),
+        Ok(compiled) => Ok(compiled.program),
         Err(found) => Err(found.iter().map(|finding| finding.message.clone()).collect::<Vec<_>>().join("; ")),
     }
+}
+
+/// The problem of a spec, interpreted.
+///
+/// # Errors
+/// The findings of the compiler, in words.
+pub fn problem(path: &Path) -> Result<Interpreted, String> {
+    program(path).map(|program| Interpreted::new(&program))
 }

@@ -1,0 +1,233 @@
+//! `ntg export` and `ntg check-solution`: a program for other solvers, and what they answer.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use ntg_compiler::program::Program;
+use ntg_compiler::source::Source;
+use ntg_export::Expressions;
+use ntg_export::judge::{Judgement, Missed, Point, judge};
+use ntg_export::nl::{Files, Order, Solution, write};
+use ntg_interp::Interpreted;
+use ntg_runtime::guess::{Guess, start};
+use ntg_runtime::nlp::Nlp;
+use ntg_runtime::settings::Settings;
+use ntg_runtime::transcribe::{SetupError, Transcription};
+use serde_json::json;
+
+use crate::arguments::Format;
+use crate::{Exit, files, guess, setup, values};
+
+/// How many violations are listed.
+const LISTED: usize = 10;
+
+/// Write the optimisation problem for other solvers: same variables, rows, bounds and start.
+///
+/// The file holds the transcribed program in SI units, unscaled; names of rows and variables stand beside it in files that end
+/// in .row and .col. Tables are written out as piecewise polynomials. A continuation is left out: the program is that of its last step.
+/// Exit status: 0 done, 2 on errors.
+///
+/// Examples:
+///   ntg export specs/van_der_pol.ntg -o van_der_pol.nl
+///   ipopt van_der_pol.nl -AMPL
+///   ntg check-solution specs/van_der_pol.ntg van_der_pol.sol
+#[derive(Args, Debug)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Export {
+    #[command(flatten)]
+    problem: Problem,
+    /// Which kind of file.
+    #[arg(long, value_enum, default_value_t = Kind::Nl)]
+    format: Kind,
+    /// Where to write it.
+    #[arg(long, short, value_name = "FILE")]
+    output: PathBuf,
+    /// Replace files that exist.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Say how far a point is from a solution, without solving: objective, violations by name, optimality.
+///
+/// The point is a solver's answer to `ntg export` (.sol) or what `ntg solve --save` has written.
+/// Exit status: 0 when violation and optimality are within the tolerance, 1 when they are not, 2 on errors.
+///
+/// Examples:
+///   ntg check-solution specs/van_der_pol.ntg van_der_pol.sol
+///   ntg check-solution specs/van_der_pol.ntg run.json --format json
+#[derive(Args, Debug)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct CheckSolution {
+    #[command(flatten)]
+    problem: Problem,
+    /// A solver's .sol file, or a saved solution.
+    point: PathBuf,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// The largest relative violation, and error of stationarity and complementarity, of a solution.
+    #[arg(long, default_value_t = 1e-6)]
+    tolerance: f64,
+}
+
+/// Which problem is meant.
+#[derive(Args, Debug)]
+struct Problem {
+    /// The spec file.
+    spec: PathBuf,
+    /// Set a parameter, as for `ntg solve`.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+    /// Start from a saved solution instead of the spec's guess.
+    #[arg(long, value_name = "FILE")]
+    guess: Option<PathBuf>,
+}
+
+/// Formats of `ntg export`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// AMPL's text format, which most solvers of nonlinear programs read.
+    Nl,
+}
+
+/// A problem before it is transcribed.
+struct Read {
+    source: Source,
+    program: Program,
+    problem: Interpreted,
+    guess: Option<Guess>,
+}
+
+impl Problem {
+    fn read(&self) -> Result<Read, String> {
+        let Some((source, compiled)) = files::compile(&self.spec) else { return Err(String::new()) };
+        let mut problem = Interpreted::new(&compiled.program);
+        for assignment in &self.set {
+            values::set(&mut problem, assignment)?;
+        }
+        let guess = self.guess.as_deref().map(|path| guess::read(path, &problem)).transpose()?;
+        Ok(Read { source, program: compiled.program, problem, guess })
+    }
+}
+
+impl Read {
+    fn said(&self, error: SetupError) -> String {
+        setup::words(&error.into(), &self.source)
+    }
+}
+
+/// Writes the three files.
+pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
+    let Kind::Nl = arguments.format;
+    let paths = ["nl", "row", "col"].map(|extension| match extension {
+        "nl" => arguments.output.clone(),
+        other => arguments.output.with_extension(other),
+    });
+    if paths[1..].contains(&arguments.output) {
+        return Err(format!("`{}` is where names go; end the file's name in .nl", arguments.output.display()));
+    }
+    paths.iter().try_for_each(|path| crate::write::may_write(path, arguments.force))?;
+    let read = arguments.problem.read()?;
+    let nlp = Transcription::new(&read.problem).map_err(|error| read.said(error))?;
+    let first = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
+    let expressions = Expressions::new(&read.program, &nlp).map_err(|error| error.to_string())?;
+    let Files { nl, row, col } = write(&expressions, &Order::of(&expressions), &first);
+    for (path, text) in paths.iter().zip([nl, row, col]) {
+        crate::write::whole(path, arguments.force, text.as_bytes())?;
+    }
+    let [nl, row, col] = paths.each_ref().map(|path| path.display());
+    files::print(&format!("{nl}: {} variables, {} rows; names in {col} and {row}", nlp.variables(), nlp.rows()));
+    Ok(Exit::Done)
+}
+
+/// Judges a point.
+pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
+    let tolerance = arguments.tolerance;
+    if !(tolerance.is_finite() && tolerance > 0.0) {
+        return Err(format!("--tolerance {tolerance}: a positive number"));
+    }
+    let read = arguments.problem.read()?;
+    let mut nlp = Transcription::new(&read.problem).map_err(|error| read.said(error))?;
+    let found = point(&arguments.point, &read, &nlp)?;
+    let sizes_from = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
+    nlp.set_scales(&sizes_from, &Settings::default()).map_err(|error| read.said(error))?;
+    let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
+    // The judge minimises.
+    let multipliers = found.multipliers.as_ref().map(|all| all.iter().map(|y| sign * y).collect::<Vec<_>>());
+    let judged = judge(&nlp, Point { x: &found.x, multipliers: multipliers.as_deref() });
+    let judged = judged.map_err(|error| format!("the point has no value: {error}"))?;
+    let objective = sign * judged.objective / read.program.structure.objective_unit.factor;
+    let worst = judged.optimality.iter().flatten().map(|residual| residual.relative).fold(judged.violation(), f64::max);
+    let said = Said { read: &read, found: &found, judged: &judged, objective, is_solution: worst <= tolerance };
+    match arguments.format {
+        Format::Text => files::print(&said.text()),
+        Format::Json => files::print(&format!("{:#}", said.json())),
+    }
+    Ok(if said.is_solution { Exit::Done } else { Exit::NotSolved })
+}
+
+/// Reads a point from a solver's file or from a saved solution.
+fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Solution, String> {
+    if path.extension().is_none_or(|extension| extension != "sol") {
+        let guess = guess::read(path, &read.problem)?;
+        let x = start(nlp, Some(&guess)).map_err(|error| read.said(error))?;
+        return Ok(Solution { message: String::new(), x, multipliers: None });
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
+    let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
+    Solution::read(&text, &Order::of(&expressions)).map_err(|error| format!("`{}`: {error}", path.display()))
+}
+
+/// What is printed.
+struct Said<'a> {
+    read: &'a Read,
+    found: &'a Solution,
+    judged: &'a Judgement,
+    objective: f64,
+    is_solution: bool,
+}
+
+impl Said<'_> {
+    fn text(&self) -> String {
+        let unit = &self.read.program.structure.objective_unit.symbol;
+        let mut lines = vec![];
+        lines.extend(self.found.message.lines().map(|line| format!("solver:           {line}")));
+        lines.push(format!("objective:        {:.10e} {unit}", self.objective).trim_end().to_owned());
+        lines.push(format!("violation:        {:.3e} (relative)", self.judged.violation()));
+        match &self.judged.optimality {
+            Some([stationarity, complementarity]) => {
+                lines.push(format!("stationarity:     {:.3e} (relative)", stationarity.relative));
+                lines.push(format!("complementarity:  {:.3e} (relative)", complementarity.relative));
+            }
+            None => lines.push("optimality:       not known, the point has no multipliers".to_owned()),
+        }
+        for Missed { name, value, violation, relative, .. } in self.judged.missed.iter().take(LISTED) {
+            lines.push(format!("  {name} is {value:.6e} and misses its bound by {violation:.3e} ({relative:.1e} relative)"));
+        }
+        if let more @ 1.. = self.judged.missed.len().saturating_sub(LISTED) {
+            lines.push(format!("  and {more} more"));
+        }
+        lines.push(if self.is_solution { "a solution" } else { "no solution" }.to_owned());
+        lines.join("\n")
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let missed = self.judged.missed.iter().map(|missed| {
+            let Missed { name, value, violation, relative, .. } = missed;
+            json!({ "name": name, "value": value, "violation": violation, "relative": relative })
+        });
+        let residual = |which: usize| {
+            self.judged.optimality.map(|all| json!({ "absolute": all[which].absolute, "relative": all[which].relative }))
+        };
+        json!({
+            "solution": self.is_solution,
+            "solver": self.found.message,
+            "objective": self.objective,
+            "objective_unit": self.read.program.structure.objective_unit.symbol,
+            "violation": self.judged.violation(),
+            "stationarity": residual(0),
+            "complementarity": residual(1),
+            "missed": missed.collect::<Vec<_>>(),
+        })
+    }
+}
