@@ -202,7 +202,9 @@ impl Said<'_> {
             None => lines.push("optimality:       not known, the point has no multipliers".to_owned()),
         }
         for Missed { name, value, violation, relative, .. } in self.judged.missed.iter().take(LISTED) {
-            lines.push(format!("  {name} is {value:.6e} and misses its bound by {violation:.3e} ({relative:.1e} relative)"));
+            lines.push(format!(
+                "  {name} is {value:.6e} and misses its bound by {violation:.3e} ({relative:.1e} relative)"
+            ));
         }
         if let more @ 1.. = self.judged.missed.len().saturating_sub(LISTED) {
             lines.push(format!("  and {more} more"));
@@ -217,7 +219,9 @@ impl Said<'_> {
             json!({ "name": name, "value": value, "violation": violation, "relative": relative })
         });
         let residual = |which: usize| {
-            self.judged.optimality.map(|all| json!({ "absolute": all[which].absolute, "relative": all[which].relative }))
+            self.judged
+                .optimality
+                .map(|all| json!({ "absolute": all[which].absolute, "relative": all[which].relative }))
         };
         json!({
             "solution": self.is_solution,

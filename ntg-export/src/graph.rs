@@ -83,7 +83,11 @@ pub(crate) enum Node {
     Binary(Binary, Id, Id),
     Least(Vec<Id>),
     Greatest(Vec<Id>),
-    If { compare: (Compare, Id, Id), then: Id, otherwise: Id },
+    If {
+        compare: (Compare, Id, Id),
+        then: Id,
+        otherwise: Id,
+    },
 }
 
 impl Node {

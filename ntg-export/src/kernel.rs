@@ -134,7 +134,9 @@ impl Writer<'_> {
     }
 
     fn table(&mut self, table: usize, derivative: &[u8], args: &[Value]) -> Result<Value, ExportError> {
-        let Some(found) = self.tables.get(table) else { return Err(ExportError::Malformed("a table that is not there")) };
+        let Some(found) = self.tables.get(table) else {
+            return Err(ExportError::Malformed("a table that is not there"));
+        };
         if let Some(numbers) = args.iter().map(Value::number).collect::<Option<Vec<f64>>>() {
             return Ok(Value::constant(found.eval(&numbers, derivative)));
         }

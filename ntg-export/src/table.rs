@@ -87,7 +87,10 @@ struct Region {
 enum Kind {
     Inside,
     /// Beyond the first (`false`) or last (`true`) node: the end value, and the end slope where that goes on.
-    Beyond { above: bool, linear: bool },
+    Beyond {
+        above: bool,
+        linear: bool,
+    },
 }
 
 /// One argument of a look-up.
@@ -222,7 +225,11 @@ fn powers(bernstein: &[f64], region: &Region, derivative: usize) -> Vec<f64> {
     let mut powers = match region.kind {
         Kind::Inside => from_start(bernstein),
         Kind::Beyond { above, linear } => {
-            let (end, inside) = if above { (bernstein[degree], bernstein[degree.max(1) - 1]) } else { (bernstein[0], bernstein[degree.min(1)]) };
+            let (end, inside) = if above {
+                (bernstein[degree], bernstein[degree.max(1) - 1])
+            } else {
+                (bernstein[0], bernstein[degree.min(1)])
+            };
             let rise = if above { end - inside } else { inside - end };
             let slope = if linear { degree as f64 * rise / region.width } else { 0.0 };
             vec![end, slope]

@@ -91,7 +91,8 @@ mod tests {
     #[test]
     fn linear_parts_stay_numbers() {
         let mut graph = Graph::default();
-        let of = |terms: &[(u32, f64)], constant| Value { affine: Affine { constant, terms: terms.to_vec() }, rest: None };
+        let of =
+            |terms: &[(u32, f64)], constant| Value { affine: Affine { constant, terms: terms.to_vec() }, rest: None };
         let a = of(&[(0, 1.0), (2, 3.0)], 1.0);
         let b = of(&[(1, 5.0), (2, 1.5), (4, 1.0)], 2.0);
         let sum = a.plus(-2.0, &b, &mut graph);

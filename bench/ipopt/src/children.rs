@@ -68,6 +68,7 @@ fn child(arguments: &Arguments, spec: &Path, solver: &str) -> Result<Value, Stri
     command.arg(spec).args(["--one", solver, "--method", &arguments.method]);
     command.arg("--library").arg(&arguments.library);
     command.args(["--time-limit", &arguments.time_limit.to_string(), "--tolerance", &arguments.tolerance.to_string()]);
+    command.args(["--mesh", &arguments.mesh.to_string(), "--start", &arguments.start.to_string()]);
     command.args(["--print-level", &arguments.print_level.to_string()]);
     arguments.options.iter().for_each(|option| {
         command.args(["--ipopt", option]);

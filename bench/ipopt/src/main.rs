@@ -14,8 +14,8 @@ mod solve;
 mod table;
 
 use clap::Parser;
-use ntg_bench_program::specs;
 use library::{Ipopt, Value as Setting};
+use ntg_bench_program::specs;
 use ntg_runtime::settings::Method;
 use one::Ask;
 use serde_json::{Map, Value, json};
@@ -52,6 +52,12 @@ struct Arguments {
     /// Take IPOPT's numbers from a file that --json has written, where it has the spec.
     #[arg(long)]
     reuse: Option<PathBuf>,
+    /// Intervals of every spline, times those of the spec.
+    #[arg(long, default_value_t = 1.0)]
+    mesh: f64,
+    /// Which start: 0 is the spec's own guess; in any other one each variable is moved at random by up to a tenth of its size.
+    #[arg(long, default_value_t = 0)]
+    start: u64,
     /// How many specs at once.
     #[arg(long, default_value_t = 1)]
     jobs: usize,
@@ -75,8 +81,11 @@ impl Arguments {
             return Err("--time-limit is a positive number of seconds".into());
         }
         let options = self.options.iter().map(|text| setting(text)).collect::<Result<_, _>>()?;
-        let Self { tolerance, time_limit: seconds, print_level, .. } = *self;
-        Ok(Ask { tolerance, seconds, method, options, print_level })
+        if !(self.mesh.is_finite() && self.mesh > 0.0) {
+            return Err("--mesh is a positive factor".into());
+        }
+        let Self { tolerance, time_limit: seconds, print_level, mesh, start, .. } = *self;
+        Ok(Ask { tolerance, seconds, method, options, print_level, mesh, start })
     }
 }
 

@@ -8,6 +8,7 @@
 //! objective factor for a solver that scales nothing itself. Multipliers are those of the scaled program.
 //! Takes a [`Transcription`] and a start in SI units. Afterwards: no evaluation allocates.
 
+use ntg_runtime::guess::start;
 use ntg_runtime::nlp::{Assembly, Csc, Evaluation, Nlp, Scales};
 use ntg_runtime::settings::{Scaling, Settings};
 use ntg_runtime::transcribe::{Transcription, Workspace};
@@ -244,6 +245,25 @@ impl<'n, 'p> Program<'n, 'p> {
 /// What ntg says of a problem that it cannot set up.
 pub fn set_sizes(nlp: &mut Transcription<'_>, start: &[f64]) -> Result<(), String> {
     nlp.set_scales(start, &Settings::default()).map_err(|error| error.to_string())
+}
+
+/// Start number `number` of a problem: 0 is the spec's own; each other one has every variable moved, by the same random
+/// numbers for every solver, by up to `size` of its typical size, and stays within its bounds.
+///
+/// # Errors
+/// What ntg says of a problem that has no start.
+pub fn moved_start(nlp: &mut Transcription<'_>, number: u64, size: f64) -> Result<Vec<f64>, String> {
+    let mut x = start(nlp, None).map_err(|error| error.to_string())?;
+    set_sizes(nlp, &x)?;
+    if number > 0 {
+        let mut random = fastrand::Rng::with_seed(number);
+        let limits = nlp.limits();
+        for (j, x) in x.iter_mut().enumerate() {
+            let step = size * limits.scale[j] * (2.0 * random.f64() - 1.0);
+            *x = (*x + step).max(limits.lower[j]).min(limits.upper[j]);
+        }
+    }
+    Ok(x)
 }
 
 /// Rows and columns of all entries, column by column.

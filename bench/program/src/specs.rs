@@ -1,8 +1,8 @@
 //! Specs on the command line: files, or all below a folder.
 
 use ntg_compiler::model::Loader;
-use ntg_compiler::source::Source;
 use ntg_compiler::program::Program;
+use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use std::path::{Path, PathBuf};
 

@@ -43,7 +43,8 @@ impl Order {
         }
         let mut variables: Vec<usize> = (0..program.bounds.len()).collect();
         variables.sort_by_key(|&v| if variables_in[v] == 0 { 3 } else { class(variables_in[v]) });
-        let count = |wanted: usize| variables_in.iter().filter(|place| **place != 0 && class(**place) == wanted).count();
+        let count =
+            |wanted: usize| variables_in.iter().filter(|place| **place != 0 && class(**place) == wanted).count();
         let mut rows: Vec<usize> = (0..program.rows.len()).collect();
         let is_linear = |row: &Row| row.rest.is_empty();
         rows.sort_by_key(|&row| is_linear(&program.rows[row]));

@@ -78,7 +78,9 @@ impl Solution {
             lines.number("the number of variables")?,
             lines.number("the number of values")?,
         );
-        let same = |what, found, expected| if found == expected { Ok(()) } else { Err(SolutionError::Count { what, found, expected }) };
+        let same = |what, found, expected| {
+            if found == expected { Ok(()) } else { Err(SolutionError::Count { what, found, expected }) }
+        };
         same("rows", rows, order.rows.len())?;
         same("variables", variables, order.variables.len())?;
         same("values", values, order.variables.len())?;
@@ -97,10 +99,13 @@ impl Solution {
     /// The text of a .sol file, for a program in this order.
     pub fn text(&self, order: &Order) -> String {
         let multipliers = self.multipliers.as_deref().unwrap_or_default();
-        let sorted = |places: &[usize], values: &[f64]| -> Vec<f64> { places.iter().filter_map(|p| values.get(*p).copied()).collect() };
+        let sorted = |places: &[usize], values: &[f64]| -> Vec<f64> {
+            places.iter().filter_map(|p| values.get(*p).copied()).collect()
+        };
         let (y, x) = (sorted(&order.rows, multipliers), sorted(&order.variables, &self.x));
         let counts = [order.rows.len(), y.len(), order.variables.len(), x.len()];
-        let mut lines = vec![self.message.clone(), String::new(), "Options".into(), "3".into(), "1".into(), "1".into(), "0".into()];
+        let mut lines =
+            vec![self.message.clone(), String::new(), "Options".into(), "3".into(), "1".into(), "1".into(), "0".into()];
         lines.extend(counts.iter().map(usize::to_string));
         lines.extend(y.iter().chain(&x).map(|value| format!("{value:?}")));
         lines.join("\n") + "\nobjno 0 0\n"

@@ -89,7 +89,10 @@ impl Text<'_> {
         let nonlinear = usize::from(!program.objective.rest.is_empty());
         self.line(format_args!(" {} {nonlinear}\t# nonlinear constraints, objectives", order.nonlinear_rows));
         self.line(format_args!(" 0 0\t# network constraints: nonlinear, linear"));
-        self.line(format_args!(" {} {in_objective} {both}\t# nonlinear vars in constraints, objectives, both", both + rows));
+        self.line(format_args!(
+            " {} {in_objective} {both}\t# nonlinear vars in constraints, objectives, both",
+            both + rows
+        ));
         self.line(format_args!(" 0 0 0 1\t# linear network variables; functions; arith, flags"));
         self.line(format_args!(" 0 0 0 0 0\t# discrete variables: binary, integer, nonlinear (b,c,o)"));
         self.line(format_args!(" {entries} {slopes}\t# nonzeros in Jacobian, gradients"));

@@ -59,6 +59,9 @@ impl Node {
         });
         let (lanes, lane) = (self.lanes(), copy * self.elements + element);
         let data = self.data().chunks_exact(lanes.max(1)).map(|column| ElementInput::Number(column[lane]));
-        ElementCall { kernel: self.kernel, inputs: slots.map(ElementInput::Slot).chain(reductions).chain(data).collect() }
+        ElementCall {
+            kernel: self.kernel,
+            inputs: slots.map(ElementInput::Slot).chain(reductions).chain(data).collect(),
+        }
     }
 }

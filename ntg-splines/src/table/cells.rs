@@ -89,7 +89,9 @@ mod tests {
     fn polynomials_on_cells_are_the_table() {
         let nodes = vec![0.0, 0.5, 1.5, 2.0, 4.0];
         let methods = [Method::Linear, Method::Monotone, Method::Bspline { order: 4 }, Method::Bspline { order: 3 }];
-        for (method, axis) in methods.iter().flat_map(|m| [(m, Axis::plain(nodes.clone())), (m, Axis::even(nodes.clone()))]) {
+        for (method, axis) in
+            methods.iter().flat_map(|m| [(m, Axis::plain(nodes.clone())), (m, Axis::even(nodes.clone()))])
+        {
             for arguments in 1..=2 {
                 let values = (0..5_usize.pow(arguments)).map(|i| ((i * i) as f64).sin()).collect();
                 let axes = vec![axis.clone(); arguments as usize];
@@ -102,7 +104,8 @@ mod tests {
                     let place = |(k, x): (usize, &f64)| (x - cells[k].begins[cell[k]]) / cells[k].widths[cell[k]];
                     let u: Vec<f64> = x.iter().enumerate().map(place).collect();
                     let orders: Vec<usize> = cells.iter().map(|cells| cells.order).collect();
-                    let (found, known) = (value(table.bernstein(&cell), &orders, &u), table.eval(&x, &vec![0; x.len()]));
+                    let (found, known) =
+                        (value(table.bernstein(&cell), &orders, &u), table.eval(&x, &vec![0; x.len()]));
                     assert!((found - known).abs() < 1e-13, "{method:?} at {x:?}: {found} for {known}");
                 }
             }

@@ -1,0 +1,84 @@
+"""Asks both solvers, one process a question, and keeps every answer."""
+
+import json
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import casadi
+
+BENCH = Path(__file__).resolve().parent.parent
+ROOT = BENCH.parent
+RESULTS = Path(__file__).resolve().parent / "results.jsonl"
+SOLVERS = ("ntg", "ipopt")
+MESHES = (1.0, 0.5, 2.0)
+STARTS = 10
+# Seconds beyond the limit after which a process is ended.
+GRACE = 20
+
+
+def build():
+    """The binary of bench/ipopt."""
+    build = ["cargo", "build", "--release", "--quiet", "--package", "ntg-bench-ipopt"]
+    subprocess.run([*build, "--manifest-path", BENCH / "Cargo.toml"], check=True)
+    return BENCH / "target" / "release" / "ipopt-compare"
+
+
+def specs(only):
+    """Specs by name, those of the gallery after the others."""
+    found = sorted((ROOT / "specs").glob("*.ntg")) + sorted((ROOT / "specs" / "gallery").rglob("*.ntg"))
+    return [path for path in found if not only or path.stem in only]
+
+
+def questions(options):
+    """All (spec, mesh, start, solver), the cheap half first: every spec's own mesh and start."""
+    paths = specs(options.only)
+    pairs = [(1.0, 0)] if options.quick else [(mesh, start) for start in range(STARTS) for mesh in MESHES]
+    return [(path, mesh, start, solver) for mesh, start in pairs for path in paths for solver in SOLVERS]
+
+
+def key(path, mesh, start, solver):
+    return f"{path.relative_to(ROOT)} {mesh} {start} {solver}"
+
+
+def known():
+    """Answers of earlier runs by question. A line that was cut off is asked again."""
+    answers = {}
+    if RESULTS.exists():
+        for line in RESULTS.read_text().splitlines():
+            try:
+                answer = json.loads(line)
+                answers[answer["question"]] = answer
+            except (ValueError, KeyError):
+                continue
+    return answers
+
+
+def ask(binary, question, limit):
+    path, mesh, start, solver = question
+    library = Path(casadi.__file__).parent / "libipopt.so.3"
+    command = [binary, path, "--one", solver, "--library", library, "--time-limit", str(limit)]
+    command += ["--mesh", str(mesh), "--start", str(start)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=limit + GRACE)
+        lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+        answer = json.loads(lines[-1]) if lines else {"solved": False, "status": f"exit {done.returncode}"}
+    except subprocess.TimeoutExpired:
+        answer = {"solved": False, "status": f"ended after {limit + GRACE} s"}
+    return {"question": key(*question), "limit": limit, **answer}
+
+
+def measure(options):
+    """Asks what has not been asked; gives all answers that belong to the options, by question."""
+    binary = build()
+    answers = known()
+    asked = questions(options)
+    left = [question for question in asked if key(*question) not in answers]
+    print(f"profile: {len(asked)} questions, {len(left)} of them new", flush=True)
+    with open(RESULTS, "a") as file, ThreadPoolExecutor(options.jobs) as pool:
+        for i, answer in enumerate(pool.map(lambda question: ask(binary, question, options.seconds), left)):
+            file.write(json.dumps(answer) + "\n")
+            file.flush()
+            answers[answer["question"]] = answer
+            print(f"{i + 1}/{len(left)} {answer['question']}: {answer['status']}", flush=True)
+    return {key(*question): answers[key(*question)] for question in asked if key(*question) in answers}
