@@ -14,7 +14,7 @@ use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use num_dual::{DualNum, HyperDual64};
 
-ntg::ntg_file!("specs/low_observable.ntg");
+ntg::ntg_file!("../specs/low_observable.ntg");
 
 /// Points of the paper's grid.
 const POINTS: usize = 41;

@@ -13,16 +13,16 @@ use ntg_interp::Interpreted;
 
 mod specs {
     pub(crate) mod car {
-        ntg::ntg_file!("specs/kinematic_car.ntg");
+        ntg::ntg_file!("../specs/kinematic_car.ntg");
     }
     pub(crate) mod flight {
-        ntg::ntg_file!("specs/low_observable.ntg");
+        ntg::ntg_file!("../specs/low_observable.ntg");
     }
     pub(crate) mod flight_gauss {
-        ntg::ntg_file!("specs/low_observable_gauss.ntg");
+        ntg::ntg_file!("../specs/low_observable_gauss.ntg");
     }
     pub(crate) mod oscillator {
-        ntg::ntg_file!("specs/van_der_pol.ntg");
+        ntg::ntg_file!("../specs/van_der_pol.ntg");
     }
 }
 use specs::{car::KinematicCar, flight::LowObservable, flight_gauss::LowObservableGauss, oscillator::VanDerPol};

@@ -13,7 +13,7 @@ use drawing::phases::{events, histories, key, legs, over_time};
 use drawing::{BLUE, Drawn, INK, VERMILION, picture};
 use ntg::prelude::*;
 
-ntg_file!("specs/gates.ntg");
+ntg_file!("../specs/gates.ntg");
 
 fn main() -> Drawn {
     let course = Gates::default();

@@ -12,7 +12,7 @@ use ntg::runtime::problem::WithStructure;
 use ntg::runtime::structure::Points;
 use ntg::runtime::transcribe::Transcription;
 
-ntg::ntg_file!("specs/low_observable.ntg");
+ntg::ntg_file!("../specs/low_observable.ntg");
 
 /// Points for each interval, but for the last one's end.
 const POINTS: usize = 5;

@@ -11,7 +11,7 @@ use drawing::chart::{Axes, Line, Stroke, axes, draw};
 use drawing::{BLUE, Drawn, VERMILION, picture};
 use ntg::prelude::*;
 
-ntg_file!("specs/kinematic_car.ntg"); // Gives `KinematicCar` and `KinematicCarSolution`.
+ntg_file!("../specs/kinematic_car.ntg"); // Gives `KinematicCar` and `KinematicCarSolution`.
 
 fn main() -> Drawn {
     let solution = KinematicCar::default().solve(&Settings::default())?;

@@ -13,7 +13,7 @@ use drawing::phases::{histories, over_time};
 use drawing::{BLUE, Drawn};
 use ntg::prelude::*;
 
-ntg_file!("specs/launch.ntg");
+ntg_file!("../specs/launch.ntg");
 
 fn main() -> Drawn {
     let rocket = Launch::default();

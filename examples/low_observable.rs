@@ -13,8 +13,8 @@ use drawing::flight::{Flight, ground_track, history};
 use drawing::{BLUE, Drawn, GREEN, VERMILION, paper};
 use ntg::prelude::*;
 
-ntg_file!("specs/low_observable.ntg"); // Gives `LowObservable`, with a field for each parameter.
-ntg_file!("specs/low_observable_gauss.ntg");
+ntg_file!("../specs/low_observable.ntg"); // Gives `LowObservable`, with a field for each parameter.
+ntg_file!("../specs/low_observable_gauss.ntg");
 
 const START: (f64, f64) = (-100.0, -100.0);
 const TARGET: (f64, f64) = (5.0, -15.0);

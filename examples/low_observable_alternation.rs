@@ -13,8 +13,8 @@ use drawing::phases::{histories, legs, over_time, past_the_radar};
 use drawing::{BLUE, Drawn, VERMILION};
 use ntg::prelude::*;
 
-ntg_file!("specs/low_observable_alternation.ntg");
-ntg_file!("specs/low_observable_lock_loss.ntg");
+ntg_file!("../specs/low_observable_alternation.ntg");
+ntg_file!("../specs/low_observable_lock_loss.ntg");
 
 fn main() -> Drawn {
     let alternation = LowObservableAlternation::default();

@@ -13,7 +13,7 @@ use drawing::phases::{histories, legs, over_time, past_the_radar};
 use drawing::{BLUE, Drawn, GREEN, VERMILION};
 use ntg::prelude::*;
 
-ntg_file!("specs/low_observable_phases.ntg");
+ntg_file!("../specs/low_observable_phases.ntg");
 
 const ROUTES: [(f64, f64); 2] = [(-100.0, -15.0), (0.0, -100.0)];
 

@@ -14,7 +14,7 @@ use drawing::track::Track;
 use drawing::{BLUE, Drawn, GREEN, INK, VERMILION};
 use ntg::prelude::*;
 
-ntg_file!("specs/missile_boost_coast.ntg");
+ntg_file!("../specs/missile_boost_coast.ntg");
 
 /// When the motor stops, as the spec has it.
 const BURN_OUT: f64 = 6.0;

@@ -14,7 +14,7 @@ use drawing::track::Track;
 use drawing::{BLUE, Drawn, VERMILION};
 use ntg::prelude::*;
 
-ntg_file!("specs/missile_intercept.ntg");
+ntg_file!("../specs/missile_intercept.ntg");
 
 fn main() -> Drawn {
     let right = turn("turning right", 20.0, ((BLUE, Stroke::Solid), (20, -44)))?;

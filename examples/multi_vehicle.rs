@@ -14,10 +14,10 @@ use drawing::track::Track;
 use ntg::prelude::*;
 use ntg::runtime::report::Report;
 
-ntg_file!("specs/multi_vehicle.ntg");
-ntg_file!("specs/multi_vehicle_simultaneous.ntg");
-ntg_file!("specs/multi_vehicle_look_after_strike.ntg");
-ntg_file!("specs/multi_vehicle_separated.ntg");
+ntg_file!("../specs/multi_vehicle.ntg");
+ntg_file!("../specs/multi_vehicle_simultaneous.ntg");
+ntg_file!("../specs/multi_vehicle_look_after_strike.ntg");
+ntg_file!("../specs/multi_vehicle_separated.ntg");
 
 fn main() -> Drawn {
     let settings = Settings::default();

@@ -16,8 +16,8 @@ use drawing::track::{Track, words};
 use drawing::{Drawn, INK, flight};
 use ntg::prelude::*;
 
-ntg_file!("specs/low_observable.ntg"); // Gives `LowObservable`, with a field for each parameter.
-ntg_file!("specs/missile_intercept.ntg");
+ntg_file!("../specs/low_observable.ntg"); // Gives `LowObservable`, with a field for each parameter.
+ntg_file!("../specs/missile_intercept.ntg");
 
 /// How long the target of the missile is drawn, in seconds: longer than any minimum takes to hit it.
 const TARGET_SEEN: f64 = 70.0;

@@ -16,7 +16,7 @@ use drawing::{BLUE, Drawn, GREEN, INK, PURPLE, RGBColor, VERMILION, picture};
 use ntg::prelude::*;
 use ntg::runtime::transcribe::interpolants;
 
-ntg_file!("specs/radar_net.ntg");
+ntg_file!("../specs/radar_net.ntg");
 
 const COLOURS: [RGBColor; 4] = [BLUE, VERMILION, GREEN, PURPLE];
 

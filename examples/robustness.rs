@@ -9,8 +9,8 @@ use ntg::prelude::*;
 use ntg::runtime::problem::{Derivatives, Lanes, Problem};
 use ntg::runtime::{report::Report, solve_from, splines::Table, structure::Structure};
 
-ntg_file!("specs/low_observable.ntg");
-ntg_file!("specs/low_observable_phases.ntg");
+ntg_file!("../specs/low_observable.ntg");
+ntg_file!("../specs/low_observable_phases.ntg");
 
 const ROUTES: &str = include_str!("../specs/data/routes.csv");
 

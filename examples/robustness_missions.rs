@@ -6,8 +6,8 @@
 use fastrand::Rng;
 use ntg::prelude::*;
 
-ntg_file!("specs/multi_vehicle_separated.ntg");
-ntg_file!("specs/missile_intercept.ntg");
+ntg_file!("../specs/multi_vehicle_separated.ntg");
+ntg_file!("../specs/missile_intercept.ntg");
 
 const GUESSES: usize = 20;
 const SEED: u64 = 2003;

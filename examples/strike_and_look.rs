@@ -13,7 +13,7 @@ use drawing::phases::histories;
 use drawing::{BLUE, Drawn, VERMILION};
 use ntg::prelude::*;
 
-ntg_file!("specs/strike_and_look.ntg");
+ntg_file!("../specs/strike_and_look.ntg");
 
 /// Effort and time of the two, going 80 and 60 far from rest to rest in so much time.
 fn on_paper(strike: f64, look: f64) -> f64 {

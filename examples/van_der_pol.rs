@@ -11,7 +11,7 @@ use drawing::chart::{Axes, Line, Stroke, axes, draw, legend};
 use drawing::{BLUE, Drawn, GREEN, VERMILION, picture};
 use ntg::prelude::*;
 
-ntg_file!("specs/van_der_pol.ntg"); // Gives `VanDerPol` and `VanDerPolSolution`.
+ntg_file!("../specs/van_der_pol.ntg"); // Gives `VanDerPol` and `VanDerPolSolution`.
 
 fn main() -> Drawn {
     let solution = VanDerPol::default().solve(&Settings::default())?;

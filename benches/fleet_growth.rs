@@ -3,6 +3,7 @@
 //! Run with `cargo run --release --example fleet_growth`; draws `pictures/fleet_growth.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
+#[path = "../examples/drawing/mod.rs"]
 mod drawing;
 
 use std::path::Path;

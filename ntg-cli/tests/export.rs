@@ -1,0 +1,69 @@
+//! `ntg export` and `ntg check-solution` as a user runs them.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn ntg(arguments: &[&str], folder: &Path) -> Output {
+    let specs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs");
+    let arguments = arguments.iter().map(|word| match word.strip_prefix("specs/") {
+        Some(spec) => specs.join(spec).into_os_string(),
+        None => word.into(),
+    });
+    Command::new(env!("CARGO_BIN_EXE_ntg")).current_dir(folder).args(arguments).output().expect("the command starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn three_files_are_written_and_none_is_replaced() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let export = |more: &[&str]| ntg(&[&["export", "specs/van_der_pol.ntg", "-o", "v.nl"], more].concat(), folder.path());
+    let done = export(&[]);
+    assert_eq!(text(&done.stdout), "v.nl: 7 variables, 3 rows; names in v.col and v.row\n", "{}", text(&done.stderr));
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
+    assert!(read("v.nl").starts_with("g3 1 1 0\t# problem VanDerPol\n 7 3 1 0 3\t"));
+    assert_eq!(read("v.row"), "z == 1 at the start\nder(z) == 0 at the start\nder(z) - z == 1 at the end\nobjective\n");
+    assert_eq!(read("v.col").lines().next(), Some("coefficient 1 of z"));
+    let again = export(&[]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("`v.nl` exists; give --force to replace it"), "{}", text(&again.stderr));
+    assert_eq!(export(&["--force"]).status.code(), Some(0));
+    // The names would go where the program goes.
+    let bad = ntg(&["export", "specs/van_der_pol.ntg", "-o", "v.row"], folder.path());
+    assert_eq!(bad.status.code(), Some(2));
+}
+
+#[test]
+fn a_saved_solution_is_judged_and_a_changed_problem_is_not_solved_by_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let solved = ntg(&["solve", "specs/low_observable.ntg", "--save", "run.json"], folder.path());
+    assert_eq!(solved.status.code(), Some(0), "{}", text(&solved.stderr));
+    let check = |more: &[&str]| {
+        let all = [&["check-solution", "specs/low_observable.ntg", "run.json", "--format", "json"], more].concat();
+        let done = ntg(&all, folder.path());
+        let found: Value = serde_json::from_slice(&done.stdout).unwrap_or_else(|_| panic!("{}", text(&done.stderr)));
+        (done.status.code(), found)
+    };
+    let (code, found) = check(&[]);
+    assert_eq!((code, &found["solution"]), (Some(0), &Value::Bool(true)), "{found:#}");
+    let objective = found["objective"].as_f64().expect("a number");
+    assert!((objective / 130.907_227_498 - 1.0).abs() < 1e-6, "{objective}");
+    let (code, found) = check(&["--set", "signature_max=4"]);
+    assert_eq!((code, &found["solution"]), (Some(1), &Value::Bool(false)), "{found:#}");
+    let worst = found["missed"][0]["name"].as_str().expect("a name");
+    assert!(worst.starts_with("`low_observable`"), "{worst}");
+}
+
+#[test]
+fn an_answer_to_another_program_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("v.sol"), "found\n\nOptions\n3\n1\n1\n0\n1\n0\n2\n2\n0.5\n0.5\n").expect("written");
+    let done = ntg(&["check-solution", "specs/van_der_pol.ntg", "v.sol"], folder.path());
+    assert_eq!(done.status.code(), Some(2));
+    let said = text(&done.stderr);
+    assert!(said.contains("it has 1 rows, but the program has 3; it belongs to another program"), "{said}");
+}
