@@ -19,11 +19,11 @@ SAME_OPTIMUM = 1e-6
 POINTS = 3
 
 
-def build(folder):
+def build(folder, is_built):
     """The three programs: ntg, its evaluator, and the outside reader."""
     cargo = ["cargo", "build", "--release", "--quiet"]
-    subprocess.run([*cargo, "--package", "ntg-cli", "--manifest-path", ROOT / "Cargo.toml"], check=True)
-    subprocess.run([*cargo, "--package", "ntg-bench-program", "--manifest-path", BENCH / "Cargo.toml"], check=True)
+    for package, workspace in [] if is_built else [("ntg-cli", ROOT), ("ntg-bench-program", BENCH)]:
+        subprocess.run([*cargo, "--package", package, "--manifest-path", workspace / "Cargo.toml"], check=True)
     wheel = Path(casadi.__file__).parent
     reader = folder / "asl_ipopt"
     include = ["-I/usr/include/ampl-netlib-solvers", f"-I{wheel}/include/coin-or"]
@@ -45,15 +45,16 @@ def parse(line, n, m):
     return numbers[:1], numbers[1 : 1 + n], numbers[1 + n :], jacobian
 
 
-def difference(ours, theirs):
-    """The largest difference, relative to the largest number of its kind."""
+def difference(pairs):
+    """The largest difference over all points, relative to the largest number of its kind: at a start a number may be rounding alone."""
     worst = 0.0
-    for a, b in zip(ours, theirs):
-        size = max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0))
-        if size > 0:
-            worst = max(worst, float(np.abs(a - b).max() / size))
-        if not np.all(np.isfinite(b)):
+    for kind in range(4):
+        ours, theirs = (np.concatenate([pair[side][kind].ravel() for pair in pairs]) for side in (0, 1))
+        if not np.all(np.isfinite(theirs)):
             return float("inf")
+        size = max(np.abs(ours).max(initial=0.0), np.abs(theirs).max(initial=0.0))
+        if size > 0:
+            worst = max(worst, float(np.abs(ours - theirs).max() / size))
     return worst
 
 
@@ -66,7 +67,9 @@ def by_casadi(path, points):
         return str(error).strip().split("\n")[-1].split(":")[-1].strip()
     x = casadi.veccat(*builder.x) if isinstance(builder.x, list) else builder.x
     g = casadi.veccat(*builder.g) if isinstance(builder.g, list) else builder.g
-    together = casadi.Function("nl", [x], [builder.f, casadi.gradient(builder.f, x), g, casadi.jacobian(g, x)])
+    # CasADi minimises: what is maximised has changed its sign.
+    f = -builder.f if "\nO0 1\n" in path.read_text() else builder.f
+    together = casadi.Function("nl", [x], [f, casadi.gradient(f, x), g, casadi.jacobian(g, x)])
     return [[np.array(part.full()) for part in together(point)] for point in points]
 
 
@@ -90,13 +93,14 @@ def evaluations(spec, nl, tools, rng):
     if len(theirs) < len(ours):
         return {"asl": (asl.stderr or "no answer").strip().split("\n")[-1], "points": 0}
     pairs = [(a, b) for a, b in zip(ours, theirs) if a is not None]
-    found = {"asl": max((difference(a, b) for a, b in pairs), default=0.0), "points": len(pairs)}
+    if not pairs:
+        return {"asl": "no point has a value", "points": 0}
+    found = {"asl": difference(pairs), "points": len(pairs)}
     read = by_casadi(nl, points)
     if isinstance(read, str):
         found["casadi"] = read
     else:
-        shaped = [(a, (b[0].ravel(), b[1].ravel(), b[2].ravel(), b[3])) for a, b in zip(ours, read) if a is not None]
-        found["casadi"] = max((difference(a, b) for a, b in shaped), default=0.0)
+        found["casadi"] = difference([(a, b) for a, b in zip(ours, read) if a is not None])
     return found
 
 
@@ -127,42 +131,58 @@ def specs(paths):
         yield from sorted(path.rglob("*.ntg")) if path.is_dir() else [path]
 
 
+def shown(found):
+    """A difference in short, or why there is none."""
+    return f"{found:.1e}" if isinstance(found, float) else str(found)
+
+
+def judged(spec, folder, tools, rng, options):
+    """A line about one spec, and whether anything differs."""
+    nl = folder / f"{spec.stem}.nl"
+    done = run([tools[0], "export", spec, "-o", nl, "--force"])
+    if done.returncode != 0:
+        return f"not exported: {done.stderr.strip()}", False
+    found = evaluations(spec, nl, tools, rng)
+    # A reader that does not know an operation says so; only the library must read all.
+    is_wrong = not (isinstance(found["asl"], float) and found["asl"] <= TOLERANCE)
+    is_wrong |= isinstance(found.get("casadi"), float) and not found["casadi"] <= TOLERANCE
+    size = nl.stat().st_size / 1e6
+    line = f"{size:6.2f} MB, {found['points']} points: ASL {shown(found['asl'])}, CasADi {shown(found.get('casadi'))}"
+    if options.no_solve:
+        return line, is_wrong
+    solved = solves(spec, nl, tools, options.seconds)
+    if "judged" not in solved:
+        return f"{line}; {solved}", is_wrong
+    judge, own = solved["judged"], solved["own"]
+    a, b = judge["objective"], own["objective"]
+    is_same = a is not None and b is not None and abs(a - b) <= SAME_OPTIMUM * max(abs(a), abs(b), 1e-12)
+    verdict = "a solution" if judge["solution"] else "no solution"
+    line += f"; IPOPT status {solved['status']}, {solved['iterations']} iterations, {a}, {verdict}; ntg {own['status']:.20} {b}"
+    both = solved["status"] == 0 and own["status"] == "solved"
+    if both and not is_same:
+        line += "; another optimum"
+    if solved["status"] == 0 and not judge["solution"]:
+        return f"{line}; THE JUDGE DENIES IT", True
+    return line, is_wrong
+
+
 def main():
     parser = argparse.ArgumentParser(description="Judges what `ntg export` writes.")
     parser.add_argument("paths", nargs="*", help="specs and folders; by default specs/")
     parser.add_argument("--no-solve", action="store_true", help="only evaluate")
+    parser.add_argument("--no-build", action="store_true", help="take the programs as they were built last")
     parser.add_argument("--seconds", type=float, default=20, help="limit of each solve")
     options = parser.parse_args()
     rng = np.random.default_rng(1)
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        tools = build(folder)
-        shown = lambda found: f"{found:.1e}" if isinstance(found, float) else found
+        tools = build(folder, options.no_build)
         for spec in specs(options.paths):
-            name = spec.stem
-            nl = folder / f"{name}.nl"
-            done = run([tools[0], "export", spec, "-o", nl, "--force"])
-            if done.returncode != 0:
-                print(f"{name:<34} not exported: {done.stderr.strip()}", flush=True)
-                continue
-            found = evaluations(spec, nl, tools, rng)
-            line = f"{name:<34} {nl.stat().st_size / 1e6:6.2f} MB  asl {shown(found['asl'])}  casadi {shown(found['casadi'])}" if "casadi" in found else f"{name:<34} asl {found['asl']}"
-            if any(isinstance(d, float) and not d <= TOLERANCE for d in (found["asl"], found.get("casadi"))) or isinstance(found["asl"], str):
-                wrong.append(name)
-            if not options.no_solve:
-                solved = solves(spec, nl, tools, options.seconds)
-                if "judged" in solved:
-                    judged, own = solved["judged"], solved["own"]
-                    a, b = judged["objective"], own["objective"]
-                    same = a is not None and b is not None and abs(a - b) <= SAME_OPTIMUM * max(abs(a), abs(b), 1e-12)
-                    line += f"  IPOPT {solved['status']} ({solved['iterations']}) {a} {'a solution' if judged['solution'] else 'no solution'}, ntg {own['status']:.20} {b}"
-                    if solved["status"] == 0 and own["status"] == "solved" and not (same and judged["solution"]):
-                        line += "  DIFFERENT"
-                        wrong.append(name)
-                else:
-                    line += f"  {solved}"
-            print(line, flush=True)
+            line, is_wrong = judged(spec, folder, tools, rng, options)
+            print(f"{spec.stem:<34} {line}", flush=True)
+            if is_wrong:
+                wrong.append(spec.stem)
     print("all the same" if not wrong else f"differ: {', '.join(wrong)}")
     sys.exit(1 if wrong else 0)
 

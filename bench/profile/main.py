@@ -72,6 +72,7 @@ def main():
     parser.add_argument("--only", type=lambda text: text.split(","), help="names of specs, by commas")
     parser.add_argument("--seconds", type=float, default=20, help="limit of each solve")
     parser.add_argument("--jobs", type=int, default=1, help="questions at once")
+    parser.add_argument("--no-build", action="store_true", help="take the binary as it was built last")
     parser.add_argument("--report", action="store_true", help="measure nothing")
     parser.add_argument("--publish", action="store_true", help="write pictures and docs/performance.md")
     options = parser.parse_args()

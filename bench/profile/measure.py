@@ -17,11 +17,14 @@ STARTS = 10
 GRACE = 20
 
 
-def build():
+def binary(is_built):
     """The binary of bench/ipopt."""
+    path = BENCH / "target" / "release" / "ipopt-compare"
+    if is_built:
+        return path
     build = ["cargo", "build", "--release", "--quiet", "--package", "ntg-bench-ipopt"]
     subprocess.run([*build, "--manifest-path", BENCH / "Cargo.toml"], check=True)
-    return BENCH / "target" / "release" / "ipopt-compare"
+    return path
 
 
 def specs(only):
@@ -54,10 +57,10 @@ def known():
     return answers
 
 
-def ask(binary, question, limit):
+def ask(program, question, limit):
     path, mesh, start, solver = question
     library = Path(casadi.__file__).parent / "libipopt.so.3"
-    command = [binary, path, "--one", solver, "--library", library, "--time-limit", str(limit)]
+    command = [program, path, "--one", solver, "--library", library, "--time-limit", str(limit)]
     command += ["--mesh", str(mesh), "--start", str(start)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=limit + GRACE)
@@ -70,13 +73,13 @@ def ask(binary, question, limit):
 
 def measure(options):
     """Asks what has not been asked; gives all answers that belong to the options, by question."""
-    binary = build()
+    program = binary(options.no_build)
     answers = known()
     asked = questions(options)
     left = [question for question in asked if key(*question) not in answers]
     print(f"profile: {len(asked)} questions, {len(left)} of them new", flush=True)
     with open(RESULTS, "a") as file, ThreadPoolExecutor(options.jobs) as pool:
-        for i, answer in enumerate(pool.map(lambda question: ask(binary, question, options.seconds), left)):
+        for i, answer in enumerate(pool.map(lambda question: ask(program, question, options.seconds), left)):
             file.write(json.dumps(answer) + "\n")
             file.flush()
             answers[answer["question"]] = answer
