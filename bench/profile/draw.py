@@ -7,6 +7,7 @@ matplotlib.use("svg")
 matplotlib.rcParams.update({"svg.hashsalt": "ntg", "svg.fonttype": "none", "font.size": 10})
 
 import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.ticker  # noqa: E402
 
 NAMES = {"ntg": "ntg", "ipopt": "IPOPT"}
 COLOURS = {"ntg": "#1f6fb4", "ipopt": "#d1495b"}
@@ -25,6 +26,8 @@ def draw(ratios, what, path):
         y = [0.0, *[(i + 1) / count for i in range(len(within))], len(within) / count if count else 0.0]
         axes.step(x, y, where="post", label=NAMES[solver], color=COLOURS[solver], linewidth=2)
     axes.set_xscale("log")
+    for axis_format in (axes.xaxis.set_major_formatter, axes.xaxis.set_minor_formatter):
+        axis_format(matplotlib.ticker.StrMethodFormatter("{x:g}"))
     axes.set_xlim(1.0, last)
     axes.set_ylim(0.0, 1.02)
     axes.set_xlabel(f"factor of the fewest {TITLES[what]}" if what == "iterations" else "factor of the least processor time")
