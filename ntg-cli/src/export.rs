@@ -12,6 +12,7 @@ use ntg_interp::Interpreted;
 use ntg_runtime::guess::{Guess, start};
 use ntg_runtime::nlp::Nlp;
 use ntg_runtime::settings::Settings;
+use ntg_runtime::status::Bounded;
 use ntg_runtime::transcribe::{SetupError, Transcription};
 use serde_json::json;
 
@@ -155,15 +156,24 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     // The judge minimises.
     let multipliers = found.multipliers.as_ref().map(|all| all.iter().map(|y| sign * y).collect::<Vec<_>>());
     let judged = judge(&nlp, Point { x: &found.x, multipliers: multipliers.as_deref() });
-    let judged = judged.map_err(|error| format!("the point has no value: {error}"))?;
+    let judged = judged.map_err(|error| format!("the point has no value: {}", nlp.in_words(error, &found.x)))?;
     let objective = sign * judged.objective / read.program.structure.objective_unit.factor;
     let worst = judged.optimality.iter().flatten().map(|residual| residual.relative).fold(judged.violation(), f64::max);
-    let said = Said { read: &read, found: &found, judged: &judged, objective, is_solution: worst <= tolerance };
+    let said =
+        Said { nlp: &nlp, read: &read, found: &found, judged: &judged, objective, is_solution: worst <= tolerance };
     match arguments.format {
         Format::Text => files::print(&said.text()),
         Format::Json => files::print(&format!("{:#}", said.json())),
     }
     Ok(if said.is_solution { Exit::Done } else { Exit::NotSolved })
+}
+
+/// What is bounded, in the user's words.
+fn name(nlp: &Transcription<'_>, of: Bounded) -> String {
+    match of {
+        Bounded::Row(row) => nlp.row_name(row),
+        Bounded::Variable(variable) => nlp.variable_name(variable),
+    }
 }
 
 /// Reads a point from a solver's file or from a saved solution.
@@ -180,6 +190,7 @@ fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Solution, 
 
 /// What is printed.
 struct Said<'a> {
+    nlp: &'a Transcription<'a>,
     read: &'a Read,
     found: &'a Solution,
     judged: &'a Judgement,
@@ -201,7 +212,8 @@ impl Said<'_> {
             }
             None => lines.push("optimality:       not known, the point has no multipliers".to_owned()),
         }
-        for Missed { name, value, violation, relative, .. } in self.judged.missed.iter().take(LISTED) {
+        for Missed { of, value, violation, relative } in self.judged.missed.iter().take(LISTED) {
+            let name = name(self.nlp, *of);
             lines.push(format!(
                 "  {name} is {value:.6e} and misses its bound by {violation:.3e} ({relative:.1e} relative)"
             ));
@@ -215,8 +227,8 @@ impl Said<'_> {
 
     fn json(&self) -> serde_json::Value {
         let missed = self.judged.missed.iter().map(|missed| {
-            let Missed { name, value, violation, relative, .. } = missed;
-            json!({ "name": name, "value": value, "violation": violation, "relative": relative })
+            let Missed { of, value, violation, relative } = missed;
+            json!({ "name": name(self.nlp, *of), "value": value, "violation": violation, "relative": relative })
         });
         let residual = |which: usize| {
             self.judged

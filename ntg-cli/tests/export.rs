@@ -21,7 +21,8 @@ fn text(bytes: &[u8]) -> String {
 #[test]
 fn three_files_are_written_and_none_is_replaced() {
     let folder = tempfile::tempdir().expect("a folder");
-    let export = |more: &[&str]| ntg(&[&["export", "specs/van_der_pol.ntg", "-o", "v.nl"], more].concat(), folder.path());
+    let export =
+        |more: &[&str]| ntg(&[&["export", "specs/van_der_pol.ntg", "-o", "v.nl"], more].concat(), folder.path());
     let done = export(&[]);
     assert_eq!(text(&done.stdout), "v.nl: 7 variables, 3 rows; names in v.col and v.row\n", "{}", text(&done.stderr));
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
@@ -61,7 +62,8 @@ fn a_saved_solution_is_judged_and_a_changed_problem_is_not_solved_by_it() {
 #[test]
 fn an_answer_to_another_program_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("v.sol"), "found\n\nOptions\n3\n1\n1\n0\n1\n0\n2\n2\n0.5\n0.5\n").expect("written");
+    std::fs::write(folder.path().join("v.sol"), "found\n\nOptions\n3\n1\n1\n0\n1\n0\n2\n2\n0.5\n0.5\n")
+        .expect("written");
     let done = ntg(&["check-solution", "specs/van_der_pol.ntg", "v.sol"], folder.path());
     assert_eq!(done.status.code(), Some(2));
     let said = text(&done.stderr);

@@ -21,8 +21,6 @@ use ntg_runtime::status::Bounded;
 pub struct Missed {
     /// Which.
     pub of: Bounded,
-    /// Its name in the user's words.
-    pub name: String,
     /// The value.
     pub value: f64,
     /// By how much its nearer bound is missed, SI.
@@ -109,19 +107,13 @@ fn missed<N: Nlp>(nlp: &N, x: &[f64], rows: &[f64], sizes: &[f64]) -> Vec<Missed
         let violation = outside(value, lower, upper);
         let size = size(lower, upper, least);
         let relative = if size > 0.0 { violation / size } else { violation };
-        Missed { of, name: String::new(), value, violation, relative }
+        Missed { of, value, violation, relative }
     };
     let of_row = |i: usize| one(Bounded::Row(i), rows[i], (limits.row_lower[i], limits.row_upper[i]), sizes[i]);
     let of_variable = |j: usize| one(Bounded::Variable(j), x[j], (limits.lower[j], limits.upper[j]), limits.scale[j]);
     let all = (0..rows.len()).map(of_row).chain((0..x.len()).map(of_variable));
     let mut missed: Vec<Missed> = all.filter(|missed| missed.violation > 0.0).collect();
     missed.sort_by(|a, b| b.relative.total_cmp(&a.relative));
-    for missed in &mut missed {
-        missed.name = match missed.of {
-            Bounded::Row(row) => nlp.row_name(row),
-            Bounded::Variable(variable) => nlp.variable_name(variable),
-        };
-    }
     missed
 }
 

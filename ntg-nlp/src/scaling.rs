@@ -5,8 +5,9 @@
 //! multiplied by a constant has the same scaled program, and so has a program in other units whose sizes of variables
 //! follow the units.
 
-use crate::contract::{Block, Evaluation, Limits, Target};
+use crate::contract::{Block, Evaluation, Limits, Nlp, Target};
 use crate::options::Scaling;
+use crate::sparse::Csc;
 
 /// The total variation of the scaled objective, (5.3). A fit: of 1, 3, 10 and 100 the one with the fewest iterations and
 /// failures on the specs of the gallery.
@@ -38,6 +39,32 @@ pub struct Slopes {
 }
 
 impl Scales {
+    /// The scales of a program at a start, from its `first` evaluation there and the Jacobian assembled from that.
+    /// `memory` is a workspace and room for another evaluation.
+    pub fn of_program<N: Nlp>(
+        nlp: &N,
+        start: &[f64],
+        scaling: Scaling,
+        first: (&Evaluation, &Csc),
+        memory: (&mut N::Workspace, &mut Evaluation),
+    ) -> Self {
+        let ((at, jacobian), (workspace, trial)) = (first, memory);
+        let sizes = Self::sizes(nlp.limits());
+        let mut rows = vec![0.0_f64; nlp.rows()];
+        for (j, size) in sizes.iter().enumerate() {
+            for (i, slope) in jacobian.column(j) {
+                rows[i] = rows[i].max((slope * size).abs());
+            }
+        }
+        let mut x = start.to_vec();
+        beside(start, nlp.limits(), &sizes, &mut x);
+        let multipliers = vec![0.0; nlp.rows()];
+        let probe = nlp.derivatives(&x, 1.0, &multipliers, workspace, trial).ok();
+        let beside = probe.map(|()| variation(nlp.blocks(), trial, &sizes));
+        let variation = typical_variation(variation(nlp.blocks(), at, &sizes), beside);
+        Self::from_slopes(nlp.limits(), scaling, &Slopes { rows, variation })
+    }
+
     /// Scaled bounds; they have no sizes of their own.
     pub fn limits(&self, limits: &Limits) -> Limits {
         let divide = |bounds: &[f64]| bounds.iter().zip(&self.variables).map(|(b, size)| b / size).collect();

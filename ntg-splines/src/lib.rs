@@ -38,5 +38,6 @@ pub use fit::{Ends, Place, Sample, Sampled, fit, fit_all};
 pub use knots::{KnotError, Knots, MAX_INTERVALS, MAX_ORDER, Side};
 pub use quadrature::{Rule, equidistant, gauss, trapezoid};
 pub use table::{
-    Axis, AxisParts, Cells, Extrapolation, FitReport, MAX_ARGUMENTS, MAX_TABLE_ORDER, Method, Symmetry, Table, TableError,
+    Axis, AxisParts, Cells, Extrapolation, FitReport, MAX_ARGUMENTS, MAX_TABLE_ORDER, Method, Symmetry, Table,
+    TableError,
 };

@@ -74,12 +74,12 @@ impl<'n, 'p> Program<'n, 'p> {
         nlp.derivatives(start, 1.0, &vec![0.0; m], &mut work, &mut at).map_err(|error| error.to_string())?;
         assembly.first(nlp.blocks(), &at);
         assembly.hessian(nlp.blocks(), &at, |_, _, _| {});
-        let (gradient, jacobian) = (&assembly.gradient, &assembly.jacobian);
         let scaling = match rows {
             RowSizes::Si => Scaling::Off,
             RowSizes::Ntg => Scaling::Automatic,
         };
-        let scales = Scales::new(nlp.limits(), scaling, gradient, jacobian, &assembly.hessian);
+        let mut trial = at.clone();
+        let scales = Scales::of_program(nlp, start, scaling, (&at, &assembly.jacobian), (&mut work, &mut trial));
         let start = start.iter().zip(&scales.variables).map(|(x, size)| x / size).collect();
         let (x, multipliers) = (vec![f64::NAN; n], vec![0.0; m]);
         let spent = Duration::ZERO;

@@ -10,7 +10,7 @@ use super::convexify::Convexifier;
 use crate::contract::{Evaluation, Limits, Nlp, NotFinite};
 use crate::options::Scaling;
 use crate::residuals::{self, Residuals};
-use crate::scaling::{Scales, Slopes, beside, typical_variation, variation};
+use crate::scaling::Scales;
 use crate::sparse::{Assembly, Csc};
 
 /// A program, its buffers, and its derivatives at the latest point.
@@ -55,19 +55,9 @@ impl<'a, N: Nlp> Program<'a, N> {
         nlp.derivatives(start, 1.0, &weights, &mut work, &mut at)?;
         assembly.first(nlp.blocks(), &at);
         assembly.hessian(nlp.blocks(), &at, |_, _, _| {});
-        let sizes = Scales::sizes(nlp.limits());
-        let at_start = variation(nlp.blocks(), &at, &sizes);
-        let mut rows = vec![0.0_f64; m];
-        for (j, size) in sizes.iter().enumerate() {
-            for (i, a) in assembly.jacobian.column(j) {
-                rows[i] = rows[i].max((a * size).abs());
-            }
-        }
-        let (mut x, mut trial) = (start.to_vec(), at.clone());
-        beside(start, nlp.limits(), &sizes, &mut x);
-        let probe = nlp.derivatives(&x, 1.0, &weights, &mut work, &mut trial).ok();
-        let variation = typical_variation(at_start, probe.map(|()| variation(nlp.blocks(), &trial, &sizes)));
-        let scales = Scales::from_slopes(nlp.limits(), scaling, &Slopes { rows, variation });
+        let mut trial = at.clone();
+        let first = (&at, &assembly.jacobian);
+        let scales = Scales::of_program(nlp, start, scaling, first, (&mut work, &mut trial));
         let limits = scales.limits(nlp.limits());
         let convexifier = Convexifier::new(nlp.blocks(), &scales.variables);
         let (jacobian, hessian) = (assembly.jacobian.clone(), assembly.hessian.clone());
