@@ -73,7 +73,7 @@ impl Arguments {
     fn ask(&self) -> Result<Ask, String> {
         let method = match self.method.as_str() {
             "auto" => Method::Auto,
-            "newton" => Method::Newton,
+            "newton" | "interior-point" => Method::InteriorPoint,
             "sqp" => Method::Sqp,
             other => return Err(format!("there is no method {other}; write auto, newton or sqp")),
         };
