@@ -93,7 +93,7 @@ impl Program {
         let (lower, upper) = bounds.iter().copied().unzip();
         let (row_lower, row_upper) = row_bounds.iter().copied().unzip();
         let (scale, row_scale) = (vec![1.0; bounds.len()], vec![1.0; row_bounds.len()]);
-        let limits = Limits { lower, upper, scale, row_lower, row_upper, row_scale };
+        let limits = Limits { lower, upper, scale, row_lower, row_upper, row_scale, ..Limits::default() };
         Self { blocks: Vec::new(), functions: Vec::new(), limits }
     }
 

@@ -102,6 +102,9 @@ pub struct Limits {
     pub row_upper: Vec<f64>,
     /// A positive typical size of each row, from units and bounds; 1 where nothing is known.
     pub row_scale: Vec<f64>,
+    /// How much the scaled violation of each row counts beside that of a row of weight 1; empty where all weigh alike.
+    /// Where rows cannot all be met, those of small weight give way.
+    pub row_weight: Vec<f64>,
 }
 
 /// A number of an evaluation, by its indices.

@@ -7,7 +7,7 @@
 
 use crate::contract::{Block, Evaluation, Limits, Nlp, Target};
 use crate::options::Scaling;
-use crate::sparse::Csc;
+use crate::sparse::{Assembly, Csc};
 
 /// The total variation of the scaled objective, (5.3). A fit: of 1, 3, 10 and 100 the one with the fewest iterations and
 /// failures on the specs of the gallery.
@@ -86,16 +86,40 @@ impl Scales {
     /// The scales of a program whose slopes at the start are known.
     pub fn from_slopes(limits: &Limits, scaling: Scaling, slopes: &Slopes) -> Self {
         let variables = Self::sizes(limits);
+        let weights = limits.row_weight.iter().copied().chain(std::iter::repeat(1.0));
         if scaling == Scaling::Off {
-            return Self { variables, rows: vec![1.0; limits.row_lower.len()], objective: 1.0 };
+            return Self { variables, rows: weights.take(limits.row_lower.len()).collect(), objective: 1.0 };
         }
         let by_size = limits.row_scale.iter().map(|&size| 1.0 / positive(size));
         let is_slope = |slope: &f64| slope.is_finite() && *slope > f64::MIN_POSITIVE;
         let by_slope = slopes.rows.iter().map(|slope| is_slope(slope).then(|| 1.0 / slope));
-        let rows = by_size.zip(by_slope).map(|(size, slope)| slope.unwrap_or(size)).collect();
+        let factors = by_size.zip(by_slope).map(|(size, slope)| slope.unwrap_or(size));
+        let rows = factors.zip(weights).map(|(factor, weight)| factor * weight).collect();
         let objective = if is_slope(&slopes.variation) { VARIATION / slopes.variation } else { 1.0 };
         Self { variables, rows, objective }
     }
+}
+
+/// The factors of the rows by their slopes at a point and at one [`beside`] it, whichever are larger: a row may be flat
+/// at one point by chance. Weights do not count. A point without finite derivatives has no slopes.
+pub fn row_factors<N: Nlp>(nlp: &N, x: &[f64]) -> Vec<f64> {
+    let (limits, sizes) = (nlp.limits(), Scales::sizes(nlp.limits()));
+    let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
+    let (mut work, mut at) = nlp.workspace();
+    let weights = vec![0.0; nlp.rows()];
+    let mut near = x.to_vec();
+    beside(x, limits, &sizes, &mut near);
+    let mut rows = vec![0.0_f64; nlp.rows()];
+    for point in [x, &near] {
+        if nlp.derivatives(point, 1.0, &weights, &mut work, &mut at).is_ok() {
+            assembly.first(nlp.blocks(), &at);
+            for (j, size) in sizes.iter().enumerate() {
+                assembly.jacobian.column(j).for_each(|(i, a)| rows[i] = rows[i].max((a * size).abs()));
+            }
+        }
+    }
+    let plain = Limits { row_weight: vec![], ..limits.clone() };
+    Scales::from_slopes(&plain, Scaling::Automatic, &Slopes { rows, variation: 0.0 }).rows
 }
 
 /// A size that may divide.

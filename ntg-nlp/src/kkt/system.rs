@@ -55,6 +55,7 @@ struct ScaledBy {
     rule: Scaling,
     /// The sizes of the rows that the program gave.
     row_sizes: Vec<f64>,
+    row_weights: Vec<f64>,
 }
 
 impl<W> System<W> {
@@ -147,8 +148,10 @@ impl<W> System<W> {
         self.unscale(nlp, scaled);
         self.weights.fill(0.0);
         nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.workspace, &mut self.latest)?;
-        let rows = &nlp.limits().row_scale;
-        let same = |by: &ScaledBy| by.point == scaled && by.rule == scaling && by.row_sizes == *rows;
+        let limits = nlp.limits();
+        let (rows, weights) = (&limits.row_scale, &limits.row_weight);
+        let same_rows = |by: &ScaledBy| by.row_sizes == *rows && by.row_weights == *weights;
+        let same = |by: &ScaledBy| by.point == scaled && by.rule == scaling && same_rows(by);
         if self.scaled_by.as_ref().is_some_and(same) {
             self.elements.load(&self.latest.blocks);
             return Ok(());
@@ -157,7 +160,8 @@ impl<W> System<W> {
         self.set_scales(nlp, plain);
         let slopes = self.slopes(nlp);
         self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
-        self.scaled_by = Some(ScaledBy { point: scaled.to_vec(), rule: scaling, row_sizes: rows.clone() });
+        let (row_sizes, row_weights) = (rows.clone(), weights.clone());
+        self.scaled_by = Some(ScaledBy { point: scaled.to_vec(), rule: scaling, row_sizes, row_weights });
         Ok(())
     }
 

@@ -23,14 +23,15 @@ use crate::transcribe::rows::RowKind;
 use near::{Nearest, Row};
 use ntg_nlp::Status as End;
 use ntg_nlp::ipm::{self, FixedPenalty};
-use ntg_nlp::{Nlp, Options, Outcome, residuals};
+use ntg_nlp::scaling::row_factors;
+use ntg_nlp::{Nlp, Options, Outcome, Scaling, residuals};
 use ntg_structure::{Block, Place, Unit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
 /// A sum of scaled violations below this is none.
 const NOTHING: f64 = 1e-6;
-/// A multiplier below this part of the largest does not count.
+/// A multiplier below this part of the price does not count.
 const IDLE: f64 = 1e-3;
 /// The price of a violation, in units of half the squared distance from the point before.
 const PRICE: f64 = 1e2;
@@ -80,11 +81,13 @@ pub struct Conflict {
     /// Whether the solve itself came to an end. Where it was stopped by its limit of iterations, the constraints may
     /// hold together at a point that it would have come to.
     pub settled: bool,
-    /// The constraints and bounds, those that are violated first.
+    /// The constraints and bounds: limits and targets first, those that are violated before those that hold, then what
+    /// is held before them. The first one is the culprit: what gives way, and most.
     pub parts: Vec<Part>,
     /// Whether every one of them is known to be needed.
     pub minimal: bool,
-    /// The least sum of violations, each relative to its constraint's scale.
+    /// The least sum of violations: each is the distance that the point would have to move, relative to the sizes of
+    /// the variables, and what is held counts more (docs/maths.md, section 13).
     pub violation: f64,
 }
 
@@ -116,7 +119,7 @@ struct Relaxed {
     outcome: Outcome,
     /// The rows there.
     rows: Vec<f64>,
-    /// The sum of their violations, each relative to its scale.
+    /// The sum of their violations, each times its factor and weight.
     violation: f64,
 }
 
@@ -143,8 +146,8 @@ impl Report {
     /// A solve that has ended for another reason than its constraints is no witness against them: where they can hold
     /// together near the guess there is no conflict then, whatever is found near the last point.
     ///
-    /// The search takes at most ten seconds, or `Settings::time_limit` where that is shorter, and
-    /// `Settings::on_iteration` may cancel it.
+    /// The search takes at most ten seconds, or what the solve has left of `Settings::time_limit` where that is shorter,
+    /// and `Settings::on_iteration` may cancel it.
     ///
     /// # Errors
     /// [`Error`] if the problem cannot be set up.
@@ -155,7 +158,12 @@ impl Report {
         if self.is_solved() || stopped || x.iter().any(|v| !v.is_finite()) {
             return Ok(None);
         }
-        let until = Instant::now() + settings.time_limit.map_or(PATIENCE, |limit| limit.min(PATIENCE));
+        let spent = Duration::try_from_secs_f64(self.seconds).unwrap_or_default();
+        let left = settings.time_limit.map_or(PATIENCE, |limit| limit.saturating_sub(spent).min(PATIENCE));
+        if left.is_zero() {
+            return Ok(Some(Explanation::Unknown));
+        }
+        let until = Instant::now() + left;
         let settled = self.status != Status::IterationLimit;
         let witness = matches!(self.status, Status::Infeasible { .. });
         let mut nlp = Transcription::with(problem, self.solution.structure().clone())?;
@@ -186,7 +194,7 @@ fn near(
     settings: &Settings,
     until: Instant,
 ) -> Explanation {
-    let search = Search { nlp, settings: &settings.remembering(), until };
+    let search = Search { nlp, settings: &settings.remembering(), until, factors: row_factors(nlp, x) };
     let all: Constraints = (0..nlp.rows()).filter_map(|row| search.constraint(row)).collect();
     let Some(relaxed) = search.least(&all, x, NOTHING) else { return Explanation::Unknown };
     if relaxed.violation <= NOTHING {
@@ -209,6 +217,8 @@ struct Search<'a> {
     nlp: &'a Transcription<'a>,
     settings: &'a Settings,
     until: Instant,
+    /// What makes the rows comparable: violations times these are distances relative to the sizes of the variables.
+    factors: Vec<f64>,
 }
 
 impl Search<'_> {
@@ -277,16 +287,19 @@ impl Search<'_> {
         }
         let row = |row: usize| match self.constraint(row) {
             None => Row::Firm,
-            Some(constraint) if kept.contains(&constraint) => Row::Elastic,
-            Some(_) => Row::Free,
+            Some(constraint) if !kept.contains(&constraint) => Row::Free,
+            Some(_) if self.is_held(row) => Row::Held,
+            Some(_) => Row::Elastic,
         };
         let rows: Vec<Row> = (0..self.nlp.rows()).map(row).collect();
-        let near = Nearest::new(self.nlp, x, &rows);
+        let near = Nearest::new(self.nlp, x, (&rows, &self.factors));
         let options = Options {
             tolerance: TOLERANCE,
             constraint_tolerance: TOLERANCE,
             max_iterations: ITERATIONS,
             time_limit: Some(remaining),
+            // Rows have their factors already, the same in all rounds; (13.1) is scaled.
+            scaling: Scaling::Off,
             ..self.settings.solver_options()
         };
         let outcome = ipm::solve_at_fixed_penalty(&near, x, FixedPenalty { parameter: PRICE, barrier }, &options);
@@ -297,28 +310,39 @@ impl Search<'_> {
         near.values(&outcome.x, &mut work, &mut out).ok()?;
         let limits = near.limits();
         let missed = |i: usize| residuals::violation(out.rows[i], limits.row_lower[i], limits.row_upper[i]);
-        let sum = (0..near.rows()).map(|i| missed(i) / self.nlp.limits.row_scale[i]).sum();
+        let sum = (0..near.rows()).map(|i| missed(i) * limits.row_weight[i]).sum();
         let violation = if outcome.status.is_solved() { 0.0 } else { sum };
         Some(Relaxed { rows: out.rows, outcome, violation })
     }
 
-    /// The sum of scaled multipliers of each constraint, and the largest single one.
-    fn weights(&self, relaxed: &Relaxed) -> (BTreeMap<usize, f64>, f64) {
-        let (mut sums, mut largest) = (BTreeMap::new(), 0.0_f64);
-        for (row, multiplier) in relaxed.outcome.row_multipliers.iter().enumerate() {
-            let size = multiplier.abs() * self.nlp.limits.row_scale[row];
-            largest = largest.max(size);
+    /// Whether a row is held before limits and targets: an equation of motion, or a value that is fixed at the start.
+    fn is_held(&self, row: usize) -> bool {
+        let limits = &self.nlp.limits;
+        let is_equality = limits.row_lower[row] == limits.row_upper[row];
+        let block = self.constraint(row).map(|c| self.nlp.model.structure.constraints[c].block);
+        is_equality && matches!(block, Some(Block::Trajectory | Block::Initial))
+    }
+
+    /// The sum of scaled multipliers of each constraint. The penalty parameter bounds a single one of weight 1.
+    fn multipliers(&self, relaxed: &Relaxed) -> BTreeMap<usize, f64> {
+        let mut sums = BTreeMap::new();
+        for row in 0..self.nlp.rows() {
             if let Some(constraint) = self.constraint(row) {
-                *sums.entry(constraint).or_insert(0.0) += size;
+                *sums.entry(constraint).or_insert(0.0) += self.multiplier(row, relaxed);
             }
         }
-        (sums, largest)
+        sums
+    }
+
+    /// The size of a row's scaled multiplier.
+    fn multiplier(&self, row: usize, relaxed: &Relaxed) -> f64 {
+        relaxed.outcome.row_multipliers[row].abs() / self.factors[row]
     }
 
     /// The constraints that the least violation pushes against, where they alone are a conflict.
     fn without_idle(&self, all: &Constraints, relaxed: &Relaxed) -> Option<(Constraints, Relaxed)> {
-        let (sums, largest) = self.weights(relaxed);
-        let pushed = |c: &usize| sums.get(c).copied().unwrap_or(0.0) > IDLE * largest;
+        let sums = self.multipliers(relaxed);
+        let pushed = |c: &usize| sums.get(c).copied().unwrap_or(0.0) > IDLE * PRICE;
         let kept: Constraints = all.iter().copied().filter(pushed).collect();
         let none = AS_GOOD_AS_NONE * relaxed.violation;
         let fewer = self.least(&kept, &relaxed.outcome.x, none)?;
@@ -327,7 +351,7 @@ impl Search<'_> {
 
     /// The constraints in the order in which they are left out: those that matter least first.
     fn order(&self, kept: &Constraints, relaxed: &Relaxed) -> Vec<usize> {
-        let (sums, _) = self.weights(relaxed);
+        let sums = self.multipliers(relaxed);
         let mut order: Vec<usize> = kept.iter().copied().collect();
         order.sort_by(|a, b| sums.get(a).unwrap_or(&0.0).total_cmp(sums.get(b).unwrap_or(&0.0)));
         order

@@ -12,18 +12,30 @@
 use crate::transcribe::layout::narrow;
 use ntg_nlp::{Block, BlockValues, Evaluation, Limits, Nlp, NotFinite, Scales, Target};
 
-/// How much more a violation of a row that should hold counts than others.
-const FIRM: f64 = 100.0;
-
 /// What becomes of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Row {
-    /// It gives way last.
+    /// A definition or a joint: it gives way last.
     Firm,
-    /// It may be violated at a price.
+    /// An equation of motion or a value that is simply fixed: it gives way where limits and targets do not help.
+    Held,
+    /// A limit or a target: it gives way first.
     Elastic,
     /// It does not count.
     Free,
+}
+
+impl Row {
+    /// How much a violation counts. Powers of a number that is larger than the points of most trajectories: a limit
+    /// that is violated all along gives way before an equation of motion that is violated at one point.
+    pub(super) fn weight(self) -> f64 {
+        match self {
+            Self::Firm => 1e4,
+            Self::Held => 1e2,
+            Self::Elastic => 1.0,
+            Self::Free => 0.0,
+        }
+    }
 }
 
 /// The program near a point.
@@ -37,13 +49,14 @@ pub(super) struct Nearest<'a, N: Nlp> {
 }
 
 impl<'a, N: Nlp> Nearest<'a, N> {
-    pub(super) fn new(nlp: &'a N, x0: &[f64], rows: &[Row]) -> Self {
+    /// `factors` make the rows comparable ([`ntg_nlp::scaling::row_factors`]).
+    pub(super) fn new(nlp: &'a N, x0: &[f64], (rows, factors): (&[Row], &[f64])) -> Self {
         let mut limits = nlp.limits().clone();
+        limits.row_weight = factors.to_vec();
         for (i, row) in rows.iter().enumerate() {
             match row {
-                Row::Firm => limits.row_scale[i] /= FIRM,
-                Row::Elastic => {}
                 Row::Free => (limits.row_lower[i], limits.row_upper[i]) = (f64::NEG_INFINITY, f64::INFINITY),
+                counted => limits.row_weight[i] *= counted.weight(),
             }
         }
         let sizes = Scales::sizes(&limits);

@@ -1,36 +1,54 @@
 //! The parts of a conflict in the user's words: name, place, time, amount.
 
-use super::{AS_GOOD_AS_NONE, Constraints, IDLE, NOTHING, Part, Relaxed, Search};
+use super::{AS_GOOD_AS_NONE, Constraints, IDLE, NOTHING, PRICE, Part, Relaxed, Search};
 use crate::transcribe::layout::Time;
 use crate::transcribe::names;
 use crate::transcribe::rows::constraint_name;
 use ntg_nlp::{Nlp, residuals};
 use ntg_structure::{Place, Unit};
 
+/// A part with what its place in the list depends on.
+struct Ranked {
+    part: Part,
+    is_held: bool,
+    /// Its largest scaled violation.
+    relative: f64,
+    /// The sum of its scaled violations, or of its scaled multipliers where it holds.
+    share: f64,
+}
+
+impl Ranked {
+    /// What gives way comes before what holds only because others do not, bounds, and what is held.
+    fn rank(&self) -> (bool, bool, bool) {
+        (self.is_held, self.part.is_bound, self.part.amount == 0.0)
+    }
+}
+
 impl Search<'_> {
-    /// The parts of a conflict: what its least violation misses, the worst first, and what holds only because of that.
+    /// The parts of a conflict in the order of [`super::Conflict::parts`].
     pub(super) fn parts(&self, kept: &Constraints, relaxed: &Relaxed) -> Vec<Part> {
-        let mut parts: Vec<(f64, Part)> = kept.iter().filter_map(|c| self.part(*c, relaxed)).collect();
-        let largest = parts.iter().map(|(relative, _)| *relative).fold(0.0, f64::max);
-        for (relative, part) in parts.iter_mut().filter(|(relative, _)| *relative < AS_GOOD_AS_NONE * largest) {
-            (*relative, part.amount) = (0.0, 0.0);
+        let mut parts: Vec<Ranked> = kept.iter().filter_map(|c| self.part(*c, relaxed)).collect();
+        let largest = parts.iter().map(|ranked| ranked.relative).fold(0.0, f64::max);
+        for ranked in parts.iter_mut().filter(|ranked| ranked.relative < AS_GOOD_AS_NONE * largest) {
+            ranked.part.amount = 0.0;
         }
-        parts.extend(self.bounds(relaxed).into_iter().map(|part| (0.0, part)));
-        parts.sort_by(|a, b| b.0.total_cmp(&a.0));
-        parts.into_iter().map(|(_, part)| part).collect()
+        let bound = |part| Ranked { part, is_held: false, relative: 0.0, share: 0.0 };
+        parts.extend(self.bounds(relaxed).into_iter().map(bound));
+        parts.sort_by(|a, b| a.rank().cmp(&b.rank()).then(b.share.total_cmp(&a.share)));
+        parts.into_iter().map(|ranked| ranked.part).collect()
     }
 
-    /// One constraint with its relative violation: at its worst row, or at the row with the largest
-    /// multiplier where all hold.
-    fn part(&self, constraint: usize, relaxed: &Relaxed) -> Option<(f64, Part)> {
+    /// One constraint at its worst row, or at the row with the largest multiplier where all hold.
+    fn part(&self, constraint: usize, relaxed: &Relaxed) -> Option<Ranked> {
         let (limits, rows) = (&self.nlp.limits, &relaxed.rows);
         let missed = |row: usize| residuals::violation(rows[row], limits.row_lower[row], limits.row_upper[row]);
-        let own = (0..rows.len()).filter(|row| self.constraint(*row) == Some(constraint));
+        let own: Vec<usize> = (0..rows.len()).filter(|row| self.constraint(*row) == Some(constraint)).collect();
         let key = |row: &usize| {
-            let relative = missed(*row) / limits.row_scale[*row];
-            (if relative > NOTHING { relative } else { 0.0 }, relaxed.outcome.row_multipliers[*row].abs())
+            let relative = missed(*row) * self.factors[*row];
+            (if relative > NOTHING { relative } else { 0.0 }, self.multiplier(*row, relaxed))
         };
-        let worst = own.max_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal))?;
+        let by_key = |a: &usize, b: &usize| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal);
+        let worst = own.iter().copied().max_by(by_key)?;
         let (structure, layout) = (&self.nlp.model.structure, &self.nlp.model.layout);
         let declared = &structure.constraints[constraint];
         let point = self.nlp.elements.rows[worst].point;
@@ -46,14 +64,15 @@ impl Search<'_> {
             time: point.phase.map(|phase| layout.start(phase, x) + point.tau * layout.duration(phase, x)),
             phase: point.phase.map(|phase| names::phase(structure, layout, phase)).unwrap_or_default(),
         };
-        Some((relative, part))
+        let size = |row: &usize| if relative > 0.0 { key(row).0 } else { key(row).1 };
+        let share = own.iter().map(size).sum();
+        Some(Ranked { part, is_held: self.is_held(worst), relative, share })
     }
 
     /// Bounds of durations, starts and variables against which the violation pushes.
     fn bounds(&self, relaxed: &Relaxed) -> Vec<Part> {
-        let (_, largest) = self.weights(relaxed);
         let scale = &self.nlp.limits.scale;
-        let pushed = |v: &usize| relaxed.outcome.bound_multipliers[*v].abs() * scale[*v] > IDLE * largest.max(NOTHING);
+        let pushed = |v: &usize| relaxed.outcome.bound_multipliers[*v].abs() * scale[*v] > IDLE * PRICE;
         let bounded = (self.nlp.model.layout.coefficients..self.nlp.variables()).filter(pushed);
         let part = |variable: usize| {
             let side = if relaxed.outcome.bound_multipliers[variable] > 0.0 { "lower" } else { "upper" };

@@ -246,6 +246,7 @@ fn limits(elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
         row_lower: elements.lower.clone(),
         row_upper: elements.upper.clone(),
         row_scale: vec![1.0; elements.rows.len()],
+        row_weight: vec![],
     }
 }
 
