@@ -172,12 +172,30 @@ pub(crate) struct Solve {
     /// and solve again, until all is proved.
     #[arg(long, conflicts_with_all = ["count", "refine"])]
     pub(crate) guarantee: bool,
+    /// What becomes of a solution that violates constraints between the points of the transcription.
+    #[arg(long, value_enum, default_value_t = Between::Report)]
+    pub(crate) between: Between,
+    /// The largest violation between the points of which nothing is said, relative to the constraint's bound; 0.01
+    /// without it.
+    #[arg(long, value_name = "VIOLATION", allow_negative_numbers = true)]
+    pub(crate) between_tolerance: Option<f64>,
     /// Largest scaled residual of the optimality conditions.
     #[arg(long, value_name = "RESIDUAL", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// Which method solves the problem.
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub(crate) method: Method,
+}
+
+/// What becomes of violations between the points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Between {
+    /// A warning names the constraints.
+    Report,
+    /// It is no solution.
+    Refuse,
+    /// The mesh is refined until the tolerance is met.
+    Refine,
 }
 
 /// Which starts are wanted.

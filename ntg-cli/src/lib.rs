@@ -1,7 +1,7 @@
 //! The `ntg` command: one file a verb, no mathematics. A library, so that other programs may offer the same command.
 //!
-//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, 130 stopped by
-//! Ctrl-C.
+//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, 3 a solution
+//! that is less than what was asked for (acceptable, or not as exact as `--refine` asks), 130 stopped by Ctrl-C.
 
 mod arguments;
 mod certify;
@@ -41,6 +41,8 @@ enum Exit {
     Done,
     NotSolved,
     NotFormatted,
+    /// There is a solution, but it is acceptable only, or its mesh is not as fine as it should be.
+    Acceptable,
     Bad,
     Interrupted,
 }
@@ -52,6 +54,7 @@ impl Exit {
             Self::Done => 0,
             Self::NotSolved | Self::NotFormatted => 1,
             Self::Bad => 2,
+            Self::Acceptable => 3,
             // What shells say of a command that ended by SIGINT.
             Self::Interrupted => 130,
         }

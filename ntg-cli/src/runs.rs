@@ -134,7 +134,9 @@ impl Spec<'_> {
         (starts, interrupt): (Option<&MultiReport>, &Interrupt),
         iterations: &[Progress],
     ) -> Run {
-        if !report.is_solved() {
+        if report.status.is_acceptable() {
+            eprintln!("warning: {}: {}", self.path.display(), report.status);
+        } else if !report.is_solved() {
             eprintln!("warning: {}: {}; what follows is the last point", self.path.display(), report.status);
         }
         let explanation = explained(report, &self.problem, &Settings::default(), interrupt);

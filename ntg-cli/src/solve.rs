@@ -16,7 +16,7 @@ use ntg_runtime::multistart::MultiReport;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::refine::{Refined, Refinement};
 use ntg_runtime::report::Report;
-use ntg_runtime::settings::{Method, Settings};
+use ntg_runtime::settings::{Between, Method, Settings};
 use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
@@ -112,6 +112,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     Ok(match proved && report.is_solved() && report.refined.as_ref().is_none_or(Refined::is_met) {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,
+        false if report.has_solution() => Exit::Acceptable,
         false => Exit::NotSolved,
     })
 }
@@ -156,6 +157,14 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
         settings.tolerance = tolerance;
     }
     settings.refine = arguments.refine.map(Refinement::to);
+    settings.between = match arguments.between {
+        arguments::Between::Report => Between::Report,
+        arguments::Between::Refuse => Between::Refuse,
+        arguments::Between::Refine => Between::Refine,
+    };
+    if let Some(tolerance) = arguments.between_tolerance {
+        settings.between_tolerance = tolerance;
+    }
     settings.method = match arguments.method {
         arguments::Method::Auto => Method::Auto,
         arguments::Method::Sqp => Method::Sqp,

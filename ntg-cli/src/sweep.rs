@@ -150,11 +150,17 @@ pub(crate) fn remove(journals: &[PathBuf]) {
 pub(crate) fn finished(results: &Results, output: &Path) -> Exit {
     let rows = &results.rows;
     let solved = rows.iter().filter(|row| row.is_solved()).count();
-    eprintln!("{}: {} rows, {solved} solved", output.display(), rows.len());
+    let acceptable = rows.iter().filter(|row| row.status == "acceptable").count();
+    let also = if acceptable > 0 { format!(", {acceptable} acceptable") } else { String::new() };
+    eprintln!("{}: {} rows, {solved} solved{also}", output.display(), rows.len());
     if let Some(row) = rows.iter().find(|row| !row.is_solved()) {
         eprintln!("the first that is not: row {}, {}", row.row, row.status);
     }
-    if solved == rows.len() { Exit::Done } else { Exit::NotSolved }
+    match rows.len() - solved {
+        0 => Exit::Done,
+        others if others == acceptable => Exit::Acceptable,
+        _ => Exit::NotSolved,
+    }
 }
 
 fn settings(arguments: &Arguments) -> Result<Settings, String> {

@@ -72,6 +72,8 @@ pub struct Outcome {
     pub row_multipliers: Vec<f64>,
     /// The same for the bounds of the variables.
     pub bound_multipliers: Vec<f64>,
+    /// The factor of each row with which violations become comparable (docs/maths.md, equation 5.2).
+    pub row_factors: Vec<f64>,
     /// The minimised objective at `x`.
     pub objective: f64,
     /// How far `x` and the multipliers are from a solution.
@@ -99,6 +101,7 @@ impl Outcome {
             x: start.to_vec(),
             row_multipliers: vec![0.0; nlp.rows()],
             bound_multipliers: vec![0.0; nlp.variables()],
+            row_factors: vec![1.0; nlp.rows()],
             objective: f64::NAN,
             residuals: Residuals::default(),
             iterations: 0,

@@ -81,6 +81,11 @@ impl Status {
         matches!(self, Self::Solved)
     }
 
+    /// Whether there is a solution: solved or acceptable.
+    pub fn has_solution(&self) -> bool {
+        matches!(self, Self::Solved | Self::Acceptable)
+    }
+
     /// Whether another method could do no better.
     pub fn is_final(&self) -> bool {
         matches!(self, Self::Solved | Self::Acceptable | Self::Cancelled | Self::TimeLimit | Self::Contradiction { .. })

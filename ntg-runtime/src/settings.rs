@@ -73,6 +73,12 @@ pub struct Settings {
     /// Whether a solve is followed by others on finer meshes, and how far
     /// (docs/maths.md, section 14). Default none.
     pub refine: Option<Refinement>,
+    /// What becomes of a solution that violates constraints between the points of the transcription by more than
+    /// `between_tolerance`. Default [`Between::Report`].
+    pub between: Between,
+    /// The largest violation between the points, relative to the constraint's bound (docs/maths.md, equation 9.3), of
+    /// which nothing is said; positive. Default 0.01.
+    pub between_tolerance: f64,
     /// Whether steps are corrected for the curvature of the constraints
     /// (docs/maths.md, section 6, second-order correction). Default true.
     pub second_order_correction: bool,
@@ -95,6 +101,8 @@ impl Default for Settings {
             scales: Vec::new(),
             samples: 20,
             refine: None,
+            between: Between::default(),
+            between_tolerance: 0.01,
             second_order_correction: true,
             exact_hessian: true,
         }
@@ -114,6 +122,8 @@ impl fmt::Debug for Settings {
             .field("scales", &self.scales)
             .field("samples", &self.samples)
             .field("refine", &self.refine)
+            .field("between", &self.between)
+            .field("between_tolerance", &self.between_tolerance)
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
             .finish()
@@ -201,6 +211,9 @@ impl Settings {
         if self.samples == 0 {
             return invalid("samples", "it must be at least 1".into());
         }
+        if !(self.between_tolerance > 0.0 && self.between_tolerance.is_finite()) {
+            return invalid("between_tolerance", format!("{} is not positive and finite", self.between_tolerance));
+        }
         if let Some(refinement) = &self.refine {
             refinement.validate()?;
         }
@@ -211,6 +224,18 @@ impl Settings {
             None => Ok(()),
         }
     }
+}
+
+/// What becomes of a solution that violates constraints between the points of the transcription.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Between {
+    /// It is a solution, and [`Report::warnings`](crate::report::Report::warnings) names the constraints.
+    #[default]
+    Report,
+    /// It is no solution: the status is [`Status::ViolatedBetween`](crate::status::Status).
+    Refuse,
+    /// The mesh is refined until cost and constraints are exact to the tolerance, as [`Settings::refine`] does.
+    Refine,
 }
 
 /// How far meshes are refined (docs/maths.md, section 14).

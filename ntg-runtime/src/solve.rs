@@ -5,7 +5,7 @@ use crate::guess::Guess;
 use crate::problem::Problem;
 use crate::refine::refine;
 use crate::report::Report;
-use crate::settings::Settings;
+use crate::settings::{Between, Refinement, Settings};
 use crate::strategy::{Session, Task};
 
 /// Solves a problem from the spec's own guess.
@@ -58,10 +58,12 @@ pub(crate) fn solve_and_refine(session: &mut Session, task: Task<'_>, settings: 
     refined(task.problem, report, settings)
 }
 
-/// A report on finer meshes where the settings say so.
+/// A report on finer meshes where the settings say so; refused where they do not allow violations between the points.
 pub(crate) fn refined(problem: &dyn Problem, report: Report, settings: &Settings) -> Result<Report, Error> {
-    match &settings.refine {
-        Some(wanted) => refine(problem, report, wanted, settings),
-        None => Ok(report),
-    }
+    let by_violation = settings.between == Between::Refine && !report.violated_between().is_empty();
+    let report = match settings.refine.or(by_violation.then(|| Refinement::to(settings.between_tolerance.min(0.1)))) {
+        Some(wanted) => refine(problem, report, &wanted, settings)?,
+        None => report,
+    };
+    Ok(if settings.between == Between::Refuse { report.refused() } else { report })
 }

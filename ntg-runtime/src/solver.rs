@@ -104,7 +104,7 @@ impl<P: Problem, S> Solver<P, S> {
     }
 
     fn keep(&mut self, report: Report) -> S {
-        if report.is_solved() {
+        if report.has_solution() {
             self.last = Some(report.solution.clone());
         }
         (self.typed)(&self.problem, report)

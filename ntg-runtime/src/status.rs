@@ -80,6 +80,12 @@ pub enum Status {
     /// The solve could not go on, and all residuals are within 1e-6 though not within their tolerances: in most cases
     /// the solution to five or six digits.
     Acceptable,
+    /// All residuals are within their tolerances, but constraints are violated between the points of the transcription
+    /// by more than `Settings::between_tolerance`, which [`Between::Refuse`](crate::settings::Between) does not allow.
+    ViolatedBetween {
+        /// The constraints, the worst first, in words with time and amount.
+        constraints: Vec<String>,
+    },
     /// The point minimises the violation of the constraints locally, and some stay violated.
     Infeasible {
         /// What remains violated, the worst (by scale) first.
@@ -107,9 +113,27 @@ pub enum Status {
 }
 
 impl Status {
-    /// Whether a solution was found.
+    /// Whether a solution was found within the tolerances.
     pub fn is_solved(&self) -> bool {
         matches!(self, Self::Solved)
+    }
+
+    /// Whether a solution was found within 1e-6, though not within the tolerances.
+    pub fn is_acceptable(&self) -> bool {
+        matches!(self, Self::Acceptable)
+    }
+
+    /// Whether there is a solution: solved or acceptable.
+    pub fn has_solution(&self) -> bool {
+        self.is_solved() || self.is_acceptable()
+    }
+
+    /// One word for a solution, `solved` or `acceptable`; else why there is none, in words.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Acceptable => "acceptable".into(),
+            other => other.to_string(),
+        }
     }
 
     /// What a person may try next; empty when solved.
@@ -119,6 +143,9 @@ impl Status {
             Self::Acceptable => {
                 "Compare the residuals with what you need; for more digits give typical sizes by `scales`, or remove \
                  constraints that say the same thing twice."
+            }
+            Self::ViolatedBetween { .. } => {
+                "Use more points or intervals, or let the mesh be refined by `between` or `refine`."
             }
             Self::Infeasible { .. } => {
                 "Relax one of the named constraints, or start from another guess: the constraints may \
@@ -155,6 +182,10 @@ impl fmt::Display for Status {
         match self {
             Self::Solved => f.write_str("solved"),
             Self::Acceptable => f.write_str("acceptable: optimal to 1e-6, not to the tolerances"),
+            Self::ViolatedBetween { constraints } => {
+                f.write_str("not a solution between the points")?;
+                list(f, constraints, |f, constraint| f.write_str(constraint))
+            }
             Self::Infeasible { rows } => {
                 f.write_str("infeasible: no nearby point meets all constraints")?;
                 list(f, rows, |f, row| {

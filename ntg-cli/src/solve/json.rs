@@ -12,7 +12,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
     let solution = &report.solution;
     let mut document = json!({
         "problem": report.problem,
-        "status": if report.is_solved() { "solved".to_owned() } else { report.status.to_string() },
+        "status": report.status.label(),
         "advice": report.advice,
         "objective": report.objective,
         "objective_unit": report.objective_unit.symbol,
@@ -32,8 +32,9 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "outputs": outputs(solved),
         "lets": lets(solved),
         "constraints": report.constraints.iter().map(constraint).collect::<Vec<_>>(),
-        "warnings": report.singular.iter().map(|s| json!({
-            "message": s.to_string(), "expression": s.place.text, "line": s.place.line, "column": s.place.column,
+        "warnings": report.warnings().iter().map(|w| json!({
+            "message": w.message, "expression": w.place.text, "line": w.place.line, "column": w.place.column,
+            "constraint": w.constraint, "t": w.time,
         })).collect::<Vec<_>>(),
         "history": history(report),
     });

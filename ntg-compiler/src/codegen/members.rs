@@ -113,9 +113,14 @@ pub(super) fn of_problem(objective: &Unit) -> TokenStream {
             self._report.objective
         }
 
-        /// Whether a solution was found; `status` says what happened otherwise.
+        /// Whether a solution was found within the tolerances; `status` says what happened otherwise.
         pub fn is_solved(&self) -> bool {
             self._report.is_solved()
+        }
+
+        /// Whether there is a solution, within the tolerances or at least to 1e-6 (`Status::Acceptable`).
+        pub fn has_solution(&self) -> bool {
+            self._report.has_solution()
         }
 
         /// Why the solve ended; it says so in words, and `advice` what to try next.

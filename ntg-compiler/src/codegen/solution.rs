@@ -19,7 +19,7 @@ use super::tree::{Kind, Scope, scopes};
 
 /// Methods that are ours.
 const OURS: [&str; 11] =
-    ["objective", "is_solved", "status", "times", "report", "untyped", "start", "end", "duration", "new", "clone"];
+    ["objective", "is_solved", "has_solution", "status", "times", "report", "untyped", "start", "end", "duration", "new", "clone"];
 
 /// `VanDerPolSolution`.
 pub(super) fn type_name(problem: &str) -> Ident {

@@ -87,6 +87,7 @@ impl<N: Nlp> State<'_, N> {
             (0..n).map(|j| self.multipliers[first + j] / self.system.scales.variables[j] / objective).collect();
         let x = self.system.unscaled(self.nlp, &self.x).to_vec();
         let residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
+        let row_factors = self.system.scales.rows.clone();
         self.analysis.system = Some(self.system);
         self.analysis.is_unchanged = true;
         Outcome {
@@ -94,6 +95,7 @@ impl<N: Nlp> State<'_, N> {
             x,
             row_multipliers,
             bound_multipliers,
+            row_factors,
             objective: self.record.objective,
             residuals,
             iterations: self.iterations,

@@ -60,6 +60,7 @@ impl<N: Nlp> Run<'_, N> {
             x: self.program.unscale(&self.x),
             row_multipliers,
             bound_multipliers,
+            row_factors: self.program.scales.rows.clone(),
             objective: self.record.objective,
             residuals: self.record.residuals,
             iterations: self.iterations,

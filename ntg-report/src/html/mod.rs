@@ -79,7 +79,7 @@ fn head(run: &Run) -> Markup {
         header {
             div.bar {
                 h1 { (run.problem) }
-                span.status.good[run.is_solved()].bad[!run.is_solved()] { (run.status) }
+                span.status.good[run.is_sound()].warned[run.has_solution() && !run.is_sound()].bad[!run.has_solution()] { (run.status) }
                 button #theme type="button" title="light or dark" { "◐" }
             }
             @let doc = run.doc.split("\n\n").next().unwrap_or("");

@@ -37,6 +37,9 @@ pub struct Run {
     pub status: String,
     /// What to try next; empty when solved.
     pub advice: String,
+    /// What is to be known beside the status, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// In the user's sense and unit.
     #[serde(with = "numbers::one")]
     pub objective: f64,
@@ -419,8 +422,23 @@ impl Run {
         serde_json::to_string(self).unwrap_or_default() + "\n"
     }
 
-    /// Whether a solution was found.
+    /// Whether a solution was found within the tolerances.
     pub fn is_solved(&self) -> bool {
         self.status == "solved"
+    }
+
+    /// Whether a solution was found within 1e-6, though not within the tolerances.
+    pub fn is_acceptable(&self) -> bool {
+        self.status == "acceptable"
+    }
+
+    /// Whether there is a solution: solved or acceptable.
+    pub fn has_solution(&self) -> bool {
+        self.is_solved() || self.is_acceptable()
+    }
+
+    /// Whether it is solved and there is nothing to warn of.
+    pub fn is_sound(&self) -> bool {
+        self.is_solved() && self.warnings.is_empty()
     }
 }

@@ -49,7 +49,12 @@ pub(super) fn minima(solved: Vec<(usize, Report)>) -> Vec<Group> {
     let mut found: Vec<(Candidate, Vec<usize>)> = vec![];
     for candidate in candidates {
         match found.iter_mut().find(|(known, _)| same(known, &candidate)) {
-            Some((_, starts)) => starts.push(candidate.start),
+            Some((known, starts)) => {
+                starts.push(candidate.start);
+                if !known.report.is_solved() && candidate.report.is_solved() {
+                    *known = candidate; // Rather solved than acceptable.
+                }
+            }
             None => {
                 let start = candidate.start;
                 found.push((candidate, vec![start]));

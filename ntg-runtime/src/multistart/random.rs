@@ -30,7 +30,8 @@ fn between(rng: &mut Rng, lower: f64, upper: f64) -> f64 {
     lower + (upper - lower) * rng.f64()
 }
 
-/// The guess with every vehicle on a route through one or two random points of its box.
+/// The guess with every vehicle on a route through one or two random points of its box, and everything that is no
+/// position perturbed.
 pub(super) fn route(
     nlp: &Transcription,
     vehicles: &[Vehicle],
@@ -49,7 +50,7 @@ pub(super) fn route(
         let points = [start.clone()].into_iter().chain(via).chain([end]).collect();
         curves.extend(along(nlp, vehicle, points));
     }
-    let mut x = guess.to_vec();
+    let mut x = perturbed_variables(nlp, guess, rng);
     apply(&nlp.model.layout, &curves, &mut x)?;
     finish(nlp, x)
 }
@@ -71,6 +72,11 @@ fn along<'a>(nlp: &Transcription, vehicle: &Vehicle, points: Vec<Vec<f64>>) -> V
 /// The guess with a few half sine waves added to every output, other durations and other variables
 /// (docs/maths.md, equation 12.2).
 pub(super) fn perturbed(nlp: &Transcription, guess: &[f64], rng: &mut Rng) -> Result<Vec<f64>, SetupError> {
+    finish(nlp, perturbed_variables(nlp, guess, rng))
+}
+
+/// As [`perturbed`], before definitions are made to hold.
+fn perturbed_variables(nlp: &Transcription, guess: &[f64], rng: &mut Rng) -> Vec<f64> {
     let layout = &nlp.model.layout;
     let mut x = guess.to_vec();
     for agent in &layout.agents {
@@ -91,7 +97,7 @@ pub(super) fn perturbed(nlp: &Transcription, guess: &[f64], rng: &mut Rng) -> Re
         let part = between(rng, -AMPLITUDE, AMPLITUDE);
         *value += part * if (upper - lower).is_finite() { upper - lower } else { value.abs().max(1.0) };
     }
-    finish(nlp, x)
+    x
 }
 
 /// Every output of some phases once.

@@ -7,9 +7,10 @@ use super::{lattice, minima, random};
 use crate::error::Error;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
-use crate::refine::{Refinement, refine};
 use crate::report::Report;
-use crate::settings::{Control, InvalidSetting, Settings};
+use crate::settings::{Between, Control, InvalidSetting, Settings};
+use crate::solve::refined;
+use crate::status::Status;
 use crate::strategy::{Session, Task};
 use crate::transcribe::Transcription;
 use rayon::prelude::*;
@@ -65,9 +66,7 @@ pub fn multistart_from(
     });
     let solved: Vec<One> = solved.collect::<Vec<_>>().into_iter().flatten().collect();
     let mut report = gather(solved);
-    if let Some(wanted) = &settings.refine {
-        report.refine(problem, wanted, &settings.after(began.elapsed()))?;
-    }
+    report.finish(problem, &settings.after(began.elapsed()))?;
     report.problem.clone_from(&nlp.model.structure.name);
     report.notes = plan.notes;
     report.seconds = began.elapsed().as_secs_f64();
@@ -154,16 +153,19 @@ impl<'a> Plan<'a> {
         let mut rng = random::generator(self.starts.seed, number);
         let given = usize::from(self.starts.kind == StartKind::Mixed);
         let x = match origin {
-            Origin::Guess => Ok(self.base.to_vec()),
-            Origin::Search => Ok(self.searched[number - given].clone()),
-            Origin::Route => random::route(self.nlp, self.vehicles, self.base, &mut rng),
-            Origin::Perturbed => random::perturbed(self.nlp, self.base, &mut rng),
+            // The plain solve, bit for bit.
+            Origin::Guess => Ok(None),
+            Origin::Search => Ok(Some(self.searched[number - given].clone())),
+            Origin::Route => random::route(self.nlp, self.vehicles, self.base, &mut rng).map(Some),
+            Origin::Perturbed => random::perturbed(self.nlp, self.base, &mut rng).map(Some),
             Origin::Parameters => {
-                parameters::draw(self.nlp, self.guess, self.open, (self.starts.seed, self.visit(number)))
+                parameters::draw(self.nlp, self.guess, self.open, (self.starts.seed, self.visit(number))).map(Some)
             }
         };
-        let result =
-            x.map_err(Error::from).and_then(|x| session.solve(Task { problem, guess: Some(&Guess::raw(x)) }, settings));
+        let result = x.map_err(Error::from).and_then(|x| {
+            let drawn = x.map(Guess::raw);
+            session.solve(Task { problem, guess: Some(drawn.as_ref().unwrap_or(self.guess)) }, settings)
+        });
         One { origin, result: result.map_err(|error| error.to_string()), seconds: began.elapsed().as_secs_f64() }
     }
 }
@@ -181,7 +183,7 @@ impl Watch<'_> {
         let Some(on_start) = &self.starts.on_start else { return one };
         let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         state.0 += 1;
-        if let Some(report) = one.result.as_ref().ok().filter(|r| r.is_solved()) {
+        if let Some(report) = one.result.as_ref().ok().filter(|r| r.has_solution()) {
             state.1 += 1;
             let better = |held: f64| if maximize { report.objective > held } else { report.objective < held };
             if state.2.is_none_or(better) {
@@ -205,12 +207,12 @@ fn gather(all: Vec<One>) -> MultiReport {
     let (mut starts, mut solved, mut nearest) = (vec![], vec![], None::<Box<Report>>);
     for (number, One { origin, result, seconds }) in all.into_iter().enumerate() {
         let (status, objective, iterations) = match &result {
-            Ok(report) => (report.status.to_string(), report.objective, report.iterations),
+            Ok(report) => (report.status.label(), report.objective, report.iterations),
             Err(message) => (message.clone(), f64::NAN, 0),
         };
         starts.push(StartReport { origin, status, minimum: None, objective, iterations, seconds });
         match result {
-            Ok(report) if report.is_solved() => solved.push((number, report)),
+            Ok(report) if report.has_solution() => solved.push((number, report)),
             Ok(report) => {
                 let primal = |r: &Report| r.residuals.scaled.primal;
                 if nearest.as_ref().is_none_or(|held| primal(&report) < primal(held)) {
@@ -230,12 +232,21 @@ fn gather(all: Vec<One>) -> MultiReport {
 }
 
 impl MultiReport {
-    /// Refines every minimum, and puts those together that are one on finer meshes.
-    fn refine(&mut self, problem: &dyn Problem, wanted: &Refinement, settings: &Settings) -> Result<(), Error> {
+    /// Refines every minimum where the settings say so, puts those together that are one on finer meshes, and leaves out
+    /// those that the settings refuse.
+    fn finish(&mut self, problem: &dyn Problem, settings: &Settings) -> Result<(), Error> {
+        if settings.refine.is_none() && settings.between == Between::Report {
+            return Ok(());
+        }
         let coarse = std::mem::take(&mut self.minima);
-        let refined = coarse.into_par_iter().map(|minimum| refine(problem, minimum.report, wanted, settings));
+        let refined = coarse.into_par_iter().map(|minimum| refined(problem, minimum.report, settings));
         let refined = refined.collect::<Result<Vec<Report>, Error>>()?;
-        let groups = minima::minima(refined.into_iter().enumerate().collect());
+        let is_refused = |report: &Report| matches!(report.status, Status::ViolatedBetween { .. });
+        if refined.iter().all(is_refused) && self.nearest.is_none() {
+            self.nearest = refined.first().cloned().map(Box::new);
+        }
+        let kept = refined.into_iter().enumerate().filter(|(_, report)| !is_refused(report));
+        let groups = minima::minima(kept.collect());
         let now = |before: usize| groups.iter().position(|group| group.starts.contains(&before));
         self.starts.iter_mut().for_each(|start| start.minimum = start.minimum.and_then(now));
         for (index, group) in groups.into_iter().enumerate() {

@@ -30,7 +30,7 @@ pub(super) fn marks(
     let above = |error: f64| error > tolerance || error.is_nan();
     let (moving, inexact) = (above(round.change), above(round.quadrature));
     let unsettled = moving || inexact;
-    let violated = violations(nlp, x, samples)?;
+    let violated = violations(nlp, report, samples)?;
     for (phase, member) in layout.phases.iter().enumerate() {
         let intervals = member.breakpoints.len() - 1;
         let jumps = jumps(member, x);

@@ -51,13 +51,18 @@ pub fn refine(
         // A solution starts every further round; there is nothing to continue from.
         structure.continuations.clear();
     });
-    let mut run = Run { mesh, report, rounds: vec![], wanted, settings: &settings };
+    let mut run = Run { mesh, best: report.clone(), report, rounds: vec![], wanted, settings: &settings };
     let status = loop {
         if let Some(status) = run.round(before + began.elapsed())? {
             break status;
         }
     };
-    let Run { mut report, rounds, .. } = run;
+    let Run { mut report, best, rounds, .. } = run;
+    let mut status = status;
+    if is_better(&best, &report, wanted.tolerance) {
+        report = best;
+        status = RefineStatus::Worse;
+    }
     report.seconds = (before + began.elapsed()).as_secs_f64();
     report.iterations = rounds.iter().map(|round| round.iterations).sum();
     report.refined = Some(Refined { rounds, status, tolerance: wanted.tolerance });
@@ -68,6 +73,8 @@ pub fn refine(
 struct Run<'a> {
     mesh: WithStructure<'a>,
     report: Report,
+    /// The best solve so far: its violation counts, and then its objective.
+    best: Report,
     rounds: Vec<Round>,
     wanted: &'a Refinement,
     settings: &'a Settings,
@@ -80,7 +87,7 @@ impl Run<'_> {
         let found = round(&nlp, &self.report, self.rounds.last());
         let met = found.within(self.wanted.tolerance);
         self.rounds.push(found);
-        if !self.report.is_solved() {
+        if !self.report.has_solution() {
             return Ok(Some(ended(&self.report)));
         }
         if met {
@@ -105,7 +112,10 @@ impl Run<'_> {
         }
         let settings = Settings { time_limit: remaining, ..self.settings.clone() };
         let next = from(&finer, &self.report.solution, &settings)?;
-        if next.is_solved() {
+        if next.has_solution() {
+            if !is_better(&self.best, &next, self.wanted.tolerance) {
+                self.best = next.clone();
+            }
             (self.report, self.mesh) = (next, finer);
             return Ok(None);
         }
@@ -121,6 +131,18 @@ fn from(mesh: &WithStructure, before: &Solution, settings: &Settings) -> Result<
         Some(report) => Ok(report),
         None => session.solve(Task { problem: mesh, guess: Some(&Guess::from(before)) }, settings),
     }
+}
+
+/// Whether a solution is better than another: it violates less, or as little and its objective is better. Below the
+/// tolerance all violations are alike, and so are objectives that differ by less.
+fn is_better(one: &Report, other: &Report, tolerance: f64) -> bool {
+    let violation = |report: &Report| crate::math::max(report.violation.between, tolerance);
+    if violation(one) != violation(other) {
+        return violation(one) < violation(other);
+    }
+    let (a, b) = (one.objective_fine, other.objective_fine);
+    let better_by = if one.solution.structure().maximize { a - b } else { b - a };
+    better_by > tolerance * a.abs().max(b.abs())
 }
 
 /// Why refinement ended with a solve that found no solution.

@@ -23,24 +23,26 @@ pub(super) fn constraints(
             place: constraint.place.clone(),
             block: constraint.block,
             unit: constraint.unit.clone(),
+            size: constraint.unit.factor,
             points: None,
             between: None,
             multiplier: None,
             sensitivity: 0.0,
         })
         .collect();
+    set_sizes(nlp, outcome, &mut reports);
     for (row, info) in nlp.elements.rows.iter().enumerate() {
         let RowKind::Constraint(constraint) = info.kind else { continue };
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
         let report = &mut reports[constraint];
-        let unit = report.unit.factor;
-        keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, unit), &info.point);
+        let sizes = (report.size, report.unit.factor);
+        keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), &info.point);
         multipliers::add(nlp, outcome, row, report);
     }
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
-        let unit = report.unit.factor;
-        keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, unit), &checked.point);
+        let sizes = (report.size, report.unit.factor);
+        keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, sizes), &checked.point);
     })?;
     Ok((reports, terms))
 }
@@ -50,14 +52,14 @@ fn keep(
     nlp: &Transcription,
     x: &[f64],
     worst: &mut Option<Worst>,
-    (value, (lower, upper), unit): (f64, (f64, f64), f64),
+    (value, (lower, upper), (size, unit)): (f64, (f64, f64), (f64, f64)),
     point: &Point,
 ) {
     if worst.is_some() && lower <= value && value <= upper {
         return; // As nearly all are.
     }
     let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
-    let relative = missed / scale(lower, upper, unit);
+    let relative = missed / scale(lower, upper, size);
     let worse = |held: &Worst| relative > held.relative || (relative.is_nan() && !held.relative.is_nan());
     if worst.as_ref().is_none_or(worse) {
         let layout = &nlp.model.layout;
@@ -67,8 +69,21 @@ fn keep(
     }
 }
 
-/// The larger finite bound, or the unit where both are zero or missing (equation 9.3).
-pub(super) fn scale(lower: f64, upper: f64, unit: f64) -> f64 {
+/// Sets what violations of bounds of 0 are relative to: the largest slope of the constraint's rows.
+fn set_sizes(nlp: &Transcription, outcome: &Outcome, reports: &mut [ConstraintReport]) {
+    let mut slopes = vec![0.0_f64; reports.len()];
+    for (info, factor) in nlp.elements.rows.iter().zip(&outcome.row_factors) {
+        if let (RowKind::Constraint(constraint), true) = (info.kind, factor.is_finite() && *factor > 0.0) {
+            slopes[constraint] = slopes[constraint].max(1.0 / factor);
+        }
+    }
+    for (report, slope) in reports.iter_mut().zip(slopes).filter(|(_, slope)| *slope > 0.0) {
+        report.size = slope;
+    }
+}
+
+/// The larger finite bound, or the size of the terms where both are zero or missing (equation 9.3).
+pub(super) fn scale(lower: f64, upper: f64, size: f64) -> f64 {
     let largest = bound_size((lower, upper));
-    if largest > 0.0 { largest } else { unit }
+    if largest > 0.0 { largest } else { size }
 }

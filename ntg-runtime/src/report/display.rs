@@ -1,6 +1,6 @@
 //! A report as a person reads it.
 
-use super::{ConstraintReport, Report};
+use super::{ConstraintReport, Report, Warning};
 use crate::transcribe::names::brief;
 use ntg_structure::Unit;
 use std::fmt;
@@ -42,15 +42,20 @@ impl fmt::Display for Report {
         for variable in self.solution.variables() {
             write!(f, "\n  {:<11} {}{}", variable.name, brief(variable.value), symbol(&variable.unit))?;
         }
-        self.singular.iter().try_for_each(|singular| write!(f, "\n  warning: {singular}"))?;
-        self.constraints.iter().try_for_each(|constraint| violated(f, constraint))
+        // What refinement has to say stands above.
+        let is_new = |warning: &&Warning| !warning.place.text.is_empty() || !warning.constraint.is_empty();
+        self.warnings().iter().filter(is_new).try_for_each(|warning| write!(f, "\n  warning: {warning}"))?;
+        let told = self.violated_between();
+        let is_told = |constraint: &ConstraintReport| told.iter().any(|other| std::ptr::eq(*other, constraint));
+        self.constraints.iter().try_for_each(|constraint| violated(f, constraint, is_told(constraint)))
     }
 }
 
-/// A line for a constraint that is violated noticeably.
-fn violated(f: &mut fmt::Formatter<'_>, constraint: &ConstraintReport) -> fmt::Result {
-    for (worst, where_) in [(&constraint.points, "at a point"), (&constraint.between, "between points")] {
-        let Some(worst) = worst.as_ref().filter(|w| w.relative > NEGLIGIBLE || w.relative.is_nan()) else { continue };
+/// A line for a constraint that is violated noticeably; a warning has told of some what is between the points.
+fn violated(f: &mut fmt::Formatter<'_>, constraint: &ConstraintReport, is_told: bool) -> fmt::Result {
+    let between = constraint.between.as_ref().filter(|_| !is_told);
+    for (worst, where_) in [(constraint.points.as_ref(), "at a point"), (between, "between points")] {
+        let Some(worst) = worst.filter(|w| w.relative > NEGLIGIBLE || w.relative.is_nan()) else { continue };
         let unit = symbol(&constraint.unit);
         write!(f, "\n  `{}` is missed by {}{unit} {where_}", constraint.name, brief(worst.violation))?;
         if let Some(time) = worst.time {

@@ -11,10 +11,13 @@ mod multipliers;
 mod refined;
 pub(crate) mod status;
 mod traces;
+mod warnings;
 
 pub use refined::{RefineStatus, Refined, Round};
 pub use traces::Trace;
+pub use warnings::Warning;
 
+use crate::settings::Settings;
 use crate::solution::{Inner, PhaseTimes, Solution, Value};
 use crate::status::{Residuals, Status};
 use crate::transcribe::{SetupError, Singular, Transcription, Workspace};
@@ -74,6 +77,8 @@ pub struct Report {
     pub constraints: Vec<ConstraintReport>,
     /// Largest relative violation at the points of the transcription and on the finer grid.
     pub violation: Violations,
+    /// The largest violation between the points of which nothing is said, relative (`Settings::between_tolerance`).
+    pub between_tolerance: f64,
     /// Expressions whose value or derivative is singular at the guess. They stop nothing; where a
     /// solve ends badly, they are the first to look at.
     pub singular: Vec<Singular>,
@@ -124,6 +129,9 @@ pub struct ConstraintReport {
     pub block: Block,
     /// The unit of values, bounds and violations.
     pub unit: Unit,
+    /// What a violation of a bound of 0 is relative to, SI: how much the constraint changes when one variable changes
+    /// by its size (docs/maths.md, equation 5.2).
+    pub size: f64,
     /// Where it is violated most at the points; none where it has no row.
     pub points: Option<Worst>,
     /// Where it is violated most on the finer grid; none where it is not checked there.
@@ -178,9 +186,31 @@ pub struct StepReport {
 }
 
 impl Report {
-    /// Whether a solution was found.
+    /// Whether a solution was found within the tolerances.
     pub fn is_solved(&self) -> bool {
         self.status.is_solved()
+    }
+
+    /// Whether there is a solution: solved or acceptable.
+    pub fn has_solution(&self) -> bool {
+        self.status.has_solution()
+    }
+
+    /// Whether constraints and conditions of optimality hold at the points, whatever is between them.
+    fn meets_points(&self) -> bool {
+        self.has_solution() || matches!(self.status, Status::ViolatedBetween { .. })
+    }
+
+    /// The report as [`Between::Refuse`](crate::settings::Between) has it: not a solution where constraints are violated
+    /// between the points.
+    pub(crate) fn refused(mut self) -> Self {
+        let found = self.warnings().into_iter().filter(|warning| !warning.constraint.is_empty());
+        let constraints: Vec<String> = found.map(|warning| warning.message).collect();
+        if self.has_solution() && !constraints.is_empty() {
+            self.status = Status::ViolatedBetween { constraints };
+            self.advice = self.status.advice();
+        }
+        self
     }
 
     /// Phases and their times.
@@ -230,6 +260,7 @@ impl Report {
             terms,
             constraints,
             violation,
+            between_tolerance: Settings::default().between_tolerance,
             singular: vec![],
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),
@@ -250,13 +281,18 @@ pub(crate) fn user(nlp: &Transcription, minimised: f64) -> f64 {
 }
 
 /// Every relative violation on the finer grid: phase, scaled time, and by how much.
-pub(crate) fn violations(nlp: &Transcription, x: &[f64], samples: usize) -> Result<Vec<(usize, f64, f64)>, SetupError> {
+pub(crate) fn violations(
+    nlp: &Transcription,
+    report: &Report,
+    samples: usize,
+) -> Result<Vec<(usize, f64, f64)>, SetupError> {
     let mut found = vec![];
+    let x = report.solution.coefficients();
     Plan::new(nlp, samples)?.evaluate(nlp, (x, Wanted::Violated), |checked| {
         let (lower, upper) = checked.bounds;
-        let unit = nlp.model.structure.constraints[checked.constraint].unit.factor;
+        let size = report.constraints[checked.constraint].size;
         let missed = ntg_nlp::residuals::violation(checked.value, lower, upper);
-        let relative = missed / constraints::scale(lower, upper, unit);
+        let relative = missed / constraints::scale(lower, upper, size);
         if let Some(phase) = checked.point.phase.filter(|_| relative > 0.0) {
             found.push((phase, checked.point.tau, relative));
         }

@@ -40,6 +40,9 @@ pub enum RefineStatus {
     NotSolved,
     /// The callback asked to stop.
     Cancelled,
+    /// A finer mesh led to a point that is worse: more violated, or as little and with a worse objective. The report is
+    /// that of the best round.
+    Worse,
     /// No interval that would have to be split is long enough for it.
     Shortest,
 }
@@ -79,6 +82,7 @@ impl fmt::Display for RefineStatus {
             Self::Time => "the time limit was reached before the tolerance was met",
             Self::NotSolved => "a round was not solved; the solution is that of the last one that was",
             Self::Cancelled => "cancelled; the solution is that of the last round that was solved",
+            Self::Worse => "finer meshes led to a worse point; the solution is that of the best round",
             Self::Shortest => "what would have to be split is too short for it; the tolerance is not met",
         })
     }

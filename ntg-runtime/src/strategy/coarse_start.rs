@@ -86,7 +86,7 @@ impl Session {
         nlp.set_scales(&x, &settings)?;
         let outcome = self.solve_once(&nlp, FirstPoint { x: &x, from }, &settings);
         budget.spend(outcome.iterations);
-        let solution = outcome.status.is_solved().then(|| solution(&nlp, outcome));
+        let solution = outcome.status.has_solution().then(|| solution(&nlp, outcome));
         self.kept = Some(nlp.keep());
         Ok(solution)
     }

@@ -147,7 +147,8 @@ impl Session {
             fine.plan.take_data(&nlp)?;
             fine.buffers = nlp.workspace();
         }
-        let report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.buffers), history)?;
+        let mut report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.buffers), history)?;
+        report.between_tolerance = settings.between_tolerance;
         self.fine = Some(fine);
         self.kept = Some(nlp.keep());
         Ok(report)

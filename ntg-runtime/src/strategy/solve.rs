@@ -48,7 +48,7 @@ impl Session {
                 }
             }
             nlp.set_scales(&first, settings)?;
-            if let Some(last) = last.as_ref().filter(|last| last.status.is_solved()) {
+            if let Some(last) = last.as_ref().filter(|last| last.status.has_solution()) {
                 from = Start::Warm(last.multipliers());
             }
             budget.set_settings(if is_last { settings } else { &rough });
