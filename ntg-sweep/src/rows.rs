@@ -11,7 +11,7 @@ use ntg_runtime::structure::Block;
 use ntg_runtime::{Error, Solver};
 
 use crate::run::Solve;
-use crate::study::{Row, SOLVED};
+use crate::study::Row;
 use crate::value::Wanted;
 
 /// Sets the parameters of a problem to one set; says in words what is wrong with it.
@@ -84,7 +84,7 @@ impl<'a, P: Problem + Clone + Send> Rows<'a, P> {
         for wanted in self.wanted.iter().filter(|wanted| !names[..given].contains(&wanted.text)) {
             numbers.push(wanted.of(problem, report));
         }
-        let status = if report.is_solved() { SOLVED.to_owned() } else { one_line(&report.status.to_string()) };
+        let status = one_line(&report.status.label());
         Row { row, set: set.to_vec(), status, binding: binding(report), numbers }
     }
 }

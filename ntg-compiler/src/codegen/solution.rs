@@ -18,8 +18,20 @@ use super::parameters::{doc_lines, unit_in_words};
 use super::tree::{Kind, Scope, scopes};
 
 /// Methods that are ours.
-const OURS: [&str; 11] =
-    ["objective", "is_solved", "has_solution", "status", "times", "report", "untyped", "start", "end", "duration", "new", "clone"];
+const OURS: [&str; 12] = [
+    "objective",
+    "is_solved",
+    "has_solution",
+    "status",
+    "times",
+    "report",
+    "untyped",
+    "start",
+    "end",
+    "duration",
+    "new",
+    "clone",
+];
 
 /// `VanDerPolSolution`.
 pub(super) fn type_name(problem: &str) -> Ident {

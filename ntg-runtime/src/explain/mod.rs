@@ -153,7 +153,10 @@ impl Report {
     /// [`Error`] if the problem cannot be set up.
     pub fn explain(&self, problem: &dyn Problem, settings: &Settings) -> Result<Option<Explanation>, Error> {
         settings.validate()?;
-        let stopped = matches!(self.status, Status::Cancelled | Status::TimeLimit | Status::Contradiction { .. } | Status::ViolatedBetween { .. });
+        let stopped = matches!(
+            self.status,
+            Status::Cancelled | Status::TimeLimit | Status::Contradiction { .. } | Status::ViolatedBetween { .. }
+        );
         let x = self.solution.coefficients();
         if self.has_solution() || stopped || x.iter().any(|v| !v.is_finite()) {
             return Ok(None);
