@@ -175,3 +175,83 @@ fn the_search_for_reasons_can_be_cancelled() {
     let settings = Settings { on_iteration: Some(cancel), ..Settings::default() };
     assert_eq!(report.explain(problem.problem(), &settings), Ok(Some(Explanation::Unknown)));
 }
+
+/// The names of a conflict in its own order.
+fn listed(found: &Conflict) -> Vec<&str> {
+    found.parts.iter().map(|part| part.name.as_str()).collect()
+}
+
+/// A sounding rocket that burns for 10 s with its least thrust of 2 kN: 10 kg of propellant at least.
+fn rocket(dry: f64) -> Shipped {
+    Shipped::text(&format!(
+        "problem Rocket {{
+            duration T = 10 [s];
+            output h [m], v [m/s], m [kg]: spline(order = 4, intervals = 6);
+            output F [kN]: spline(order = 3, intervals = 6);
+            collocation gauss(points = 3);
+            maximize final(h);
+            initial {{ h == 0;  v == 0;  m == 50 [kg]; }}
+            trajectory {{
+                der(h) == v;
+                m * der(v) == F - m * 9.81 [m/s^2];
+                der(m) == -F / 2000 [m/s];
+                throttle: F in 2 .. 4 [kN];
+                dry: m >= {dry} [kg];
+            }}
+            guess {{ h = 100 [m] * tau; v = 100 [m/s] * tau; m = 50 [kg] - 10 [kg] * tau; F = 2 [kN]; }}
+        }}"
+    ))
+}
+
+#[test]
+fn a_dry_mass_that_the_least_thrust_does_not_leave_is_named_before_the_equations_of_motion() {
+    let found = conflict(&rocket(45.0), Method::InteriorPoint);
+    let names = listed(&found);
+    assert_eq!(names[..2], ["dry", "throttle"], "{found}");
+    assert!(names[2..].contains(&"der(m) == -F / 2000 [m/s]") && names[2..].contains(&"m == 50 [kg]"), "{found}");
+    assert!(!names.iter().any(|name| name.contains("der(v)") || name.contains("der(h)")), "{found}");
+}
+
+#[test]
+fn a_limit_that_contradicts_a_target_stands_beside_it_at_the_top() {
+    let problem = Shipped::text(
+        "problem Far {
+            duration T = 3 [s];
+            output x, y [m], v [m/s]: spline(order = 4, intervals = 3);
+            collocation gauss(points = 3);
+            minimize integral(der(v)^2);
+            initial { x == 0; y == 0; v == 1 [m/s]; }
+            trajectory { east: der(x) == v * cos(0.1 * y / 1 [m]); north: der(y) == 0; fast: v <= 2 [m/s]; }
+            final { goal: x * x == 100 [m^2]; }
+            guess { x = 10 [m] * tau; v = 3 [m/s]; }
+        }",
+    );
+    let found = conflict(&problem, Method::InteriorPoint);
+    let mut top = listed(&found)[..2].to_vec();
+    top.sort_unstable();
+    assert_eq!(top, ["fast", "goal"], "{found}");
+    assert!(listed(&found)[2..].contains(&"east"), "{found}");
+}
+
+#[test]
+fn two_targets_that_contradict_each_other_are_the_conflict() {
+    let problem = Shipped::text(
+        "problem Both {
+            duration T = 1 [s];
+            output x, y [m]: spline(order = 4, intervals = 3);
+            minimize integral(der(x, 2)^2 + der(y, 2)^2);
+            initial { x == 0; y == 0; der(x) == 1 [m/s]; }
+            final { ring: x * x + y * y == 1 [m^2]; line: x + y == 3 [m]; }
+        }",
+    );
+    let found = conflict(&problem, Method::InteriorPoint);
+    assert_eq!(names(&found), ["line", "ring"], "{found}");
+}
+
+#[test]
+fn an_explanation_takes_no_longer_than_the_solve_has_left() {
+    let problem = Shipped::spec("low_observable").with("signature_max", &[2.0]);
+    let report = solve(problem.problem(), &Settings::default()).unwrap_or_else(|error| panic!("{error}"));
+    let spent = Settings { time_limit: Some(std::time::Duration::from_nanos(1)), ..Settings::default() };
+    assert_eq!(report.explain(problem.problem(), &spent), Ok(Some(Explanation::Unknown)));
+}

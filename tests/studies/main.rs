@@ -1,6 +1,7 @@
 //! What goes beyond one solve: many starts, why there is no solution, finer meshes, and whether
 //! what is called solved is.
 
+mod between;
 mod infeasible;
 mod multistart;
 mod refine;

@@ -104,3 +104,13 @@ fn the_watcher_may_cancel() {
     let found = run(&Shipped::spec("van_der_pol"), &starts);
     assert!((1..64).contains(&found.tried()), "{found}");
 }
+
+#[test]
+fn one_start_is_the_plain_solve_bit_for_bit() {
+    for problem in [free(), Shipped::spec("van_der_pol"), Shipped::spec("strike_and_look")] {
+        let found = run(&problem, &Starts { count: 1, ..Starts::default() });
+        let (one, plain) = (found.best().unwrap_or_else(|| panic!("{found}")), problem.solve());
+        assert_eq!(one.solution.coefficients(), plain.solution.coefficients());
+        assert_eq!((one.iterations, one.objective.to_bits()), (plain.iterations, plain.objective.to_bits()));
+    }
+}

@@ -30,8 +30,8 @@ fn between(rng: &mut Rng, lower: f64, upper: f64) -> f64 {
     lower + (upper - lower) * rng.f64()
 }
 
-/// The guess with every vehicle on a route through one or two random points of its box, and everything that is no
-/// position perturbed.
+/// The guess with every vehicle on a route through one or two random points of its box, and in half of the
+/// starts everything that is no position perturbed.
 pub(super) fn route(
     nlp: &Transcription,
     vehicles: &[Vehicle],
@@ -50,7 +50,7 @@ pub(super) fn route(
         let points = [start.clone()].into_iter().chain(via).chain([end]).collect();
         curves.extend(along(nlp, vehicle, points));
     }
-    let mut x = perturbed_variables(nlp, guess, rng);
+    let mut x = if rng.bool() { perturbed_variables(nlp, guess, rng) } else { guess.to_vec() };
     apply(&nlp.model.layout, &curves, &mut x)?;
     finish(nlp, x)
 }
