@@ -160,7 +160,8 @@ fn no_floor_of_the_runtime_knows_a_floor_above_it() {
         &["guess", "report"],
         &["explain", "strategy"],
         &["refine"],
-        &["multistart", "solve"],
+        &["solve"],
+        &["multistart"],
         &["solver"],
     ];
     assert_floors("ntg-runtime/src", floors);

@@ -150,8 +150,11 @@ fn a_text_that_is_no_utf8_has_a_place() {
 
 #[test]
 fn check_of_a_folder_is_about_all_specs_below_it_and_every_shipped_one_is_well_formed() {
-    let paths = fs::read_dir(specs()).expect("readable").map(|entry| entry.expect("readable").path());
-    let count = paths.filter(|path| path.extension().is_some_and(|extension| extension == "ntg")).count();
+    let in_folder = |folder: PathBuf| {
+        let paths = fs::read_dir(folder).expect("readable").map(|entry| entry.expect("readable").path());
+        paths.filter(|path| path.extension().is_some_and(|extension| extension == "ntg")).count()
+    };
+    let count = in_folder(specs()) + in_folder(specs().join("gallery"));
     let (out, _) = said(&ntg_in(&specs(), &["check", "."], b""), 0);
     assert!(count >= 6 && out.lines().count() == count, "{out}");
 }

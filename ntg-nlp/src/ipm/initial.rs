@@ -116,7 +116,11 @@ impl<'a, N: Nlp> State<'a, N> {
     fn start_without_multipliers(&mut self, barrier: f64, inside: f64) {
         self.mu = barrier * self.barrier_unit;
         self.slacks.initialise(inside);
-        self.slacks.z.fill(self.barrier_unit); // WB, section 3.6: 1.
+        let (mu, most) = (self.mu, self.barrier_unit); // WB, section 3.6: 1.
+        let is_near = barrier < FIRST_BARRIER;
+        for (z, s) in self.slacks.z.iter_mut().zip(&self.slacks.s) {
+            *z = if is_near { mu / s } else { most };
+        }
         self.estimate_equality_multipliers();
     }
 
