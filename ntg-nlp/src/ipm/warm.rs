@@ -8,9 +8,9 @@ use crate::outcome::Multipliers;
 /// How far inside their bounds the first point lies, relative to the bound and to the room between bounds.
 pub(super) const INSIDE: f64 = 1e-6;
 /// The first barrier parameter without multipliers.
-pub(super) const NEAR_BARRIER: f64 = 1e-4;
+pub(super) const NEAR_BARRIER: f64 = 1e-6;
 /// How far inside their bounds the first slacks then are, as for any other start.
-pub(super) const NEAR_INSIDE: f64 = 1e-4;
+pub(super) const NEAR_INSIDE: f64 = 1e-6;
 /// The first barrier parameter with multipliers.
 const BARRIER: f64 = 1e-6;
 /// A first slack is at most pushed to this.
