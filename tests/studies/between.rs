@@ -5,7 +5,7 @@ use ntg::runtime::settings::Between;
 
 use crate::support::Shipped;
 
-/// A jump as high as 0.4 m allows over two points: between them the bound is missed, since the cubic is free there.
+/// A throw under a ceiling that is asked for at three points: between them the curve is free and rises above it.
 fn arch() -> Shipped {
     Shipped::text(
         "problem Arch {
