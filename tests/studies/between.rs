@@ -11,7 +11,7 @@ fn arch() -> Shipped {
         "problem Arch {
             duration T = 2 [s];
             output x [m]: spline(order = 6, intervals = 2);
-            collocation uniform(points = 3);
+            collocation uniform(breakpoints = 3);
             minimize integral(der(x, 3)^2);
             initial { x == 0; der(x) == 1 [m/s]; }
             trajectory { ceiling: x <= 0.1 [m]; }
