@@ -11,8 +11,8 @@ fn arch() -> Shipped {
         "problem Arch {
             duration T = 2 [s];
             output x [m]: spline(order = 6, intervals = 2);
-            collocation uniform(breakpoints = 3);
-            minimize integral(der(x, 3)^2);
+            collocation gauss(points = 3);
+            minimize integral(der(x, 2)^2);
             initial { x == 0; der(x) == 1 [m/s]; }
             trajectory { ceiling: x <= 0.1 [m]; }
             final { x == 0; der(x) == -1 [m/s]; }

@@ -186,7 +186,9 @@ fn rocket(dry: f64) -> Shipped {
     Shipped::text(&format!(
         "problem Rocket {{
             duration T = 10 [s];
-            output h [m], v [m/s], m [kg]: spline(order = 4, intervals = 6);
+            output h [m]: spline(order = 4, intervals = 6);
+            output v [m/s]: spline(order = 4, intervals = 6);
+            output m [kg]: spline(order = 4, intervals = 6);
             output F [kN]: spline(order = 3, intervals = 6);
             collocation gauss(points = 3);
             maximize final(h);
@@ -217,7 +219,8 @@ fn a_limit_that_contradicts_a_target_stands_beside_it_at_the_top() {
     let problem = Shipped::text(
         "problem Far {
             duration T = 3 [s];
-            output x, y [m], v [m/s]: spline(order = 4, intervals = 3);
+            output x, y [m]: spline(order = 4, intervals = 3);
+            output v [m/s]: spline(order = 4, intervals = 3);
             collocation gauss(points = 3);
             minimize integral(der(v)^2);
             initial { x == 0; y == 0; v == 1 [m/s]; }

@@ -87,6 +87,7 @@ pub fn solve_at_fixed_penalty<N: Nlp>(nlp: &N, start: &[f64], penalty: FixedPena
         Ok(mut state) => {
             state.enter_penalty_mode(penalty.parameter);
             state.fix_penalty(penalty);
+            state.centre_penalty_mode();
             iterate(state)
         }
         Err(status) => Outcome::failed(nlp, start, status),

@@ -110,6 +110,13 @@ impl<N: Nlp> State<'_, N> {
         }
     }
 
+    /// Slacks, relaxations and multipliers of penalty mode on the central path at the first point.
+    pub(super) fn centre_penalty_mode(&mut self) {
+        self.minimise_over_slacks();
+        self.centre_multipliers();
+        self.restart();
+    }
+
     /// Multipliers on the central path of the relaxed problem.
     fn centre_multipliers(&mut self) {
         let mu = self.mu;

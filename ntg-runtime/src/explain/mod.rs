@@ -197,7 +197,7 @@ fn near(
     settings: &Settings,
     until: Instant,
 ) -> Explanation {
-    let search = Search { nlp, settings: &settings.remembering(), until, factors: row_factors(nlp, x) };
+    let search = Search { nlp, settings: &settings.remembering(), until, factors: factors(nlp, x) };
     let all: Constraints = (0..nlp.rows()).filter_map(|row| search.constraint(row)).collect();
     let Some(relaxed) = search.least(&all, x, NOTHING) else { return Explanation::Unknown };
     if relaxed.violation <= NOTHING {
@@ -214,6 +214,19 @@ impl Relaxed {
     fn is_infeasible(&self) -> bool {
         matches!(self.outcome.status, End::Infeasible { .. })
     }
+}
+
+/// What a violation of each row is relative to, as a factor: the row's bound, which is what a limit or a target means;
+/// where that is 0, the size of its terms.
+fn factors(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
+    let limits = &nlp.limits;
+    let is_zero = |bound: f64| bound == 0.0 || !bound.is_finite();
+    let by_bound = |row: usize| !(is_zero(limits.row_lower[row]) && is_zero(limits.row_upper[row]));
+    let mut factors = row_factors(nlp, x);
+    for (row, factor) in factors.iter_mut().enumerate().filter(|(row, _)| by_bound(*row)) {
+        *factor = 1.0 / limits.row_scale[row];
+    }
+    factors
 }
 
 struct Search<'a> {

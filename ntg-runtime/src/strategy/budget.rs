@@ -2,7 +2,7 @@
 //! attempts (docs/maths.md, section 11.9).
 
 use crate::settings::Settings;
-use ntg_nlp::Outcome;
+use ntg_nlp::{Outcome, Status};
 use std::time::Instant;
 
 /// Most iterations of one attempt, where more are left. A fit: of the specs of the gallery that an attempt solves, all
@@ -56,15 +56,24 @@ impl<'a> Budget<'a> {
     }
 }
 
-/// The better of two outcomes of one program: a solution, else less violation.
+/// The better of two outcomes of one program: a solution, else one that is known to be infeasible around its point, else
+/// less violation.
 pub(super) fn better(first: Outcome, second: Outcome) -> Outcome {
     let violation = |outcome: &Outcome| match outcome.x.iter().all(|x| x.is_finite()) {
         true => outcome.residuals.scaled.primal,
         false => f64::INFINITY,
     };
+    let is_infeasible = |outcome: &Outcome| matches!(outcome.status, Status::Infeasible { .. });
     match (first.status.is_final(), second.status.is_final()) {
         (true, _) => first,
         (_, true) => second,
+        _ if is_infeasible(&first) != is_infeasible(&second) => {
+            if is_infeasible(&first) {
+                first
+            } else {
+                second
+            }
+        }
         _ if violation(&second) < violation(&first) => second,
         _ => first,
     }
