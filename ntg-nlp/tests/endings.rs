@@ -1,5 +1,6 @@
 //! How solves end when they do not end well, and what callers may do on the way: the same laws for both methods.
 
+#[macro_use]
 mod support;
 
 use ntg_nlp::closures::Program;
@@ -11,18 +12,6 @@ use std::time::Duration;
 use support::{FREE, dense};
 
 const INF: f64 = f64::INFINITY;
-
-/// Makes of every function of a method a test of each method.
-macro_rules! of_both_methods {
-    ($($law:ident)*) => {
-        mod interior_point {
-            $(#[test] fn $law() { super::$law(super::Method::InteriorPoint) })*
-        }
-        mod sqp {
-            $(#[test] fn $law() { super::$law(super::Method::Sqp) })*
-        }
-    };
-}
 
 of_both_methods! {
     a_linear_contradiction_is_named_by_its_rows

@@ -129,7 +129,8 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         let searched = state.step_and_search(); // 7 to 9
         tiny_steps = if searched == SearchOutcome::Tiny { tiny_steps + 1 } else { 0 };
         let ended = match searched {
-            SearchOutcome::Tiny if tiny_steps >= TINY_STEPS => Some(state.stuck()),
+            // WB, section 3.9: a barrier problem whose steps are rounding is solved.
+            SearchOutcome::Tiny if tiny_steps >= TINY_STEPS && !state.force_lower_barrier() => Some(state.stuck()),
             SearchOutcome::Stuck if state.restoration.is_some() => {
                 state.abandon_restoration();
                 state.enter_penalty_mode(penalty::PARAMETER);

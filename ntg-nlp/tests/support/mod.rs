@@ -1,37 +1,70 @@
 //! Nonlinear programs written by hand for the tests: ordinary functions of *jets*, which carry exact
-//! first and second derivatives.
-#![allow(dead_code, unreachable_pub, reason = "each test file uses the part that it needs")]
+//! first and second derivatives. Operations are not inlined: programs of thousands of them compile faster.
+#![allow(dead_code, unreachable_pub, unused_macros, reason = "each test file uses the part that it needs")]
+
+/// Makes of every function of a method a test of each method.
+macro_rules! of_both_methods {
+    ($($law:ident)*) => {
+        mod interior_point {
+            $(#[test] fn $law() { super::$law(ntg_nlp::Method::InteriorPoint) })*
+        }
+        mod sqp {
+            $(#[test] fn $law() { super::$law(ntg_nlp::Method::Sqp) })*
+        }
+    };
+}
 
 use ntg_nlp::closures::{Element, Functions, Program};
+use std::iter::{Product, Sum};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number with its gradient and Hessian.
-#[derive(Clone, Debug)]
+/// The most slots of a function of jets.
+const MOST: usize = 16;
+
+/// A number with its gradient and Hessian by at most [`MOST`] slots.
+#[derive(Clone, Copy, Debug)]
 pub struct Jet {
     /// The number.
     pub v: f64,
-    g: Vec<f64>,
-    h: Vec<f64>,
+    slots: usize,
+    g: [f64; MOST],
+    h: [[f64; MOST]; MOST],
 }
 
 impl Jet {
-    fn variable(v: f64, index: usize, n: usize) -> Self {
-        let mut g = vec![0.0; n];
+    fn variable(v: f64, index: usize, slots: usize) -> Self {
+        assert!(slots <= MOST, "{slots} slots");
+        let mut g = [0.0; MOST];
         g[index] = 1.0;
-        Self { v, g, h: vec![0.0; n * n] }
+        Self { v, slots, g, h: [[0.0; MOST]; MOST] }
     }
 
     /// A constant with as many derivatives as this jet.
+    #[inline(never)]
     pub fn constant(&self, v: f64) -> Self {
-        Self { v, g: vec![0.0; self.g.len()], h: vec![0.0; self.h.len()] }
+        Self { v, slots: self.slots, g: [0.0; MOST], h: [[0.0; MOST]; MOST] }
+    }
+
+    /// A jet whose derivatives are given entry by entry.
+    fn of(&self, v: f64, g: impl Fn(usize) -> f64, h: impl Fn(usize, usize) -> f64) -> Self {
+        let mut jet = self.constant(v);
+        for i in 0..self.slots {
+            jet.g[i] = g(i);
+            for j in 0..self.slots {
+                jet.h[i][j] = h(i, j);
+            }
+        }
+        jet
     }
 
     /// `f` of this jet, given its value and two derivatives.
-    fn chain(&self, f: f64, df: f64, ddf: f64) -> Self {
-        let n = self.g.len();
-        let g = self.g.iter().map(|g| df * g).collect();
-        let h = (0..n * n).map(|at| df * self.h[at] + ddf * self.g[at / n] * self.g[at % n]).collect();
-        Self { v: f, g, h }
+    #[inline(never)]
+    pub fn chain(&self, f: f64, df: f64, ddf: f64) -> Self {
+        self.of(f, |i| df * self.g[i], |i, j| df * self.h[i][j] + ddf * self.g[i] * self.g[j])
+    }
+
+    pub fn square(&self) -> Self {
+        self.powi(2)
     }
 
     pub fn powi(&self, k: i32) -> Self {
@@ -68,22 +101,36 @@ impl Jet {
 
 macro_rules! operators {
     ($($trait:ident $method:ident),*) => {$(
-        impl $trait<&Jet> for Jet { type Output = Jet; fn $method(self, o: &Jet) -> Jet { (&self).$method(o) } }
-        impl $trait<Jet> for &Jet { type Output = Jet; fn $method(self, o: Jet) -> Jet { self.$method(&o) } }
-        impl $trait<Jet> for Jet { type Output = Jet; fn $method(self, o: Jet) -> Jet { (&self).$method(&o) } }
-        impl $trait<f64> for Jet { type Output = Jet; fn $method(self, o: f64) -> Jet { (&self).$method(&self.constant(o)) } }
-        impl $trait<f64> for &Jet { type Output = Jet; fn $method(self, o: f64) -> Jet { self.$method(&self.constant(o)) } }
-        impl $trait<Jet> for f64 { type Output = Jet; fn $method(self, o: Jet) -> Jet { o.constant(self).$method(&o) } }
-        impl $trait<&Jet> for f64 { type Output = Jet; fn $method(self, o: &Jet) -> Jet { o.constant(self).$method(o) } }
+        impl $trait<&Jet> for Jet { type Output = Jet; #[inline(never)] fn $method(self, o: &Jet) -> Jet { (&self).$method(o) } }
+        impl $trait<Jet> for &Jet { type Output = Jet; #[inline(never)] fn $method(self, o: Jet) -> Jet { self.$method(&o) } }
+        impl $trait<Jet> for Jet { type Output = Jet; #[inline(never)] fn $method(self, o: Jet) -> Jet { (&self).$method(&o) } }
+        impl $trait<f64> for Jet { type Output = Jet; #[inline(never)] fn $method(self, o: f64) -> Jet { (&self).$method(&self.constant(o)) } }
+        impl $trait<f64> for &Jet { type Output = Jet; #[inline(never)] fn $method(self, o: f64) -> Jet { self.$method(&self.constant(o)) } }
+        impl $trait<Jet> for f64 { type Output = Jet; #[inline(never)] fn $method(self, o: Jet) -> Jet { o.constant(self).$method(&o) } }
+        impl $trait<&Jet> for f64 { type Output = Jet; #[inline(never)] fn $method(self, o: &Jet) -> Jet { o.constant(self).$method(o) } }
     )*};
 }
 operators!(Add add, Sub sub, Mul mul, Div div);
 
 impl Add<&Jet> for &Jet {
     type Output = Jet;
+    #[inline(never)]
     fn add(self, o: &Jet) -> Jet {
-        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
-        Jet { v: self.v + o.v, g: sum(&self.g, &o.g), h: sum(&self.h, &o.h) }
+        self.of(self.v + o.v, |i| self.g[i] + o.g[i], |i, j| self.h[i][j] + o.h[i][j])
+    }
+}
+
+impl Sum for Jet {
+    /// The sum of at least one jet.
+    fn sum<I: Iterator<Item = Jet>>(jets: I) -> Jet {
+        jets.reduce(|a, b| a + b).expect("a jet")
+    }
+}
+
+impl Product for Jet {
+    /// The product of at least one jet.
+    fn product<I: Iterator<Item = Jet>>(jets: I) -> Jet {
+        jets.reduce(|a, b| a * b).expect("a jet")
     }
 }
 
@@ -103,6 +150,7 @@ impl Neg for Jet {
 
 impl Sub<&Jet> for &Jet {
     type Output = Jet;
+    #[inline(never)]
     fn sub(self, o: &Jet) -> Jet {
         self + &(-o)
     }
@@ -110,17 +158,17 @@ impl Sub<&Jet> for &Jet {
 
 impl Mul<&Jet> for &Jet {
     type Output = Jet;
+    #[inline(never)]
     fn mul(self, o: &Jet) -> Jet {
-        let n = self.g.len();
-        let g = (0..n).map(|i| self.g[i] * o.v + self.v * o.g[i]).collect();
-        let mixed = |at: usize| self.g[at / n] * o.g[at % n] + self.g[at % n] * o.g[at / n];
-        let h = (0..n * n).map(|at| self.h[at] * o.v + self.v * o.h[at] + mixed(at)).collect();
-        Jet { v: self.v * o.v, g, h }
+        let second =
+            |i: usize, j: usize| self.h[i][j] * o.v + self.v * o.h[i][j] + self.g[i] * o.g[j] + self.g[j] * o.g[i];
+        self.of(self.v * o.v, |i| self.g[i] * o.v + self.v * o.g[i], second)
     }
 }
 
 impl Div<&Jet> for &Jet {
     type Output = Jet;
+    #[inline(never)]
     fn div(self, o: &Jet) -> Jet {
         self * &o.chain(1.0 / o.v, -1.0 / (o.v * o.v), 2.0 / (o.v * o.v * o.v))
     }
@@ -132,8 +180,10 @@ pub fn of_jets(functions: impl Fn(&[Jet]) -> Vec<Jet> + Sync) -> impl Fn(&[f64],
         let slots: Vec<Jet> = (0..u.len()).map(|i| Jet::variable(u[i], i, u.len())).collect();
         for (row, jet) in functions(&slots).iter().enumerate() {
             out.set_value(row, jet.v);
-            out.set_gradient(row, &jet.g);
-            out.set_hessian(row, &jet.h);
+            out.set_gradient(row, &jet.g[..u.len()]);
+            for (to, from) in out.hessian_mut(row).chunks_mut(u.len()).zip(&jet.h) {
+                to.copy_from_slice(&from[..u.len()]);
+            }
         }
     }
 }

@@ -1,0 +1,84 @@
+//! Both methods on the smooth problems of Hock and Schittkowski, from the published starts to the published optima.
+
+mod hs;
+mod support;
+
+use hs::Problem;
+use ntg_nlp::{Options, Outcome, Status, ipm, sqp};
+
+/// Iterations of one problem at most. A law, and a generous one.
+const MOST_ITERATIONS: usize = 100;
+/// How far an objective may be from the published one, relative to it and at least to 0.1.
+const TOLERANCE: f64 = 1e-6;
+
+/// Local optima that are known and not the published ones, by problem: 59, 105 and 109 are better known ones of the
+/// data as they are in the collection CUTE (for 59 the point of the book violates a row).
+const OTHER_OPTIMA: [(u32, f64); 12] = [
+    (2, 4.941_229_318),
+    (16, 23.144_660_94),
+    (20, 40.198_729_81),
+    (44, -13.0),
+    (55, 20.0 / 3.0),
+    (57, 0.030_647_619_05),
+    (59, -7.802_789_471_5),
+    (97, 4.071_246_357),
+    (98, 4.071_246_357),
+    (105, 1_136.307_303_6),
+    (108, -0.674_981_442_9),
+    (109, 5_326.851_330),
+];
+
+/// What a method does not solve, and why: the status must then not be [`Status::Solved`], or the reason says what is off.
+const EXCEPTIONS_OF_IPM: [(u32, &str); 1] =
+    [(25, "the start is stationary but for rounding, and so the scaled objective is: optimal, but `acceptable`")];
+const EXCEPTIONS_OF_SQP: [(u32, &str); 8] = [
+    (13, "no multipliers exist at the optimum: it ends 1e-5 beside it"),
+    (25, "the start is stationary but for rounding"),
+    (56, "the first step goes so far that the objective looks unbounded, at a point that is not feasible"),
+    (63, "ends at a local minimum of the violations"),
+    (93, "a subproblem fails after a step to a point where all derivatives of a row vanish"),
+    (106, "needs 290 iterations"),
+    (109, "the first subproblem cannot be solved"),
+    (116, "rows of very different curvature: it ends 4e-5 beside the optimum"),
+];
+
+fn is_right(problem: &Problem, outcome: &Outcome) -> bool {
+    let others = OTHER_OPTIMA.iter().filter(|(number, _)| *number == problem.number).map(|(_, optimum)| *optimum);
+    let near = |optimum: f64| (outcome.objective - optimum).abs() <= TOLERANCE * optimum.abs().max(0.1);
+    outcome.status == Status::Solved
+        && outcome.iterations <= MOST_ITERATIONS
+        && std::iter::once(problem.optimum).chain(others).any(near)
+}
+
+fn all_by(exceptions: &[(u32, &str)], solve: impl Fn(&Problem) -> Outcome) {
+    let problems = hs::all();
+    assert!(problems.len() >= 100, "{} problems", problems.len());
+    let (mut wrong, mut iterations, mut largest) = (Vec::new(), 0, 0);
+    for problem in &problems {
+        let outcome = solve(problem);
+        let exception = exceptions.iter().find(|(number, _)| *number == problem.number);
+        let line = format!(
+            "{:3} {:4} {:.10e} for {:.10e} {}",
+            problem.number, outcome.iterations, outcome.objective, problem.optimum, outcome.status
+        );
+        println!("{line}");
+        if is_right(problem, &outcome) == exception.is_some() {
+            wrong.push(line);
+        }
+        if exception.is_none() {
+            (iterations, largest) = (iterations + outcome.iterations, largest.max(outcome.iterations));
+        }
+    }
+    println!("{} problems, {iterations} iterations, at most {largest}", problems.len() - exceptions.len());
+    assert!(wrong.is_empty(), "not as stated:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn interior_point_method() {
+    all_by(&EXCEPTIONS_OF_IPM, |problem| ipm::solve(&problem.program(), &problem.start, &Options::default()));
+}
+
+#[test]
+fn sequential_quadratic_programming() {
+    all_by(&EXCEPTIONS_OF_SQP, |problem| sqp::solve(&problem.program(), &problem.start, &Options::default()));
+}
