@@ -33,8 +33,8 @@ fn curve(n: usize, cap: f64) -> Program {
         })
         .collect();
     block(&mut p, [3, 2], &pieces, |u| {
-        let rate = &u[1] / &u[2];
-        vec![(&rate - &u[0]).powi(2) * &u[2] + &u[2], rate.powi(2)]
+        let rate = u[1] / u[2];
+        vec![(rate - u[0]).powi(2) * u[2] + u[2], rate.powi(2)]
     });
     p
 }
@@ -51,7 +51,7 @@ fn chain(n: usize) -> Program {
             weight: vec![1.0],
         })
         .collect();
-    block(&mut p, [2, 1], &pairs, |u| vec![100.0 * (&u[1] - u[0].powi(2)).powi(2) + (1.0 - &u[0]).powi(2)]);
+    block(&mut p, [2, 1], &pairs, |u| vec![100.0 * (u[1] - u[0].powi(2)).powi(2) + (1.0 - &u[0]).powi(2)]);
     let triples: Vec<Element> = (0..n as u32 - 2)
         .map(|k| Element {
             variables: vec![k, k + 1, k + 2],
@@ -61,7 +61,7 @@ fn chain(n: usize) -> Program {
             weight: vec![1.0],
         })
         .collect();
-    block(&mut p, [3, 1], &triples, |u| vec![u[0].powi(2) + u[1].powi(2) + u[2].powi(2) + &u[0] * &u[2]]);
+    block(&mut p, [3, 1], &triples, |u| vec![u[0].powi(2) + u[1].powi(2) + u[2].powi(2) + u[0] * u[2]]);
     p
 }
 
@@ -199,7 +199,7 @@ fn straight_line_of_least_energy() {
         target: vec![Target::Row(row)],
         weight: vec![1.0],
     };
-    block(&mut p, [1, 1], &[end(0, 0), end(n, 1)], |u| vec![u[0].clone()]);
+    block(&mut p, [1, 1], &[end(0, 0), end(n, 1)], |u| vec![u[0]]);
     let found = solved(&p, &vec![0.0; n + 1]);
     assert!((found.objective - 4.5).abs() < 1e-8);
     assert!((found.row_multipliers[0] + 3.0).abs() < 1e-6 && (found.row_multipliers[1] - 3.0).abs() < 1e-6);
@@ -226,9 +226,9 @@ fn scaling_does_not_change_the_answer() {
     // The same program in absurd units, as the transcription would hand it over.
     let scaled = |unit: [f64; 2]| {
         let mut p = dense(&[(0.0, INF); 2], &[(-INF, 3.0 * unit[1])], move |x| {
-            let y: Vec<Jet> = vec![&x[0] / unit[0], &x[1] * unit[0]];
-            let f = (&y[0] - 2.0).powi(2) + (&y[1] - 3.0).powi(4) + (&y[0] * &y[1]).exp() * 1e-2;
-            vec![f * unit[1], (&y[0].powi(2) + &y[1].powi(2)) * unit[1]]
+            let y: Vec<Jet> = vec![x[0] / unit[0], x[1] * unit[0]];
+            let f = (&y[0] - 2.0).powi(2) + (&y[1] - 3.0).powi(4) + (y[0] * y[1]).exp() * 1e-2;
+            vec![f * unit[1], (y[0].powi(2) + y[1].powi(2)) * unit[1]]
         });
         p.limits.scale = vec![unit[0], 1.0 / unit[0]];
         p.limits.row_scale = vec![unit[1]];

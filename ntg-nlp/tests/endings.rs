@@ -36,13 +36,13 @@ fn solved_by(method: Method, program: &Program, start: &[f64]) -> Outcome {
 }
 
 fn rosenbrock() -> Program {
-    dense(&[FREE; 2], &[], |x| vec![100.0 * (&x[1] - x[0].powi(2)).powi(2) + (1.0 - &x[0]).powi(2)])
+    dense(&[FREE; 2], &[], |x| vec![100.0 * (x[1] - x[0].powi(2)).powi(2) + (1.0 - &x[0]).powi(2)])
 }
 
 fn a_linear_contradiction_is_named_by_its_rows(method: Method) {
     let p = dense(&[(0.0, 10.0); 2], &[(3.0, INF), (-INF, 1.0), (-INF, 50.0)], |x| {
-        let sum = &x[0] + &x[1];
-        vec![x[0].powi(2) + x[1].powi(2), sum.clone(), sum, x[0].clone()]
+        let sum = x[0] + x[1];
+        vec![x[0].powi(2) + x[1].powi(2), sum, sum, x[0]]
     });
     let found = solved_by(method, &p, &[5.0, 5.0]);
     let Status::Infeasible { rows } = &found.status else { panic!("{}", found.status) };
@@ -54,7 +54,7 @@ fn a_linear_contradiction_is_named_by_its_rows(method: Method) {
 
 fn a_nonlinear_contradiction_ends_where_the_violation_is_least(method: Method) {
     // A parabola above 1 and a line: x^2 + 1 <= y <= 0.
-    let p = dense(&[FREE, (-INF, 0.0)], &[(-INF, 0.0)], |x| vec![x[0].clone(), x[0].powi(2) + 1.0 - &x[1]]);
+    let p = dense(&[FREE, (-INF, 0.0)], &[(-INF, 0.0)], |x| vec![x[0], x[0].powi(2) + 1.0 - x[1]]);
     let found = solved_by(method, &p, &[3.0, -1.0]);
     let Status::Infeasible { rows } = &found.status else { panic!("{}", found.status) };
     assert_eq!(rows.len(), 1);
@@ -62,14 +62,14 @@ fn a_nonlinear_contradiction_ends_where_the_violation_is_least(method: Method) {
 }
 
 fn an_objective_that_falls_without_limit_is_recognised(method: Method) {
-    let line = dense(&[FREE, (0.0, INF)], &[(-INF, 5.0)], |x| vec![-&x[1], x[0].clone()]);
+    let line = dense(&[FREE, (0.0, INF)], &[(-INF, 5.0)], |x| vec![-&x[1], x[0]]);
     assert_eq!(solved_by(method, &line, &[0.0, 0.0]).status, Status::Unbounded);
     let cubic = dense(&[FREE], &[], |x| vec![x[0].powi(3)]);
     assert_eq!(solved_by(method, &cubic, &[-1.0]).status, Status::Unbounded);
 }
 
 fn a_number_that_is_not_finite_at_the_start_is_located(method: Method) {
-    let p = dense(&[FREE; 2], &[(0.0, INF)], |x| vec![x[0].clone(), x[1].ln()]);
+    let p = dense(&[FREE; 2], &[(0.0, INF)], |x| vec![x[0], x[1].ln()]);
     let Status::NotFinite { what, x } = solved_by(method, &p, &[1.0, -1.0]).status else { panic!("a logarithm") };
     assert_eq!((what.entry, x), (Entry::Value { block: 0, element: 0, row: 1 }, vec![1.0, -1.0]));
     assert!(what.value.is_nan());
@@ -77,7 +77,7 @@ fn a_number_that_is_not_finite_at_the_start_is_located(method: Method) {
     assert_eq!(what.entry, Entry::Variable(1));
     let Status::NotFinite { what, .. } = solved_by(method, &p, &[1.0]).status else { panic!("a short start") };
     assert_eq!(what.entry, Entry::Variable(1));
-    let root = dense(&[(0.0, INF)], &[], |x| vec![x[0].sqrt() * (x[0].clone() - 2.0)]);
+    let root = dense(&[(0.0, INF)], &[], |x| vec![x[0].sqrt() * (x[0] - 2.0)]);
     if method == Method::Sqp {
         let Status::NotFinite { what, .. } = solved_by(method, &root, &[0.0]).status else { panic!("a slope") };
         assert_eq!(what.entry, Entry::FirstDerivative { block: 0, element: 0, row: 0 });
@@ -89,7 +89,7 @@ fn a_number_that_is_not_finite_at_the_start_is_located(method: Method) {
 
 fn a_number_that_is_not_finite_at_trial_points_shortens_steps(method: Method) {
     // Newton's step from 3 for x - ln x leads to x < 0.
-    let p = dense(&[FREE], &[], |x| vec![&x[0] - x[0].ln()]);
+    let p = dense(&[FREE], &[], |x| vec![x[0] - x[0].ln()]);
     let found = solved_by(method, &p, &[3.0]);
     assert_eq!(found.status, Status::Solved);
     assert!((found.x[0] - 1.0).abs() < 1e-7);
@@ -97,8 +97,7 @@ fn a_number_that_is_not_finite_at_trial_points_shortens_steps(method: Method) {
 }
 
 fn crossing_bounds_are_found_before_any_iteration(method: Method) {
-    let p =
-        dense(&[(1.0, 0.0), FREE], &[(2.0, 1.0), (f64::NAN, 3.0)], |x| vec![x[0].clone(), x[0].clone(), x[1].clone()]);
+    let p = dense(&[(1.0, 0.0), FREE], &[(2.0, 1.0), (f64::NAN, 3.0)], |x| vec![x[0], x[0], x[1]]);
     let found = solved_by(method, &p, &[0.0, 0.0]);
     let Status::Contradiction { bounds } = &found.status else { panic!("{}", found.status) };
     let of: Vec<Bounded> = bounds.iter().map(|c| c.of).collect();
@@ -109,8 +108,8 @@ fn crossing_bounds_are_found_before_any_iteration(method: Method) {
 fn bounds_of_variables_hold_at_every_point(method: Method) {
     // The logarithm is not a number outside the bounds, so any step outside would show.
     let p = dense(&[(0.5, 4.0), (1e-3, 1.0)], &[(-INF, 3.0)], |x| {
-        let inside = (&x[0] - 0.5 + 1e-12).ln() * 1e-9 + (1.0 + 1e-12 - &x[1]).ln() * 1e-9;
-        vec![(&x[0] - 9.0).powi(2) + (&x[1] + 3.0).powi(2) + inside, &x[0] * &x[0] - &x[1]]
+        let inside = (&x[0] - 0.5 + 1e-12).ln() * 1e-9 + (1.0 + 1e-12 - x[1]).ln() * 1e-9;
+        vec![(&x[0] - 9.0).powi(2) + (&x[1] + 3.0).powi(2) + inside, x[0] * x[0] - x[1]]
     });
     let found = solved_by(method, &p, &[-7.0, 9.0]);
     assert_eq!(found.status, Status::Solved, "{:?}", found.residuals);
@@ -152,7 +151,7 @@ fn the_same_program_gives_the_same_bits(method: Method) {
 
 fn a_warm_start_at_a_solution_is_solved_at_once(method: Method) {
     let p = dense(&[(2.0, 50.0), (-50.0, 50.0)], &[(10.0, INF)], |x| {
-        vec![0.01 * x[0].powi(2) + x[1].powi(2) - 100.0, 10.0 * &x[0] - &x[1]]
+        vec![0.01 * x[0].powi(2) + x[1].powi(2) - 100.0, 10.0 * &x[0] - x[1]]
     });
     let cold = solved_by(method, &p, &[-1.0, -1.0]);
     assert!(cold.iterations > 0);

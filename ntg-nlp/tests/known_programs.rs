@@ -64,7 +64,7 @@ fn near(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn hs6_curved_equality() {
-    let p = dense(&[FREE; 2], &[(0.0, 0.0)], |x| vec![(1.0 - &x[0]).powi(2), 10.0 * (&x[1] - x[0].powi(2))]);
+    let p = dense(&[FREE; 2], &[(0.0, 0.0)], |x| vec![(1.0 - &x[0]).powi(2), 10.0 * (x[1] - x[0].powi(2))]);
     let found = solved(&p, &[-1.2, 1.0], 0.0);
     near(&found.x, &[1.0, 1.0]);
 }
@@ -73,7 +73,7 @@ fn hs6_curved_equality() {
 fn hs7_logarithm() {
     let p = dense(&[FREE; 2], &[(4.0, 4.0)], |x| {
         let one = 1.0 + x[0].powi(2);
-        vec![one.ln() - &x[1], one.powi(2) + x[1].powi(2)]
+        vec![one.ln() - x[1], one.powi(2) + x[1].powi(2)]
     });
     let found = solved(&p, &[2.0, 2.0], -(3.0_f64.sqrt()));
     // dJ/d4: J = -sqrt(b - 1), so -1 / (2 sqrt 3).
@@ -83,8 +83,8 @@ fn hs7_logarithm() {
 #[test]
 fn hs10_inequality() {
     let p = dense(&[FREE; 2], &[(0.0, INF)], |x| {
-        let c = -3.0 * x[0].powi(2) + 2.0 * (&x[0] * &x[1]) - x[1].powi(2) + 1.0;
-        vec![&x[0] - &x[1], c]
+        let c = -3.0 * x[0].powi(2) + 2.0 * (x[0] * x[1]) - x[1].powi(2) + 1.0;
+        vec![x[0] - x[1], c]
     });
     near(&solved(&p, &[-10.0, 10.0], -1.0).x, &[0.0, 1.0]);
 }
@@ -92,7 +92,7 @@ fn hs10_inequality() {
 #[test]
 fn hs12_inequality() {
     let p = dense(&[FREE; 2], &[(0.0, INF)], |x| {
-        let f = 0.5 * x[0].powi(2) + x[1].powi(2) - &x[0] * &x[1] - 7.0 * &x[0] - 7.0 * &x[1];
+        let f = 0.5 * x[0].powi(2) + x[1].powi(2) - x[0] * x[1] - 7.0 * &x[0] - 7.0 * &x[1];
         vec![f, 25.0 - 4.0 * x[0].powi(2) - x[1].powi(2)]
     });
     let found = solved(&p, &[0.0, 0.0], -30.0);
@@ -104,7 +104,7 @@ fn hs12_inequality() {
 fn hs14_both_kinds() {
     let p = dense(&[FREE; 2], &[(0.0, INF), (-1.0, -1.0)], |x| {
         let f = (&x[0] - 2.0).powi(2) + (&x[1] - 1.0).powi(2);
-        vec![f, 1.0 - 0.25 * x[0].powi(2) - x[1].powi(2), &x[0] - 2.0 * &x[1]]
+        vec![f, 1.0 - 0.25 * x[0].powi(2) - x[1].powi(2), x[0] - 2.0 * &x[1]]
     });
     let root = 7.0_f64.sqrt();
     let found = solved(&p, &[2.0, 2.0], 9.0 - 2.875 * root);
@@ -114,7 +114,7 @@ fn hs14_both_kinds() {
 #[test]
 fn hs21_bounds() {
     let p = dense(&[(2.0, 50.0), (-50.0, 50.0)], &[(10.0, INF)], |x| {
-        vec![0.01 * x[0].powi(2) + x[1].powi(2) - 100.0, 10.0 * &x[0] - &x[1]]
+        vec![0.01 * x[0].powi(2) + x[1].powi(2) - 100.0, 10.0 * &x[0] - x[1]]
     });
     let found = solved(&p, &[-1.0, -1.0], -99.96);
     near(&found.x, &[2.0, 0.0]);
@@ -124,8 +124,8 @@ fn hs21_bounds() {
 #[test]
 fn hs26_singular_hessian() {
     let p = dense(&[FREE; 3], &[(3.0, 3.0)], |x| {
-        let f = (&x[0] - &x[1]).powi(2) + (&x[1] - &x[2]).powi(4);
-        vec![f, (1.0 + x[1].powi(2)) * &x[0] + x[2].powi(4)]
+        let f = (x[0] - x[1]).powi(2) + (x[1] - x[2]).powi(4);
+        vec![f, (1.0 + x[1].powi(2)) * x[0] + x[2].powi(4)]
     });
     solved(&p, &[-2.6, 2.0, 2.0], 0.0);
 }
@@ -133,8 +133,8 @@ fn hs26_singular_hessian() {
 #[test]
 fn hs28_quadratic() {
     let p = dense(&[FREE; 3], &[(1.0, 1.0)], |x| {
-        let f = (&x[0] + &x[1]).powi(2) + (&x[1] + &x[2]).powi(2);
-        vec![f, &x[0] + 2.0 * &x[1] + 3.0 * &x[2]]
+        let f = (x[0] + x[1]).powi(2) + (x[1] + x[2]).powi(2);
+        vec![f, x[0] + 2.0 * &x[1] + 3.0 * &x[2]]
     });
     let found = solved(&p, &[-4.0, 1.0, 1.0], 0.0);
     near(&found.x, &[0.5, -0.5, 0.5]);
@@ -148,9 +148,9 @@ fn hs35_quadratic_with_bounds() {
             + 2.0 * x[0].powi(2)
             + 2.0 * x[1].powi(2)
             + x[2].powi(2)
-            + 2.0 * (&x[0] * &x[1])
-            + 2.0 * (&x[0] * &x[2]);
-        vec![f, &x[0] + &x[1] + 2.0 * &x[2]]
+            + 2.0 * (x[0] * x[1])
+            + 2.0 * (x[0] * x[2]);
+        vec![f, x[0] + x[1] + 2.0 * &x[2]]
     });
     let found = solved(&p, &[0.5; 3], 1.0 / 9.0);
     near(&found.x, &[4.0 / 3.0, 7.0 / 9.0, 4.0 / 9.0]);
@@ -160,7 +160,7 @@ fn hs35_quadratic_with_bounds() {
 #[test]
 fn hs39_linear_objective() {
     let p = dense(&[FREE; 4], &[(0.0, 0.0); 2], |x| {
-        vec![-&x[0], &x[1] - x[0].powi(3) - x[2].powi(2), x[0].powi(2) - &x[1] - x[3].powi(2)]
+        vec![-&x[0], x[1] - x[0].powi(3) - x[2].powi(2), x[0].powi(2) - x[1] - x[3].powi(2)]
     });
     near(&solved(&p, &[2.0; 4], -1.0).x[..2], &[1.0, 1.0]);
 }
@@ -169,12 +169,12 @@ fn hs39_linear_objective() {
 fn hs43_rosen_suzuki() {
     let p = dense(&[FREE; 4], &[(-INF, 8.0), (-INF, 10.0), (-INF, 5.0)], |x| {
         let s: Vec<Jet> = x.iter().map(|x| x.powi(2)).collect();
-        let f = &s[0] + &s[1] + 2.0 * &s[2] + &s[3] - 5.0 * &x[0] - 5.0 * &x[1] - 21.0 * &x[2] + 7.0 * &x[3];
+        let f = s[0] + s[1] + 2.0 * &s[2] + s[3] - 5.0 * &x[0] - 5.0 * &x[1] - 21.0 * &x[2] + 7.0 * &x[3];
         vec![
             f,
-            &s[0] + &s[1] + &s[2] + &s[3] + &x[0] - &x[1] + &x[2] - &x[3],
-            &s[0] + 2.0 * &s[1] + &s[2] + 2.0 * &s[3] - &x[0] - &x[3],
-            2.0 * &s[0] + &s[1] + &s[2] + 2.0 * &x[0] - &x[1] - &x[3],
+            s[0] + s[1] + s[2] + s[3] + x[0] - x[1] + x[2] - x[3],
+            s[0] + 2.0 * &s[1] + s[2] + 2.0 * &s[3] - x[0] - x[3],
+            2.0 * &s[0] + s[1] + s[2] + 2.0 * &x[0] - x[1] - x[3],
         ]
     });
     let found = solved(&p, &[0.0; 4], -44.0);
@@ -185,9 +185,9 @@ fn hs43_rosen_suzuki() {
 #[test]
 fn hs71_product() {
     let p = dense(&[(1.0, 5.0); 4], &[(25.0, INF), (40.0, 40.0)], |x| {
-        let f = &x[0] * &x[3] * (&x[0] + &x[1] + &x[2]) + &x[2];
+        let f = x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2];
         let squares = x[0].powi(2) + x[1].powi(2) + x[2].powi(2) + x[3].powi(2);
-        vec![f, &x[0] * &x[1] * &x[2] * &x[3], squares]
+        vec![f, x[0] * x[1] * x[2] * x[3], squares]
     });
     let found = solved(&p, &[1.0, 5.0, 5.0, 1.0], 17.014_017_289_156);
     near(&found.x, &[1.0, 4.742_999_643_7, 3.821_149_978_9, 1.379_408_293_2]);
@@ -199,12 +199,12 @@ fn hs71_product() {
 fn hs76_quadratic() {
     let rows = [(-INF, 5.0), (-INF, 4.0), (1.5, INF)];
     let p = dense(&[(0.0, INF); 4], &rows, |x| {
-        let f = x[0].powi(2) + 0.5 * x[1].powi(2) + x[2].powi(2) + 0.5 * x[3].powi(2) - &x[0] * &x[2] + &x[2] * &x[3]
-            - &x[0]
+        let f = x[0].powi(2) + 0.5 * x[1].powi(2) + x[2].powi(2) + 0.5 * x[3].powi(2) - x[0] * x[2] + x[2] * x[3]
+            - x[0]
             - 3.0 * &x[1]
-            + &x[2]
-            - &x[3];
-        vec![f, &x[0] + 2.0 * &x[1] + &x[2] + &x[3], 3.0 * &x[0] + &x[1] + 2.0 * &x[2] - &x[3], &x[1] + 4.0 * &x[2]]
+            + x[2]
+            - x[3];
+        vec![f, x[0] + 2.0 * &x[1] + x[2] + x[3], 3.0 * &x[0] + x[1] + 2.0 * &x[2] - x[3], x[1] + 4.0 * &x[2]]
     });
     near(&solved(&p, &[0.5; 4], -4.681_818_181_818).x, &[3.0 / 11.0, 23.0 / 11.0, 0.0, 6.0 / 11.0]);
 }
@@ -220,15 +220,15 @@ fn hs100_seven_variables() {
             + 10.0 * x[4].powi(6)
             + 7.0 * x[5].powi(2)
             + x[6].powi(4)
-            - 4.0 * (&x[5] * &x[6])
+            - 4.0 * (x[5] * x[6])
             - 10.0 * &x[5]
             - 8.0 * &x[6];
         vec![
             f,
-            2.0 * x[0].powi(2) + 3.0 * x[1].powi(4) + &x[2] + 4.0 * x[3].powi(2) + 5.0 * &x[4],
-            7.0 * &x[0] + 3.0 * &x[1] + 10.0 * x[2].powi(2) + &x[3] - &x[4],
+            2.0 * x[0].powi(2) + 3.0 * x[1].powi(4) + x[2] + 4.0 * x[3].powi(2) + 5.0 * &x[4],
+            7.0 * &x[0] + 3.0 * &x[1] + 10.0 * x[2].powi(2) + x[3] - x[4],
             23.0 * &x[0] + x[1].powi(2) + 6.0 * x[5].powi(2) - 8.0 * &x[6],
-            4.0 * x[0].powi(2) + x[1].powi(2) - 3.0 * (&x[0] * &x[1]) + 2.0 * x[2].powi(2) + 5.0 * &x[5] - 11.0 * &x[6],
+            4.0 * x[0].powi(2) + x[1].powi(2) - 3.0 * (x[0] * x[1]) + 2.0 * x[2].powi(2) + 5.0 * &x[5] - 11.0 * &x[6],
         ]
     });
     solved(&p, &[1.0, 2.0, 0.0, 4.0, 0.0, 1.0, 1.0], 680.630_057_374_4);
@@ -238,13 +238,13 @@ fn hs100_seven_variables() {
 fn hs104_reactor() {
     let p = dense(&[(0.1, 10.0); 8], &[(0.0, INF); 5], |x| {
         let ratio = |a: usize, b: usize| 0.4 * (x[a].powf(0.67) * x[b].powf(-0.67));
-        let f = ratio(0, 6) + ratio(1, 7) + 10.0 - &x[0] - &x[1];
+        let f = ratio(0, 6) + ratio(1, 7) + 10.0 - x[0] - x[1];
         vec![
-            f.clone(),
-            1.0 - 0.0588 * (&x[4] * &x[6]) - 0.1 * &x[0],
-            1.0 - 0.0588 * (&x[5] * &x[7]) - 0.1 * &x[0] - 0.1 * &x[1],
-            1.0 - 4.0 * (&x[2] / &x[4]) - 2.0 * (x[2].powf(-0.71) / &x[4]) - 0.0588 * (x[2].powf(-1.3) * &x[6]),
-            1.0 - 4.0 * (&x[3] / &x[5]) - 2.0 * (x[3].powf(-0.71) / &x[5]) - 0.0588 * (x[3].powf(-1.3) * &x[7]),
+            f,
+            1.0 - 0.0588 * (x[4] * x[6]) - 0.1 * &x[0],
+            1.0 - 0.0588 * (x[5] * x[7]) - 0.1 * &x[0] - 0.1 * &x[1],
+            1.0 - 4.0 * (x[2] / x[4]) - 2.0 * (x[2].powf(-0.71) / x[4]) - 0.0588 * (x[2].powf(-1.3) * x[6]),
+            1.0 - 4.0 * (x[3] / x[5]) - 2.0 * (x[3].powf(-0.71) / x[5]) - 0.0588 * (x[3].powf(-1.3) * x[7]),
             f - 1.0,
         ]
     });
@@ -256,7 +256,7 @@ fn maratos_effect_does_not_shorten_steps() {
     // M. J. D. Powell's form: full Newton steps raise objective and violation both.
     let p = dense(&[FREE; 2], &[(1.0, 1.0)], |x| {
         let r = x[0].powi(2) + x[1].powi(2);
-        vec![2.0 * (&r - 1.0) - &x[0], r]
+        vec![2.0 * (&r - 1.0) - x[0], r]
     });
     let found = solved(&p, &[0.8, 0.6], -1.0);
     near(&found.x, &[1.0, 0.0]);
@@ -268,7 +268,7 @@ fn maratos_effect_does_not_shorten_steps() {
 fn waechter_and_biegler_example() {
     // Interior-point methods with a line search and without restoration fail here from this start.
     let p = dense(&[FREE, (0.0, INF), (0.0, INF)], &[(0.0, 0.0); 2], |x| {
-        vec![x[0].clone(), x[0].powi(2) - &x[1] - 1.0, &x[0] - &x[2] - 0.5]
+        vec![x[0], x[0].powi(2) - x[1] - 1.0, x[0] - x[2] - 0.5]
     });
     // Restoration of feasibility leads away from the bounds.
     let (start, options) = ([-2.0, 3.0, 1.0], Options::default());
@@ -282,8 +282,8 @@ fn waechter_and_biegler_example() {
 #[test]
 fn dependent_equalities_are_tolerated() {
     let p = dense(&[FREE; 3], &[(1.0, 1.0), (2.0, 2.0), (1.0, 1.0)], |x| {
-        let sum = &x[0] + &x[1] + &x[2];
-        vec![x[0].powi(2) + 2.0 * x[1].powi(2) + 3.0 * x[2].powi(2), sum.clone(), 2.0 * &sum, sum]
+        let sum = x[0] + x[1] + x[2];
+        vec![x[0].powi(2) + 2.0 * x[1].powi(2) + 3.0 * x[2].powi(2), sum, 2.0 * &sum, sum]
     });
     let found = solved(&p, &[5.0, -3.0, 2.0], 6.0 / 11.0);
     // Only the combination of the three multipliers is determined.
@@ -295,7 +295,7 @@ fn dependent_equalities_are_tolerated() {
 fn inequalities_that_sit_on_their_bounds_beside_an_equality_are_tolerated() {
     // The equality x = 1 makes both inequalities exactly active, whatever y does.
     let p = dense(&[FREE; 2], &[(1.0, 1.0), (-INF, 1.0), (1.0, INF)], |x| {
-        vec![(&x[1] - 2.0).powi(2) + x[1].powi(4), x[0].clone(), x[0].powi(3), x[0].powi(2)]
+        vec![(&x[1] - 2.0).powi(2) + x[1].powi(4), x[0], x[0].powi(3), x[0].powi(2)]
     });
     // Newton's method on 2 (y - 2) + 4 y^3 = 0, which has one root.
     let y = (0..50).fold(1.0_f64, |y, _| y - (2.0 * (y - 2.0) + 4.0 * y.powi(3)) / (2.0 + 12.0 * y * y));
@@ -319,7 +319,7 @@ fn nonconvex_quadratic_in_a_box_ends_at_a_vertex() {
 
 #[test]
 fn rosenbrock() {
-    let p = dense(&[FREE; 2], &[], |x| vec![100.0 * (&x[1] - x[0].powi(2)).powi(2) + (1.0 - &x[0]).powi(2)]);
+    let p = dense(&[FREE; 2], &[], |x| vec![100.0 * (x[1] - x[0].powi(2)).powi(2) + (1.0 - &x[0]).powi(2)]);
     near(&solved(&p, &[-1.2, 1.0], 0.0).x, &[1.0, 1.0]);
 }
 

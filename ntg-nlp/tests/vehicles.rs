@@ -136,15 +136,15 @@ fn mission(count: usize, together: bool) -> (Program, Vec<f64>) {
     // Slots of a point: x', y', x'', y'' by scaled time, and T.
     block(&mut p, [5, 3], &path, |u| {
         let speed = u[0].powi(2) + u[1].powi(2);
-        let turn = &u[0] * &u[3] - &u[1] * &u[2];
+        let turn = u[0] * u[3] - u[1] * u[2];
         vec![
-            1e-4 * (u[4].powi(2) + 3e4 * (&speed / &u[4])),
-            &speed / u[4].powi(2) / 0.0625,
+            1e-4 * (u[4].powi(2) + 3e4 * (speed / u[4])),
+            speed / u[4].powi(2) / 0.0625,
             5.0 * (turn / speed.powf(1.5)),
         ]
     });
-    block(&mut p, [5, 4], &initial, |u| vec![u[0].clone(), u[1].clone(), &u[2] - 0.2 * &u[4], u[3].clone()]);
-    block(&mut p, [3, 2], &last, |u| vec![u[0].clone(), u[1].clone()]);
+    block(&mut p, [5, 4], &initial, |u| vec![u[0], u[1], u[2] - 0.2 * &u[4], u[3]]);
+    block(&mut p, [3, 2], &last, |u| vec![u[0], u[1]]);
     if together {
         let joins: Vec<Element> = (1..count)
             .map(|i| Element {
@@ -155,7 +155,7 @@ fn mission(count: usize, together: bool) -> (Program, Vec<f64>) {
                 weight: vec![1.0],
             })
             .collect();
-        block(&mut p, [2, 1], &joins, |u| vec![&u[1] - &u[0]]);
+        block(&mut p, [2, 1], &joins, |u| vec![u[1] - u[0]]);
     }
     for agent in 0..count {
         let scale = &mut p.limits.scale[agent * STATE..(agent + 1) * STATE];

@@ -5,6 +5,8 @@
 //! - 67 and 87, which are not smooth: an iteration that stops, and piecewise linear costs;
 //! - 70, 85 and 88 to 92, whose data at hand do not give the published optimum at the published point.
 
+#![allow(clippy::inconsistent_digit_grouping, reason = "figures as they are printed")]
+
 mod n001_025;
 mod n026_050;
 mod n051_075;
@@ -37,6 +39,7 @@ pub(crate) struct Problem {
 
 impl Problem {
     /// The problem as a program.
+    #[allow(dead_code, reason = "each test file uses the part that it needs")]
     pub(crate) fn program(&self) -> Program {
         let functions = Arc::clone(&self.functions);
         dense(&self.bounds, &self.rows, move |x| functions(x))

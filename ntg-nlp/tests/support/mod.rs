@@ -152,13 +152,14 @@ impl Sub<&Jet> for &Jet {
     type Output = Jet;
     #[inline(never)]
     fn sub(self, o: &Jet) -> Jet {
-        self + &(-o)
+        self + (-o)
     }
 }
 
 impl Mul<&Jet> for &Jet {
     type Output = Jet;
     #[inline(never)]
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the rule of products")]
     fn mul(self, o: &Jet) -> Jet {
         let second =
             |i: usize, j: usize| self.h[i][j] * o.v + self.v * o.h[i][j] + self.g[i] * o.g[j] + self.g[j] * o.g[i];
@@ -170,7 +171,7 @@ impl Div<&Jet> for &Jet {
     type Output = Jet;
     #[inline(never)]
     fn div(self, o: &Jet) -> Jet {
-        self * &o.chain(1.0 / o.v, -1.0 / (o.v * o.v), 2.0 / (o.v * o.v * o.v))
+        self * o.chain(1.0 / o.v, -1.0 / (o.v * o.v), 2.0 / (o.v * o.v * o.v))
     }
 }
 
