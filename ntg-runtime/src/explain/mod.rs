@@ -197,7 +197,8 @@ fn near(
     settings: &Settings,
     until: Instant,
 ) -> Explanation {
-    let search = Search { nlp, settings: &settings.remembering(), until, factors: factors(nlp, x) };
+    let guess = start(nlp, None).ok();
+    let search = Search { nlp, settings: &settings.remembering(), until, factors: factors(nlp, x), guess };
     let all: Constraints = (0..nlp.rows()).filter_map(|row| search.constraint(row)).collect();
     let Some(relaxed) = search.least(&all, x, NOTHING) else { return Explanation::Unknown };
     if relaxed.violation <= NOTHING {
@@ -235,6 +236,8 @@ struct Search<'a> {
     until: Instant,
     /// What makes the rows comparable: violations times these are distances relative to the sizes of the variables.
     factors: Vec<f64>,
+    /// The spec's own guess.
+    guess: Option<Vec<f64>>,
 }
 
 impl Search<'_> {
@@ -262,7 +265,7 @@ impl Search<'_> {
                 let mut without = kept.clone();
                 without.remove(&constraint);
                 let none = AS_GOOD_AS_NONE * relaxed.violation;
-                match self.least(&without, &relaxed.outcome.x, none) {
+                match self.least_from_both(&without, &relaxed.outcome.x, none) {
                     Some(fewer) if fewer.violation > none => (kept, relaxed) = (without, fewer),
                     Some(_) => {}
                     None => open.push(constraint),
@@ -271,6 +274,17 @@ impl Search<'_> {
         }
         let minimal = open.is_empty();
         (kept, relaxed, minimal)
+    }
+
+    /// As [`Search::least`], from a point and, where that finds more than `enough`, from the guess too: a few constraints
+    /// are no conflict if they can hold near either.
+    fn least_from_both(&self, kept: &Constraints, x: &[f64], enough: f64) -> Option<Relaxed> {
+        let found = self.least(kept, x, enough)?;
+        let Some(guess) = self.guess.as_ref().filter(|_| found.violation > enough) else { return Some(found) };
+        match self.least(kept, guess, enough) {
+            Some(other) if other.violation < found.violation => Some(other),
+            _ => Some(found),
+        }
     }
 
     /// The least violation of some constraints, without the others; none where it was not found in
@@ -361,7 +375,7 @@ impl Search<'_> {
         let pushed = |c: &usize| sums.get(c).copied().unwrap_or(0.0) > IDLE * PRICE;
         let kept: Constraints = all.iter().copied().filter(pushed).collect();
         let none = AS_GOOD_AS_NONE * relaxed.violation;
-        let fewer = self.least(&kept, &relaxed.outcome.x, none)?;
+        let fewer = self.least_from_both(&kept, &relaxed.outcome.x, none)?;
         (fewer.violation > none).then_some((kept, fewer))
     }
 
