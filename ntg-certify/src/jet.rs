@@ -1,7 +1,7 @@
 //! Taylor coefficients of functions of one variable, enclosed (docs/maths.md, section 15.2).
 //!
-//! On a box with centre `c` and radius `r` a function of time is written in `s = (t - c) / r`, which runs from -1 to
-//! 1. A [`Jet`] encloses its Taylor coefficients `f_k = f^(k)(t) r^k / k!`, either at the centre alone or at every
+//! On a box with centre `c` and radius `r` a function of time is written in `s = (t - c) / r`, between -1 and
+//! 1: a [`Jet`] encloses its Taylor coefficients `f_k = f^(k)(t) r^k / k!`, either at the centre alone or at every
 //! time of the box, according to what it was made of. The recurrences are those of automatic differentiation
 //! (R. E. Moore, *Methods and Applications of Interval Analysis*, 1979, section 3.4).
 //!
@@ -73,8 +73,8 @@ impl Jet {
     /// A function of `self` with these values, whose derivative by `self` has the coefficients `slope`.
     fn through(&self, values: Interval, slope: &[Interval; COUNT]) -> Self {
         let mut c = [values; COUNT];
-        for k in 1..COUNT {
-            c[k] = self.chain(slope, k);
+        for (k, out) in c.iter_mut().enumerate().skip(1) {
+            *out = self.chain(slope, k);
         }
         Self { c, total: self.total }
     }
@@ -303,8 +303,8 @@ impl Jet {
         let square = self.square() + x.square();
         let (p, q) = (x.over(&square), self.over(&square));
         let mut c = [values; COUNT];
-        for k in 1..COUNT {
-            c[k] = self.chain(&p.c, k) - x.chain(&q.c, k);
+        for (k, out) in c.iter_mut().enumerate().skip(1) {
+            *out = self.chain(&p.c, k) - x.chain(&q.c, k);
         }
         Self { c, total }
     }
@@ -476,6 +476,7 @@ impl Sub for Jet {
 
 impl Mul for Jet {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "coefficients of a product are sums of products")]
     fn mul(self, other: Self) -> Self {
         let total = self.total && other.total;
         // Most factors with one value are numbers; they scale every coefficient.

@@ -114,11 +114,12 @@ impl<'p> Tightened<'p> {
             let mut by_factor: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
             for (row, meaning) in group.rows.iter().enumerate() {
                 let Row::Constraint { constraint, lower, upper } = meaning else { continue };
-                if lower != upper && !held.contains(&(*constraint, number)) {
-                    if let Some(change) = wanted(constraint) {
-                        by_factor.entry(change.points).or_default().push(row);
-                        held.push((*constraint, number));
-                    }
+                if lower != upper
+                    && !held.contains(&(*constraint, number))
+                    && let Some(change) = wanted(constraint)
+                {
+                    by_factor.entry(change.points).or_default().push(row);
+                    held.push((*constraint, number));
                 }
             }
             for (factor, rows) in by_factor {

@@ -245,6 +245,7 @@ impl std::ops::Sub for Jet {
 
 impl std::ops::Mul for Jet {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "coefficients of a product are sums of products")]
     fn mul(self, other: Self) -> Self {
         let product = |k: usize| (0..=k).fold(Interval::ZERO, |sum, i| sum + self.c[i] * other.c[k - i]);
         Self { c: std::array::from_fn(product), total: self.total && other.total }

@@ -103,8 +103,10 @@ impl<'a> Elaborator<'a> {
             (VectorFunction::Cross, [k]) => self.cross(cx, (a, &call.arguments[1]), k, span),
             (VectorFunction::Transpose, [i, j]) => self.element(cx, a, &[j.clone(), i.clone()]),
             (VectorFunction::Outer, [i, j]) => {
-                let (left, right) =
-                    (self.element(cx, a, &[i.clone()]), self.element(cx, &call.arguments[1], &[j.clone()]));
+                let (left, right) = (
+                    self.element(cx, a, std::slice::from_ref(i)),
+                    self.element(cx, &call.arguments[1], std::slice::from_ref(j)),
+                );
                 self.times(left, &right)
             }
             (VectorFunction::Identity, [i, j]) => match (self.known(i, span), self.known(j, span)) {
@@ -116,7 +118,7 @@ impl<'a> Elaborator<'a> {
             },
             (VectorFunction::Diagonal, [i, j]) => match (self.known(i, span), self.known(j, span)) {
                 (Ok(row), Ok(column)) => {
-                    let value = self.element(cx, a, &[i.clone()]);
+                    let value = self.element(cx, a, std::slice::from_ref(i));
                     if row == column { value } else { self.zero_like(&value) }
                 }
                 (Err(open), _) | (_, Err(open)) => open,
@@ -131,6 +133,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A number for an index that must be known; where it is not, a value that says which index that is.
+    #[expect(clippy::result_large_err, reason = "the error is the value that is returned in place of the element")]
     pub(super) fn known(&mut self, form: &Form, span: Span) -> Result<i64, Value> {
         match (form.as_number(), form.terms.first()) {
             (Some(number), _) => Ok(number),
@@ -165,7 +168,7 @@ impl<'a> Elaborator<'a> {
     fn dot(&mut self, cx: &Context<'a>, a: &'a Expr, b: &'a Expr, span: Span) -> Value {
         let n = self.length(cx, a);
         self.contracted(cx, n, span, &mut |this, cx, j| {
-            let left = this.element(cx, a, &[j.clone()]);
+            let left = this.element(cx, a, std::slice::from_ref(&j));
             let right = this.element(cx, b, &[j]);
             this.times(left, &right)
         })
@@ -224,7 +227,8 @@ impl<'a> Elaborator<'a> {
             Err(open) => return open,
         };
         let (p, q) = (Form::number(k % 3 + 1), Form::number((k + 1) % 3 + 1));
-        let (left, right) = (self.element(cx, a, &[p.clone()]), self.element(cx, b, &[q.clone()]));
+        let (left, right) =
+            (self.element(cx, a, std::slice::from_ref(&p)), self.element(cx, b, std::slice::from_ref(&q)));
         let first = self.times(left, &right);
         let (left, right) = (self.element(cx, a, &[q]), self.element(cx, b, &[p]));
         let second = self.times(left, &right);

@@ -208,6 +208,7 @@ pub enum Role {
 
 /// How smooth an output is.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a spec has few declarations, and most have a spline")]
 pub enum Course {
     /// `: spline(...)`, the only one for `output`.
     Spline(Spline),
