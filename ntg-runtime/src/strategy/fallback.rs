@@ -3,8 +3,6 @@
 //! ```text
 //! interior point -> the same with sizes taken anew -> from fewer knots -> sequential quadratic programming
 //! ```
-//!
-//! What each attempt rescues is counted by `examples/attempts.rs`.
 
 use super::budget::{Budget, better};
 use super::coarse_start::start_from_fewer;
