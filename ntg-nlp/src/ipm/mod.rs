@@ -130,7 +130,10 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         tiny_steps = if searched == SearchOutcome::Tiny { tiny_steps + 1 } else { 0 };
         let ended = match searched {
             // WB, section 3.9: a barrier problem whose steps are rounding is solved.
-            SearchOutcome::Tiny if tiny_steps >= TINY_STEPS && !state.force_lower_barrier() => Some(state.stuck()),
+            SearchOutcome::Tiny if tiny_steps >= TINY_STEPS => {
+                tiny_steps = 0;
+                (!state.force_lower_barrier()).then(|| state.stuck())
+            }
             SearchOutcome::Stuck if state.restoration.is_some() => {
                 state.abandon_restoration();
                 state.enter_penalty_mode(penalty::PARAMETER);

@@ -3,7 +3,8 @@
 //! optimum. The collection has no problems 82, 94 and 115. Left out are
 //!
 //! - 67 and 87, which are not smooth: an iteration that stops, and piecewise linear costs;
-//! - 70, 85 and 88 to 92, whose data at hand do not give the published optimum at the published point.
+//! - 85, whose tables are not at hand;
+//! - 70 and 88 to 92, whose formulas as transcribed do not give the published optimum at the published point.
 
 #![allow(clippy::inconsistent_digit_grouping, reason = "figures as they are printed")]
 
