@@ -15,8 +15,12 @@ const VARIATION: f64 = 3.0;
 /// Where the variation at the start is below this fraction of the variation beside the start, that fraction counts: a
 /// start may be nearly stationary by chance.
 const LEAST_AT_START: f64 = 1e-2;
-/// Where it is below this fraction, the start is stationary but for rounding, and the variation beside it counts.
+/// Where a slope at the start is below this fraction of the one beside it, the start is stationary but for rounding, and
+/// the slope beside it counts.
 const STATIONARY: f64 = 1e-6;
+/// A row is stationary only if a step of one size also changes it by less than this fraction of its own size: far beside
+/// the start, a row that falls or grows fast may have any slope. A law: rounding of terms that cancel.
+const ROUNDING: f64 = 1e-10;
 
 /// Scaled variables, rows and objective are `x / variables`, `rows * c` and `objective * f`, entry by entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +33,7 @@ pub struct Scales {
     pub objective: f64,
 }
 
-/// How steep a program is at its start, in scaled variables and the program's own rows and objective.
+/// How steep a program is at a point, in scaled variables and the program's own rows and objective.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slopes {
     /// The largest derivative of each row by a scaled variable.
@@ -39,30 +43,27 @@ pub struct Slopes {
 }
 
 impl Scales {
-    /// The scales of a program at a start, from its `first` evaluation there and the Jacobian assembled from that.
+    /// The scales of a program at a start, from its `first` evaluation there and the assembly that holds its Jacobian.
     /// `memory` is a workspace and room for another evaluation.
     pub fn of_program<N: Nlp>(
         nlp: &N,
         start: &[f64],
         scaling: Scaling,
-        first: (&Evaluation, &Csc),
+        first: (&Evaluation, &mut Assembly),
         memory: (&mut N::Workspace, &mut Evaluation),
     ) -> Self {
-        let ((at, jacobian), (workspace, trial)) = (first, memory);
+        let ((at, assembly), (workspace, trial)) = (first, memory);
         let sizes = Self::sizes(nlp.limits());
-        let mut rows = vec![0.0_f64; nlp.rows()];
-        for (j, size) in sizes.iter().enumerate() {
-            for (i, slope) in jacobian.column(j) {
-                rows[i] = rows[i].max((slope * size).abs());
-            }
-        }
+        let at_start = Slopes::of(nlp, at, &assembly.jacobian, &sizes);
         let mut x = start.to_vec();
         beside(start, nlp.limits(), &sizes, &mut x);
         let multipliers = vec![0.0; nlp.rows()];
-        let probe = nlp.derivatives(&x, 1.0, &multipliers, workspace, trial).ok();
-        let beside = probe.map(|()| variation(nlp.blocks(), trial, &sizes));
-        let variation = typical_variation(variation(nlp.blocks(), at, &sizes), beside);
-        Self::from_slopes(nlp.limits(), scaling, &Slopes { rows, variation })
+        let probe = nlp.derivatives(&x, 1.0, &multipliers, workspace, trial).ok().map(|()| {
+            assembly.first(nlp.blocks(), trial);
+            Slopes::of(nlp, trial, &assembly.jacobian, &sizes)
+        });
+        assembly.first(nlp.blocks(), at);
+        Self::from_slopes(nlp.limits(), scaling, &at_start.or_beside(probe, nlp.limits()))
     }
 
     /// Scaled bounds; they have no sizes of their own.
@@ -97,6 +98,43 @@ impl Scales {
         let rows = factors.zip(weights).map(|(factor, weight)| factor * weight).collect();
         let objective = if is_slope(&slopes.variation) { VARIATION / slopes.variation } else { 1.0 };
         Self { variables, rows, objective }
+    }
+}
+
+impl Slopes {
+    /// The slopes of an evaluation whose Jacobian is assembled. `sizes` are those of the variables.
+    fn of<N: Nlp>(nlp: &N, at: &Evaluation, jacobian: &Csc, sizes: &[f64]) -> Self {
+        let mut rows = vec![0.0_f64; nlp.rows()];
+        for (j, size) in sizes.iter().enumerate() {
+            for (i, slope) in jacobian.column(j) {
+                rows[i] = rows[i].max((slope * size).abs());
+            }
+        }
+        Self { rows, variation: variation(nlp.blocks(), at, sizes) }
+    }
+
+    /// The slopes that scale a program, from those at the start and at a point beside it (none where the program has no
+    /// derivatives there). A start may be stationary but for rounding, for a row or for the objective; then the slope
+    /// beside it counts, and for a row its larger finite bound, if that is larger. For the objective the start may also
+    /// be nearly stationary by chance.
+    pub fn or_beside(mut self, beside: Option<Self>, limits: &Limits) -> Self {
+        let Some(beside) = beside else { return self };
+        let is_stationary = |at_start: f64, beside: f64| beside.is_finite() && at_start <= STATIONARY * beside;
+        for (row, (slope, &beside)) in self.rows.iter_mut().zip(&beside.rows).enumerate() {
+            let rounding = ROUNDING * positive(limits.row_scale[row]);
+            if is_stationary(*slope, beside) && *slope <= rounding {
+                let bounds =
+                    [limits.row_lower[row], limits.row_upper[row]].into_iter().filter(|bound| bound.is_finite());
+                let most = bounds.fold(beside, |most, bound| most.max(bound.abs()));
+                *slope = if most > rounding { most } else { 0.0 };
+            }
+        }
+        if is_stationary(self.variation, beside.variation) {
+            self.variation = beside.variation;
+        } else if beside.variation.is_finite() {
+            self.variation = self.variation.max(LEAST_AT_START * beside.variation);
+        }
+        self
     }
 }
 
@@ -142,16 +180,6 @@ pub fn variation(blocks: &[Block], at: &Evaluation, sizes: &[f64]) -> f64 {
         }
     }
     sum
-}
-
-/// The variation that scales the objective, from those at the start and at a point beside it (none where the program
-/// has no values there).
-pub fn typical_variation(at_start: f64, beside: Option<f64>) -> f64 {
-    match beside.filter(|beside| beside.is_finite()) {
-        Some(beside) if at_start > STATIONARY * beside => at_start.max(LEAST_AT_START * beside),
-        Some(beside) => beside,
-        None => at_start,
-    }
 }
 
 /// A point beside a start, by half a size of each variable along three quarters of a wave over all variables: smooth

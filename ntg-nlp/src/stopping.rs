@@ -5,7 +5,8 @@ use crate::outcome::IterationRecord;
 use crate::status::Status;
 use std::time::Instant;
 
-/// A scaled objective this far below zero, or variables this large, mean that there is no minimum.
+/// A scaled objective this far below zero, or variables this large, at points that are feasible beside the size of their
+/// variables, mean that there is no minimum.
 const UNBOUNDED: f64 = 1e10;
 
 /// All residuals of an acceptable end are within this (or within the tolerances, where these are looser): the acceptable
@@ -42,7 +43,8 @@ impl Stage<'_> {
             return Some(Status::Solved);
         }
         let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-        if self.objective < -UNBOUNDED || largest > UNBOUNDED {
+        let is_near = found.primal <= options.constraint_tolerance * largest.max(1.0);
+        if is_near && (self.objective < -UNBOUNDED || largest > UNBOUNDED) {
             return Some(Status::Unbounded);
         }
         if let Some(watch) = &options.on_iteration {

@@ -51,6 +51,7 @@ specs! {
     multi_vehicle_look_after_strike: "specs/multi_vehicle_look_after_strike.ntg" => MultiVehicleLookAfterStrike,
     multi_vehicle_separated: "specs/multi_vehicle_separated.ntg" => MultiVehicleSeparated,
     multi_vehicle_simultaneous: "specs/multi_vehicle_simultaneous.ntg" => MultiVehicleSimultaneous,
+    powered_descent_6dof: "specs/powered_descent_6dof.ntg" => PoweredDescent6dof,
     radar_net: "specs/radar_net.ntg" => RadarNet,
     strike_and_look: "specs/strike_and_look.ntg" => StrikeAndLook,
     swarm: "specs/swarm.ntg" => Swarm,

@@ -79,7 +79,7 @@ impl<'n, 'p> Program<'n, 'p> {
             RowSizes::Ntg => Scaling::Automatic,
         };
         let mut trial = at.clone();
-        let scales = Scales::of_program(nlp, start, scaling, (&at, &assembly.jacobian), (&mut work, &mut trial));
+        let scales = Scales::of_program(nlp, start, scaling, (&at, &mut assembly), (&mut work, &mut trial));
         let start = start.iter().zip(&scales.variables).map(|(x, size)| x / size).collect();
         let (x, multipliers) = (vec![f64::NAN; n], vec![0.0; m]);
         let spent = Duration::ZERO;

@@ -17,7 +17,7 @@ use super::storage::Envelope;
 use super::supports::Supports;
 use crate::contract::{Block, Evaluation, Nlp, NotFinite};
 use crate::options::Scaling;
-use crate::scaling::{Scales, Slopes, beside, typical_variation, variation};
+use crate::scaling::{Scales, Slopes, beside, variation};
 
 /// A program, the symbolic analysis of its matrix, and its derivatives at the latest point. `W` is the program's
 /// workspace.
@@ -158,7 +158,8 @@ impl<W> System<W> {
         }
         let plain = Scales { rows: vec![1.0; self.weights.len()], objective: 1.0, ..self.scales.clone() };
         self.set_scales(nlp, plain);
-        let slopes = self.slopes(nlp);
+        let slopes = self.slopes_beside(nlp);
+        let slopes = self.slopes(nlp).or_beside(slopes, limits);
         self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
         let (row_sizes, row_weights) = (rows.clone(), weights.clone());
         self.scaled_by = Some(ScaledBy { point: scaled.to_vec(), rule: scaling, row_sizes, row_weights });
@@ -171,8 +172,22 @@ impl<W> System<W> {
         self.scales = scales;
     }
 
+    /// The slopes beside the latest point; none where the program has no derivatives there.
+    fn slopes_beside<N: Nlp<Workspace = W>>(&mut self, nlp: &N) -> Option<Slopes> {
+        let start = self.x.clone();
+        beside(&start, nlp.limits(), &self.scales.variables, &mut self.x);
+        let probe = nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.workspace, &mut self.trial);
+        self.x = start;
+        probe.ok()?;
+        std::mem::swap(&mut self.latest, &mut self.trial);
+        let slopes = self.slopes(nlp);
+        std::mem::swap(&mut self.latest, &mut self.trial);
+        Some(slopes)
+    }
+
     /// The slopes at the latest point, with row factors of 1.
     fn slopes<N: Nlp<Workspace = W>>(&mut self, nlp: &N) -> Slopes {
+        self.elements.load(&self.latest.blocks);
         let m = self.weights.len();
         let mut rows = vec![0.0; m + 2];
         self.elements.slopes(&mut rows);
@@ -186,19 +201,7 @@ impl<W> System<W> {
             let unknown = self.order.band + self.order.border + border as usize;
             *slope = self.envelope.row(unknown).map(|at| self.matrix[at].abs()).fold(0.0, f64::max);
         }
-        Slopes { rows, variation: self.variation(nlp) }
-    }
-
-    /// The variation that scales the objective, from the latest point and one beside it.
-    fn variation<N: Nlp<Workspace = W>>(&mut self, nlp: &N) -> f64 {
-        let sizes = &self.scales.variables;
-        let at_start = variation(nlp.blocks(), &self.latest, sizes);
-        let start = self.x.clone();
-        beside(&start, nlp.limits(), sizes, &mut self.x);
-        let probe = nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.workspace, &mut self.trial);
-        let beside = probe.ok().map(|()| variation(nlp.blocks(), &self.trial, sizes));
-        self.x = start;
-        typical_variation(at_start, beside)
+        Slopes { rows, variation: variation(nlp.blocks(), &self.latest, &self.scales.variables) }
     }
 
     /// Writes a point in the program's own units, within the bounds to the last bit.

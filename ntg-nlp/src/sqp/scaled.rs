@@ -56,7 +56,7 @@ impl<'a, N: Nlp> Program<'a, N> {
         assembly.first(nlp.blocks(), &at);
         assembly.hessian(nlp.blocks(), &at, |_, _, _| {});
         let mut trial = at.clone();
-        let first = (&at, &assembly.jacobian);
+        let first = (&at, &mut assembly);
         let scales = Scales::of_program(nlp, start, scaling, first, (&mut work, &mut trial));
         let limits = scales.limits(nlp.limits());
         let convexifier = Convexifier::new(nlp.blocks(), &scales.variables);
