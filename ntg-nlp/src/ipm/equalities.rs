@@ -2,7 +2,7 @@
 //! (docs/maths.md, equation 11.4 and section 11.7).
 
 use super::state::State;
-use super::step::PROXIMAL;
+use super::step::LEAST_PROXIMAL;
 use crate::contract::Nlp;
 use crate::kkt::Curvature;
 
@@ -40,6 +40,7 @@ impl<N: Nlp> State<'_, N> {
     /// is removed with the same factors.
     pub(super) fn refine_equalities(&mut self) {
         let n = self.x.len() - 1;
+        self.step.left = 0.0;
         if self.slacks.equalities.is_empty() {
             return;
         }
@@ -48,6 +49,7 @@ impl<N: Nlp> State<'_, N> {
         let mut before = f64::INFINITY;
         for round in 0..=REFINEMENTS {
             let left = self.update_multiplier_steps();
+            self.step.left = if left <= ROUNDING { 0.0 } else { left / size };
             if round == REFINEMENTS || left <= REFINED * size || left > 0.5 * before || left <= ROUNDING {
                 return;
             }
@@ -72,9 +74,9 @@ impl<N: Nlp> State<'_, N> {
             let compliance = self.step.compliance[k];
             let change = self.step.jacobian_x[equality.function];
             let rest = -self.step.equality_residual[k] - change - compliance * self.step.y[k];
-            self.step.y[k] += rest / (compliance + PROXIMAL);
+            self.step.y[k] += rest / (compliance + self.proximal);
             let rest = -self.step.equality_residual[k] - change - compliance * self.step.y[k];
-            self.step.right[equality.function] = rest / (compliance + PROXIMAL);
+            self.step.right[equality.function] = rest / (compliance + self.proximal);
             left = left.max(rest.abs());
         }
         left
@@ -125,7 +127,7 @@ impl<N: Nlp> State<'_, N> {
         }
         self.step.sigma.fill(0.0);
         for equality in &self.slacks.equalities {
-            self.step.sigma[equality.function] = 1.0 / PROXIMAL;
+            self.step.sigma[equality.function] = 1.0 / LEAST_PROXIMAL;
         }
         self.assemble(Curvature::None);
         if !self.system.factorise(0.0, 1.0) {
@@ -139,7 +141,7 @@ impl<N: Nlp> State<'_, N> {
         self.step.x[n] = 0.0;
         self.system.product_of_equalities(&self.step.x, &mut self.step.jacobian_x);
         for (equality, y) in self.slacks.equalities.iter().zip(&mut self.slacks.y) {
-            *y = -self.step.jacobian_x[equality.function] / PROXIMAL;
+            *y = -self.step.jacobian_x[equality.function] / LEAST_PROXIMAL;
         }
     }
 }

@@ -5,7 +5,7 @@ use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
 use super::slacks::Slacks;
 use super::state::{Analysis, State, Trial};
-use super::step::{FIRST_FRACTION, Step};
+use super::step::{FIRST_FRACTION, LARGEST_PROXIMAL, Step};
 use super::warm;
 use crate::contract::{Limits, Nlp, NotFinite};
 use crate::kkt::System;
@@ -78,6 +78,7 @@ impl<'a, N: Nlp> State<'a, N> {
             restorations: 0,
             short_steps: 0,
             estimate: Estimate::default(),
+            proximal: LARGEST_PROXIMAL,
             convex_fraction: FIRST_FRACTION,
             step,
             trial: Trial::new(&x, functions, slacks.s.clone()),

@@ -50,12 +50,17 @@ pub(super) struct ReferencePoint {
     pub(super) slope: f64,
 }
 
+/// Whether a change is rounding beside a number.
+fn is_rounding((change, number): (&f64, &f64)) -> bool {
+    change.abs() <= TINY * (1.0 + number.abs())
+}
+
 impl<N: Nlp> State<'_, N> {
     /// Tries points along the step, the longest first; on acceptance moves there.
     pub(super) fn filter_search(&mut self) -> SearchOutcome {
         let reference = self.reference_point();
         let longest = self.to_boundary(self.step.shrinkage.slack);
-        if self.is_tiny() {
+        if self.is_tiny() && self.step.s.iter().zip(&self.slacks.s).all(is_rounding) {
             let has_value = self.try_step(longest);
             return if has_value { self.accept_trial(longest, SearchOutcome::Tiny) } else { SearchOutcome::Stuck };
         }
@@ -123,8 +128,9 @@ impl<N: Nlp> State<'_, N> {
         self.to_boundary(self.step.shrinkage.multiplier)
     }
 
+    /// Whether the step of the variables is rounding.
     pub(super) fn is_tiny(&self) -> bool {
-        self.step.x.iter().zip(&self.x).all(|(d, x)| d.abs() <= TINY * (1.0 + x.abs()))
+        self.step.x.iter().zip(&self.x).all(is_rounding)
     }
 
     /// The speculative evaluation: evaluates the trial point with derivatives, which the next iteration needs if the

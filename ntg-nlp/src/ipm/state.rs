@@ -50,6 +50,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) nearest: Point,
     /// Memory for the point before a step that may be taken back.
     pub(super) before_step: Point,
+    /// The proximal term of the last matrix.
+    pub(super) proximal: f64,
     /// The fraction of the convexifying term that the last matrix needed.
     pub(super) convex_fraction: f64,
     /// Set in penalty mode, where bounds are elastic.

@@ -3,7 +3,7 @@
 //! ```text
 //! A dx = -grad L + J^T q,   A = H + J^T Sigma J + shift I
 //! inequalities:  Sigma = z / s,   q = sign (mu / z - s - r) Sigma,   ds = sign J dx + r,   dz = (mu / z - s - ds) Sigma
-//! equalities:    Sigma = 1 / p,   q = -c / p                                        (p: proximal term)
+//! equalities:    Sigma = 1 / p,   q = -c / p                                     (p: the proximal term)
 //! ```
 //!
 //! `r = d - s` is the residual of an inequality. The slack step is computed as `J dx + (d - s)`, in this association: it
@@ -16,10 +16,16 @@ use crate::contract::Nlp;
 use crate::kkt::{Curvature, Weights};
 use crate::reductions::sum;
 
-/// The proximal term `p` of equalities, whose scaled slope is 1. A fit to the gallery: the condensed matrix has the
-/// inertia of a minimum only where `p` is small beside `J H^-1 J^T`, and 1e-12 turns the rounding of rows into noise of
-/// multipliers.
-pub(super) const PROXIMAL: f64 = 1e-10;
+/// The proximal term `p` of equalities, whose scaled slope is 1: the largest and the least one. The condensed matrix has
+/// the inertia of a minimum only where `p` is small beside `J H^-1 J^T`, and rounding of the rows beside `1 / p` hides
+/// curvature of the objective below `1e-16 / p`. Fits to the gallery, from perturbed starts too.
+pub(super) const LARGEST_PROXIMAL: f64 = 1e-7;
+pub(super) const LEAST_PROXIMAL: f64 = 1e-10;
+/// The factor by which the proximal term rises from one matrix to the next, and the divisor by which it falls where the
+/// refinement leaves more than this fraction of the equalities' residuals. Fits, as above.
+const PROXIMAL_RISE: f64 = 10.0;
+const PROXIMAL_FALL: f64 = 100.0;
+const LEFT: f64 = 1e-4;
 /// The weight of a function without bounds: none, but a number that may divide.
 const WEIGHTLESS: f64 = 1e-30;
 /// From this barrier parameter on, relative to its unit, the solution that the guess leads to is settled, and a fraction
@@ -64,6 +70,8 @@ pub(super) struct Step {
     pub(super) shrinkage: Shrinkage,
     /// The compliance of each equality: 0 unless it is elastic.
     pub(super) compliance: Vec<f64>,
+    /// The fraction of the equalities' residuals that the refinement has left.
+    pub(super) left: f64,
     /// `Sigma` of each function: its weight in the matrix.
     pub(super) sigma: Vec<f64>,
     /// `q` of each function: its weight on the right-hand side.
@@ -104,6 +112,7 @@ impl Step {
             centrality: vec![0.0; inequalities],
             shrinkage: Shrinkage::default(),
             compliance: vec![0.0; equalities],
+            left: 0.0,
             sigma: vec![0.0; functions],
             right: vec![0.0; functions],
             correction_x: vec![0.0; n + 1],
@@ -143,20 +152,32 @@ impl<N: Nlp> State<'_, N> {
             penalty.weights(&self.slacks, &mut self.step.inequality_sigma, &mut self.step.compliance);
         }
         self.step.accumulate_sigma(&self.slacks);
-        let sigma = &mut self.step.sigma;
-        for (equality, compliance) in self.slacks.equalities.iter().zip(&self.step.compliance) {
-            sigma[equality.function] = 1.0 / (compliance + PROXIMAL);
-        }
-        if !self.factorise() {
-            return false;
-        }
         for (c, equality) in self.step.equality_residual.iter_mut().zip(&self.slacks.equalities) {
             *c = self.values[equality.function] - equality.value;
         }
         if let Some(penalty) = &self.penalty {
             penalty.residuals(&self.slacks, self.mu, &mut self.step.residual, &mut self.step.equality_residual);
         }
-        self.solve_for_step()
+        let mut proximal = (PROXIMAL_RISE * self.proximal).min(LARGEST_PROXIMAL);
+        loop {
+            if !self.factorise(proximal) {
+                return false;
+            }
+            let is_finite = self.solve_for_step();
+            if (is_finite && self.step.left <= LEFT) || self.proximal <= LEAST_PROXIMAL {
+                return is_finite;
+            }
+            proximal = (self.proximal / PROXIMAL_FALL).max(LEAST_PROXIMAL);
+        }
+    }
+
+    /// The matrix with exact second derivatives and a proximal term.
+    fn assemble_exact(&mut self, proximal: f64) {
+        self.proximal = proximal;
+        for (equality, compliance) in self.slacks.equalities.iter().zip(&self.step.compliance) {
+            self.step.sigma[equality.function] = 1.0 / (compliance + proximal);
+        }
+        self.assemble(Curvature::Exact);
     }
 
     /// The matrix with the weights of `step.sigma`: those of condensed rows inside, those of border rows on its
@@ -171,17 +192,26 @@ impl<N: Nlp> State<'_, N> {
     }
 
     /// Factorises the matrix with exact second derivatives where its inertia is that of a minimum; else with the
-    /// convexifying term, of which a fraction may be enough, and the smallest shift that helps.
-    fn factorise(&mut self) -> bool {
-        self.assemble(Curvature::Exact);
+    /// convexifying term, of which a fraction may be enough, and the smallest shift that helps. Near a solution the least
+    /// proximal term is tried before.
+    fn factorise(&mut self, proximal: f64) -> bool {
         self.record.shift = 0.0;
         let proximity = self.proximity_weight();
+        let is_settled = self.mu <= SETTLED * self.barrier_unit;
+        self.assemble_exact(proximal);
         if self.system.factorise(0.0, proximity) {
             return true;
         }
+        if is_settled && proximal > LEAST_PROXIMAL && !self.slacks.equalities.is_empty() {
+            self.assemble_exact(LEAST_PROXIMAL);
+            if self.system.factorise(0.0, proximity) {
+                return true;
+            }
+            self.assemble_exact(proximal);
+        }
         self.system.convexify(&self.step.sigma);
         self.record.convexified = true;
-        if self.mu <= SETTLED * self.barrier_unit {
+        if is_settled {
             let mut fraction = (self.convex_fraction / FRACTION_FACTOR).max(LEAST_FRACTION);
             while fraction < 1.0 {
                 if self.system.factorise(fraction, proximity) {
@@ -209,7 +239,7 @@ impl<N: Nlp> State<'_, N> {
         self.step.right_hand_side(&self.slacks, self.mu);
         let step = &mut self.step;
         for (k, equality) in self.slacks.equalities.iter().enumerate() {
-            step.right[equality.function] = -step.equality_residual[k] / (step.compliance[k] + PROXIMAL);
+            step.right[equality.function] = -step.equality_residual[k] / (step.compliance[k] + self.proximal);
         }
         self.split_border();
         self.system.transposed_product(&self.step.right, &mut self.step.x);
