@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use ntg_runtime::refine::Refinement;
-use ntg_runtime::settings::{Method, Settings};
+use ntg_runtime::settings::{Between, Method, Settings};
 use pyo3::prelude::*;
 
 use crate::errors;
@@ -20,17 +20,27 @@ pub(crate) struct Given {
     samples: usize,
     scales: BTreeMap<String, f64>,
     refine: Option<f64>,
+    between: String,
+    between_tolerance: f64,
 }
 
 impl Given {
     /// The settings, checked against their ranges.
     pub(crate) fn settings(self, py: Python<'_>) -> PyResult<Settings> {
         let invalid = |message: &str| errors::plain(py, "SettingsError", message);
+        let none_of =
+            |setting: &str, word: &str, all: &str| invalid(&format!("setting `{setting}`: `{word}` is none of {all}"));
         let method = match self.method.as_str() {
             "auto" => Method::Auto,
-            "newton" => Method::Newton,
+            "interior-point" => Method::InteriorPoint,
             "sqp" => Method::Sqp,
-            other => return Err(invalid(&format!("setting `method`: `{other}` is none of `auto`, `newton`, `sqp`"))),
+            other => return Err(none_of("method", other, "`auto`, `interior-point`, `sqp`")),
+        };
+        let between = match self.between.as_str() {
+            "report" => Between::Report,
+            "refuse" => Between::Refuse,
+            "refine" => Between::Refine,
+            other => return Err(none_of("between", other, "`report`, `refuse`, `refine`")),
         };
         let time_limit = self.time_limit.map(Duration::try_from_secs_f64).transpose();
         let time_limit = time_limit.map_err(|_| invalid("setting `time_limit`: a positive number of seconds"))?;
@@ -43,6 +53,8 @@ impl Given {
             samples: self.samples,
             scales: self.scales.into_iter().collect(),
             refine: self.refine.map(Refinement::to),
+            between,
+            between_tolerance: self.between_tolerance,
             ..Settings::default()
         };
         settings.validate().map_err(|error| invalid(&error.to_string()))?;

@@ -58,8 +58,7 @@ def test_dask_with_a_worker_killed_on_the_way(study):
 
 def test_ray_with_a_worker_killed_on_the_way(study):
     ray = pytest.importorskip("ray")
-    from ray.util.state import list_actors
-
+    psutil = pytest.importorskip("psutil")
     import ntg.ray
     from ntg import _batches
 
@@ -68,14 +67,14 @@ def test_ray_with_a_worker_killed_on_the_way(study):
     ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
     try:
         assert_same(whole, ntg.ray.solve_many(problem, table, values=VALUES, block=8, batch=64))
-        more = dict(columns=None, values=VALUES, settings=ntg.Settings(), jobs=1, block=8, batch=16, parameters=None)
-        task, batches, back = _batches.cut(problem, table, **more)
+        task, batches, back = _batches.cut(problem, table, dict(values=VALUES, block=8, batch=16))
         solved, victim = [], None
         for batch in ntg.ray.map_batches(task, batches, workers=2):
             solved.append(batch)
             if victim is None:
-                workers = [actor for actor in list_actors() if actor.state == "ALIVE"]
-                victim = workers[-1].pid
+                # Ray calls its processes after their actors.
+                children = psutil.Process().children(recursive=True)
+                victim = next(child.pid for child in children if "ray::_Worker" in " ".join(child.cmdline()))
                 os.kill(victim, signal.SIGKILL)
         assert_same(whole, _batches.joined(solved, 600, back))
     finally:

@@ -91,7 +91,8 @@ def test_files_that_are_not_there_or_no_text(tmp_path):
 def test_an_unsolved_solve_says_so(move):
     solution = move.solve(limit=0.5)  # The mean speed is already 0.5.
     assert not solution.solved and solution.status == "infeasible"
-    assert "slow" in solution.message and "slow" in solution.explain()
+    # The message says what is missed at the last point, the explanation which limits cannot hold together.
+    assert "`reach` at the end misses its bound" in solution.message and "`slow`" in solution.explain()
     with pytest.raises(ntg.UnsolvedError, match="Move: infeasible") as caught:
         solution.raise_if_unsolved()
     assert caught.value.solution is solution

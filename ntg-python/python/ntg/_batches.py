@@ -6,7 +6,7 @@ batch holds whole blocks: see `Problem.solve_many`.
 
 from __future__ import annotations
 
-from typing import Any, Iterable, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, Optional, Sequence, TypedDict
 
 from . import _ntg, _table
 from ._errors import TableError
@@ -28,26 +28,37 @@ class Task(NamedTuple):
     block: Optional[int]
 
 
-def cut(
-    problem: Problem,
-    table: Any,
-    *,
-    columns: Optional[Sequence[str]],
-    values: Sequence[str],
-    settings: Settings,
-    jobs: int,
-    block: Optional[int],
-    batch: int,
-    parameters: Optional[Mapping[str, Any]],
-) -> "tuple[Task, list[Any], Any]":
+class Options(TypedDict, total=False):
+    """What a study on a cluster may be told, as `Problem.solve_many` is."""
+
+    columns: Optional[Sequence[str]]
+    values: Sequence[str]
+    settings: Settings
+    jobs: int
+    """The number of rows at a time in each worker."""
+    block: Optional[int]
+    batch: int
+    """The least number of rows that are sent at once."""
+    parameters: Optional[Mapping[str, Any]]
+
+
+DEFAULTS = Options(columns=None, values=(), settings=DEFAULT, jobs=1, block=None, batch=2048, parameters=None)
+
+
+def cut(problem: Problem, table: Any, options: Options) -> "tuple[Task, list[Any], Any]":
     """The task, the batches as Arrow tables with the columns `row` and `block`, and what makes a table of the rows."""
     import numpy as np
     import pyarrow
 
+    unknown = [name for name in options if name not in DEFAULTS]
+    if unknown:
+        raise TypeError(f"there is no option `{unknown[0]}`; there are: {', '.join(f'`{name}`' for name in DEFAULTS)}")
+    how: Options = {**DEFAULTS, **options}
+    block, batch = how["block"], how["batch"]
     if batch < 1 or (block is not None and block < 1):
         raise TableError("`batch` and `block` are numbers of rows, at least 1")
-    problem = Problem(problem._core.with_parameters(merged(parameters, {})))
-    inputs, sets, back = _table.read(problem._core, table, columns)
+    problem = Problem(problem._core.with_parameters(merged(how["parameters"], {})))
+    inputs, sets, back = _table.read(problem._core, table, how["columns"])
     pieces = _ntg.blocks(sets, block)
     batches, some, count = [], [], 0
     for number, rows in enumerate(pieces):
@@ -59,7 +70,15 @@ def cut(
             data = {ROW: order, BLOCK: numbers, **{name: sets[order, i] for i, name in enumerate(inputs)}}
             batches.append(pyarrow.table(data))
             some, count = [], 0
-    return Task(problem, inputs, list(values), settings, jobs, block), batches, back
+    return Task(problem, inputs, list(how["values"]), how["settings"], how["jobs"], block), batches, back
+
+
+def solve_many(
+    map_batches: "Callable[[Task, Sequence[Any]], Iterable[Any]]", problem: Problem, table: Any, options: Options
+) -> Any:
+    """The rows of a table, whose batches `map_batches` solves somewhere, in any order."""
+    task, batches, back = cut(problem, table, options)
+    return joined(map_batches(task, batches), sum(len(one) for one in batches), back)
 
 
 def solve(task: Task, batch: Any) -> Any:
@@ -96,4 +115,4 @@ def joined(tables: Iterable[Any], count: int, back: Any) -> Any:
     return back(columns)
 
 
-__all__ = ["DEFAULT", "Task", "cut", "joined", "solve"]
+__all__ = ["Options", "Task", "cut", "joined", "solve", "solve_many"]

@@ -32,19 +32,23 @@ class Settings:
     """How a problem is solved. The defaults suit most problems."""
 
     method: str = "auto"
-    """`auto`, `newton` (the structured Newton method alone) or `sqp`."""
+    """`auto` (the interior-point method, and what helps where it fails), `interior-point` alone, or `sqp`."""
     tolerance: float = 1e-8
     """Largest scaled residual of stationarity and complementarity of a solution."""
     constraint_tolerance: float = 1e-8
     """Largest scaled violation of a constraint of a solution."""
-    max_iterations: int = 500
-    """Iterations after which a solve is given up."""
+    max_iterations: int = 2000
+    """Iterations of all that a solve does, after which it is given up."""
     time_limit: Optional[float] = None
     """Seconds after which a solve is given up; none for no limit."""
     samples: int = 20
     """Points of the check after a solve for each point of the transcription."""
     refine: Optional[float] = None
     """Solve again on finer meshes until cost and constraints are exact to this relative error."""
+    between: str = "report"
+    """What becomes of a solution that violates constraints between its points: `report`, `refuse` or `refine`."""
+    between_tolerance: float = 0.01
+    """The largest violation between the points, relative to the constraint's bound, of which nothing is said."""
     scales: Mapping[str, float] = field(default_factory=dict)
     """Typical sizes of outputs and variables by name, in their units."""
 

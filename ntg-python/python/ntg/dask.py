@@ -10,12 +10,13 @@ A worker that dies is Dask's matter: its batches are solved again elsewhere, wit
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Sequence
 
 from . import _batches
-from ._settings import DEFAULT, Settings
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from ._problem import Problem
 
 __all__ = ["map_batches", "solve_many"]
@@ -27,40 +28,22 @@ def map_batches(task: "_batches.Task", batches: Sequence[Any], client: Any, *, r
     return [client.submit(_batches.solve, task, batch, pure=False, retries=retries) for batch in batches]
 
 
-def solve_many(
-    problem: "Problem",
-    table: Any,
-    client: Any = None,
-    *,
-    columns: Optional[Sequence[str]] = None,
-    values: Sequence[str] = (),
-    settings: Settings = DEFAULT,
-    jobs: int = 1,
-    block: Optional[int] = None,
-    batch: int = 2048,
-    parameters: Optional[Mapping[str, Any]] = None,
-) -> Any:
+def solve_many(problem: "Problem", table: Any, client: Any = None, **options: "Unpack[_batches.Options]") -> Any:
     """As `Problem.solve_many`, with the same rows, on the workers of a client; the present client where none is given.
 
-    `jobs` is the number of rows at a time on each worker's thread, `batch` the least number of rows that are sent at
-    once.
+    Options are `columns`, `values`, `settings`, `block` and `parameters` of `Problem.solve_many`; `jobs`, the number of
+    rows at a time on each worker's thread (1); and `batch`, the least number of rows that are sent at once (2048).
     """
     from dask.distributed import get_client
 
     client = get_client() if client is None else client
-    task, batches, back = _batches.cut(
-        problem,
-        table,
-        columns=columns,
-        values=values,
-        settings=settings,
-        jobs=jobs,
-        block=block,
-        batch=batch,
-        parameters=parameters,
-    )
-    futures = map_batches(task, batches, client)
+    futures: list[Any] = []
+
+    def gathered(task: "_batches.Task", batches: Sequence[Any]) -> Any:
+        futures.extend(map_batches(task, batches, client))
+        return client.gather(futures)
+
     try:
-        return _batches.joined(client.gather(futures), sum(len(one) for one in batches), back)
+        return _batches.solve_many(gathered, problem, table, options)
     finally:
         client.cancel(futures)

@@ -8,12 +8,14 @@ A worker that dies is begun again by Ray, and its batch is solved again with the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence
 
 from . import _batches
-from ._settings import DEFAULT, Settings
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from ._problem import Problem
 
 __all__ = ["map_batches", "solve_many"]
@@ -45,31 +47,11 @@ def map_batches(task: "_batches.Task", batches: Sequence[Any], *, workers: Optio
 
 
 def solve_many(
-    problem: "Problem",
-    table: Any,
-    *,
-    columns: Optional[Sequence[str]] = None,
-    values: Sequence[str] = (),
-    settings: Settings = DEFAULT,
-    jobs: int = 1,
-    block: Optional[int] = None,
-    batch: int = 2048,
-    parameters: Optional[Mapping[str, Any]] = None,
-    workers: Optional[int] = None,
+    problem: "Problem", table: Any, *, workers: Optional[int] = None, **options: "Unpack[_batches.Options]"
 ) -> Any:
     """As `Problem.solve_many`, with the same rows, on a Ray cluster; a local one is begun where there is none.
 
-    `jobs` is the number of rows at a time in each actor, `batch` the least number of rows that are sent at once.
+    Options are `columns`, `values`, `settings`, `block` and `parameters` of `Problem.solve_many`; `jobs`, the number of
+    rows at a time in each actor (1); and `batch`, the least number of rows that are sent at once (2048).
     """
-    task, batches, back = _batches.cut(
-        problem,
-        table,
-        columns=columns,
-        values=values,
-        settings=settings,
-        jobs=jobs,
-        block=block,
-        batch=batch,
-        parameters=parameters,
-    )
-    return _batches.joined(map_batches(task, batches, workers=workers), sum(len(one) for one in batches), back)
+    return _batches.solve_many(partial(map_batches, workers=workers), problem, table, options)
