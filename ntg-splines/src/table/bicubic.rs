@@ -81,20 +81,23 @@ struct Corner {
     hy: f64,
 }
 
-/// All corners of all cells.
-fn corners<'a>(surface: &'a Surface<'_>) -> impl Iterator<Item = Corner> + 'a {
+/// All cells: the rows and columns of nodes that they begin at.
+fn cells(surface: &Surface<'_>) -> impl Iterator<Item = (usize, usize)> {
+    let (rows, columns) = (surface.x.nodes.len(), surface.y.nodes.len());
+    (0..rows - 1).flat_map(move |i| (0..columns - 1).map(move |j| (i, j)))
+}
+
+/// The corners of a cell.
+fn corners(surface: &Surface<'_>, (i, j): (usize, usize)) -> [Corner; 4] {
     let (x, y) = (&surface.x.nodes, &surface.y.nodes);
     let node = |i: usize, j: usize| i * y.len() + j;
-    let cells = (0..x.len() - 1).flat_map(|i| (0..y.len() - 1).map(move |j| (i, j)));
-    cells.flat_map(move |(i, j)| {
-        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(p, q)| Corner {
-            own: node(i + p, j + q),
-            x_side: node(i + 1 - p, j + q),
-            y_side: node(i + p, j + 1 - q),
-            diagonal: node(i + 1 - p, j + 1 - q),
-            hx: (x[i + 1 - p] - x[i + p]) / 3.0,
-            hy: (y[j + 1 - q] - y[j + q]) / 3.0,
-        })
+    [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(p, q)| Corner {
+        own: node(i + p, j + q),
+        x_side: node(i + 1 - p, j + q),
+        y_side: node(i + p, j + 1 - q),
+        diagonal: node(i + 1 - p, j + 1 - q),
+        hx: (x[i + 1 - p] - x[i + p]) / 3.0,
+        hy: (y[j + 1 - q] - y[j + q]) / 3.0,
     })
 }
 
@@ -150,23 +153,49 @@ struct Factors {
 /// In each condition the terms that work against it are scaled to fit what the others leave.
 /// Slopes only ever shrink, so their limit exists and meets every condition. Most data need a
 /// few rounds; a few approach the limit geometrically and stop when a round changes nothing
-/// above rounding. Should [`ROUNDS`] not suffice, what is left shows in the fit report.
+/// above rounding. A round looks only at the cells where the last one changed a slope: the others
+/// still meet their conditions. Should [`ROUNDS`] not suffice, what is left shows in the fit report.
 fn reduce(surface: &Surface<'_>, slope: &mut Slopes) {
     let count = surface.f.len();
-    for _ in 0..ROUNDS {
-        let mut factors = Factors { x: vec![1.0; count], y: vec![1.0; count] };
-        for corner in corners(surface) {
+    let ties = ties(surface);
+    let mut factors = Factors { x: vec![1.0; count], y: vec![1.0; count] };
+    let mut active: Vec<(usize, usize)> = cells(surface).collect();
+    let mut last_active = vec![0; count]; // The round, for each cell by the node where it begins.
+    for round in 1..=ROUNDS {
+        for corner in active.iter().flat_map(|cell| corners(surface, *cell)) {
             demand(&corner, surface.f, slope, &mut factors);
         }
-        tie(surface, &mut factors.x, f64::min);
-        tie(surface, &mut factors.y, f64::min);
-        slope.x.iter_mut().zip(&factors.x).for_each(|(s, factor)| *s *= factor);
-        slope.y.iter_mut().zip(&factors.y).for_each(|(s, factor)| *s *= factor);
-        let least = factors.x.iter().chain(&factors.y).fold(1.0, |least: f64, factor| least.min(*factor));
+        tie(&ties, &mut factors.x, f64::min);
+        tie(&ties, &mut factors.y, f64::min);
+        let touched = active.iter().flat_map(|cell| corners(surface, *cell).map(|corner| corner.own));
+        let touched: Vec<usize> = touched.chain(ties.iter().flat_map(|(first, last)| [*first, *last])).collect();
+        active.clear();
+        let mut least: f64 = 1.0;
+        for node in touched {
+            let (x, y) = (&mut factors.x[node], &mut factors.y[node]);
+            if *x < 1.0 || *y < 1.0 {
+                (slope.x[node], slope.y[node]) = (slope.x[node] * *x, slope.y[node] * *y);
+                least = least.min(*x).min(*y);
+                (*x, *y) = (1.0, 1.0); // Taken once, however many cells have touched it.
+                let around = around(surface, node).filter(|cell| {
+                    let before = &mut last_active[cell.0 * surface.y.nodes.len() + cell.1];
+                    std::mem::replace(before, round) < round
+                });
+                active.extend(around);
+            }
+        }
         if least > 1.0 - 1e-14 {
             break;
         }
     }
+}
+
+/// The cells that have a node as a corner.
+fn around(surface: &Surface<'_>, node: usize) -> impl Iterator<Item = (usize, usize)> {
+    let (rows, columns) = (surface.x.nodes.len(), surface.y.nodes.len());
+    let (i, j) = (node / columns, node % columns);
+    let along_x = i.saturating_sub(1)..(i + 1).min(rows - 1);
+    along_x.flat_map(move |i| (j.saturating_sub(1)..(j + 1).min(columns - 1)).map(move |j| (i, j)))
 }
 
 /// Lowers the factors of the slopes that break a condition at this corner.
@@ -212,8 +241,8 @@ fn lower(factor: &mut f64, term: f64, to: f64) {
     }
 }
 
-/// Makes the first and the last node of closed lines the same.
-fn tie(surface: &Surface<'_>, values: &mut [f64], choose: fn(f64, f64) -> f64) {
+/// The first and the last node of each closed line, which are the same place.
+fn ties(surface: &Surface<'_>) -> Vec<(usize, usize)> {
     let (rows, columns) = (surface.x.nodes.len(), surface.y.nodes.len());
     let mut pairs = vec![];
     if surface.x.closed {
@@ -222,7 +251,12 @@ fn tie(surface: &Surface<'_>, values: &mut [f64], choose: fn(f64, f64) -> f64) {
     if surface.y.closed {
         pairs.extend((0..rows).map(|i| (i * columns, (i + 1) * columns - 1)));
     }
-    for (first, last) in pairs {
+    pairs
+}
+
+/// Makes values at nodes that are the same place the same.
+fn tie(ties: &[(usize, usize)], values: &mut [f64], choose: fn(f64, f64) -> f64) {
+    for &(first, last) in ties {
         let tied = choose(values[first], values[last]);
         values[first] = tied;
         values[last] = tied;
@@ -232,15 +266,16 @@ fn tie(surface: &Surface<'_>, values: &mut [f64], choose: fn(f64, f64) -> f64) {
 /// Twists at all nodes: the estimate of equation 7.14, as near as all cells allow.
 fn twists(surface: &Surface<'_>, slope: &Slopes) -> Vec<f64> {
     let (mut least, mut most) = (vec![f64::NEG_INFINITY; surface.f.len()], vec![f64::INFINITY; surface.f.len()]);
-    for corner in corners(surface) {
+    for corner in cells(surface).flat_map(|cell| corners(surface, cell)) {
         let (low, high) = allowed(&corner.conditions(surface.f, slope));
         let area = corner.hx * corner.hy;
         let (low, high) = if area > 0.0 { (low / area, high / area) } else { (high / area, low / area) };
         least[corner.own] = least[corner.own].max(low.min(0.0));
         most[corner.own] = most[corner.own].min(high.max(0.0));
     }
-    tie(surface, &mut least, f64::max);
-    tie(surface, &mut most, f64::min);
+    let ties = ties(surface);
+    tie(&ties, &mut least, f64::max);
+    tie(&ties, &mut most, f64::min);
     let of_x = along_y(surface, &slope.x, Line::parabolic);
     let of_y = along_x(surface, &slope.y, Line::parabolic);
     let estimates = of_x.iter().zip(&of_y).map(|(p, q)| 0.5 * (p + q));

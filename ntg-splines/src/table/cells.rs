@@ -57,6 +57,18 @@ impl Table {
         values
     }
 
+    /// The least and the largest Bernstein coefficient on a cell, given by its number in each argument.
+    pub(super) fn hull(&self, cell: &[usize]) -> (f64, f64) {
+        match (&self.joined, &self.pieces[..], cell) {
+            (Some(joined), [x], [i]) => joined.hull(*i, x.order()),
+            (Some(joined), [_, y], [i, j]) => joined.hull(i * y.cells() + j, y.order()),
+            _ => {
+                let start = (f64::INFINITY, f64::NEG_INFINITY);
+                self.bernstein(cell).iter().fold(start, |(low, high), c| (low.min(*c), high.max(*c)))
+            }
+        }
+    }
+
     /// The coefficients that act on a cell, from `first` on, in the order of the arguments from `axis` on.
     fn active(&self, first: usize, axis: usize, orders: &[usize]) -> Vec<f64> {
         let Some(order) = orders.get(axis) else { return vec![self.coefficients.values[first]] };

@@ -14,8 +14,8 @@ use super::grid::Grid;
 use super::piece::Piece;
 use super::place::AT_ONCE;
 
-/// The most numbers that are kept for it (8 MiB).
-const MOST_NUMBERS: usize = 1 << 20;
+/// The most numbers that are kept for it (128 MiB): cubic tables of up to 1024 by 1024 nodes.
+const MOST_NUMBERS: usize = 1 << 24;
 
 /// Numbers that are read at once.
 const ROW: usize = 4;
@@ -40,32 +40,48 @@ impl Joined {
         let size = pieces.iter().fold(1, |size: usize, piece| size.saturating_mul(numbers(piece)));
         match pieces {
             _ if size > MOST_NUMBERS => None,
-            [x] => Some(Self::of_lines(&[along(x, &grid.values)], 1, x)),
-            [x, y] => {
-                let columns = grid.shape[1];
-                let column = |j: usize| grid.values.iter().skip(j).step_by(columns).copied().collect::<Vec<_>>();
-                let columns: Vec<Vec<f64>> = (0..columns).map(|j| along(x, &column(j))).collect();
-                let line = |i: usize| columns.iter().map(|column| column[i]).collect::<Vec<_>>();
-                let lines: Vec<Vec<f64>> = (0..x.cells() * x.order()).map(|i| along(y, &line(i))).collect();
-                Some(Self::of_lines(&lines, x.order(), y))
-            }
+            [x] => Some(Self::multiplied_out(None, x, &grid.values)),
+            [x, y] => Some(Self::multiplied_out(Some(x), y, &grid.values)),
             _ => None,
         }
     }
 
-    /// From lines of Bernstein coefficients along the last argument, as many a cell as the first one's order.
-    fn of_lines(lines: &[Vec<f64>], order: usize, last: &Piece) -> Self {
+    /// Multiplies weights and coefficients, cell by cell of the first of two arguments.
+    fn multiplied_out(first: Option<&Piece>, last: &Piece, coefficients: &[f64]) -> Self {
+        let (cells, order) = first.map_or((1, 1), |piece| (piece.cells(), piece.order()));
+        let columns = last.start(last.cells() - 1) + last.order();
         let length = last.order().div_ceil(ROW);
-        let mut rows = Vec::with_capacity(lines.len() * last.cells() * length);
-        for lines in lines.chunks_exact(order) {
+        let mut rows = Vec::with_capacity(cells * order * last.cells() * length);
+        let mut line = vec![0.0; columns];
+        for cell in 0..cells {
+            let lines = (0..order).map(|i| match first {
+                None => along(last, coefficients),
+                Some(piece) => {
+                    let active = coefficients[piece.start(cell) * columns..].chunks_exact(columns);
+                    line.fill(0.0);
+                    for (w, active) in piece.polynomials(cell)[i * order..][..order].iter().zip(active) {
+                        line.iter_mut().zip(active).for_each(|(sum, c)| *sum += w * c);
+                    }
+                    along(last, &line)
+                }
+            });
+            let lines: Vec<Vec<f64>> = lines.collect();
             for cell in 0..last.cells() {
-                for line in lines {
+                for line in &lines {
                     let coefficients = line[cell * last.order()..][..last.order()].chunks(ROW);
                     rows.extend(coefficients.map(|c| std::array::from_fn(|i| c.get(i).copied().unwrap_or(0.0))));
                 }
             }
         }
         Self { rows, length, size: order * length }
+    }
+
+    /// The least and the largest Bernstein coefficient of a cell, given by its number among all; `order` is that of
+    /// the last argument.
+    pub(super) fn hull(&self, cell: usize, order: usize) -> (f64, f64) {
+        let rows = self.rows[cell * self.size..][..self.size].chunks_exact(self.length);
+        let coefficients = rows.flat_map(|line| line.as_flattened()[..order].iter());
+        coefficients.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(*c), high.max(*c)))
     }
 
     pub(super) fn is_finite(&self) -> bool {

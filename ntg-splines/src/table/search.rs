@@ -45,6 +45,11 @@ impl Search {
         search
     }
 
+    /// The cells that an interval touches, in its inside; `from < to`.
+    pub(super) fn between(&self, from: f64, to: f64) -> std::ops::RangeInclusive<usize> {
+        self.inner.partition_point(|b| *b <= from)..=self.inner.partition_point(|b| *b < to)
+    }
+
     /// The cell of each lane: how many inner breaks are not above it.
     #[inline(always)]
     pub(super) fn cells<S: Simd>(&self, x: Pack<S>) -> [usize; MOST_LANES] {
