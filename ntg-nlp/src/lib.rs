@@ -11,7 +11,7 @@
 //! `phi` depends on a few *internal variables* `u`, which a linear *range transformation* `E` makes of the
 //! program's variables. Discretised optimal control problems, finite elements and sums of squares have this form.
 //! A program hands over derivatives by internal variables, where they are small and dense; the
-//! solver condenses them element by element into a band with a border.
+//! solver condenses them element by element into a matrix whose factors cost what the coupling asks for.
 //!
 //! [`Nlp`] is the contract. [`closures::Program`] implements it for functions written as closures:
 //!

@@ -2,7 +2,8 @@
 //!
 //! Takes any [`Nlp`], a start and [`Options`]; gives an [`Outcome`], by the same test of optimality as
 //! sequential quadratic programming. Second derivatives are exact. The linear systems are condensed element by element
-//! into a band with a border, so that the cost of an iteration grows linearly with the length of the band.
+//! and eliminated in an order that follows their coupling, so that the cost of an iteration grows linearly with the
+//! length of a trajectory.
 //!
 //! `state` holds the iterate and its residuals, `slacks` the bounds with slacks and multipliers, `barrier` the barrier
 //! parameter, `step` the primal-dual step, `line_search` the search by the `filter` with its second-order

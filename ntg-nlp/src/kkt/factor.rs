@@ -1,22 +1,19 @@
-//! `L D L^T` of a band with a border (docs/maths.md, section 11.3).
-//!
-//! ```text
-//! [ K  B^T ]   [ L      ] [ D     ] [ L^T  D^-1 V^T ]        L V = B^T as rows,
-//! [ B  C   ] = [ V D^-1  I ] [    S ] [       I      ]        S = C - V D^-1 V^T
-//! ```
+//! `L D L^T` of the condensed matrix by blocks (docs/maths.md, section 11.3).
 //!
 //! There is no pivoting: the matrices that the method accepts are positive definite but for the border rows.
 //! By Sylvester's law of inertia the number of negative pivots is the number of negative eigenvalues, so that the
 //! factorisation itself tells whether a matrix is to be accepted.
 //!
-//! Reference: G. H. Golub and C. F. Van Loan, *Matrix Computations*, sections 4.2 and 4.3.
+//! Reference: G. H. Golub and C. F. Van Loan, *Matrix Computations*, sections 4.2 and 4.3; J. W. H. Liu, *SIAM Review* 34
+//! (1992), for columns that are subtracted together.
 
-use super::storage::{BLOCK, Component, Envelope};
+use super::storage::{BLOCK, Run, Storage, TOGETHER};
 use ntg_math::{Simd, Task, dispatch};
+use std::ops::Range;
 
 /// A pivot smaller than this fraction of the column's largest entry counts as zero. A law: some fifty roundings.
 const SINGULAR: f64 = 1e-14;
-/// A pivot of the band within this fraction of the diagonal entry that it came from is nothing but rounding: tight
+/// A pivot within this fraction of the diagonal entry that it came from is nothing but rounding: tight
 /// bounds leave directions whose curvature is lost beside theirs. Such a pivot counts as positive and of this size,
 /// which changes the matrix by no more than its own rounding. A law: some fifty roundings.
 const NOISE: f64 = 1e-14;
@@ -29,15 +26,16 @@ type Square = [Chunk; BLOCK];
 /// The factors of one matrix.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
-    /// As the matrix, with `L`, `V`, and the factors of `S`.
+    /// As the matrix, with `L`.
     value: Vec<f64>,
-    /// Reciprocal pivots: of the band, filled up, and of the border.
+    /// Reciprocal pivots, filled up.
     inverse: Vec<Chunk>,
-    border_inverse: Vec<f64>,
-    /// A column of blocks below the diagonal, times the column's pivots.
+    /// The columns of blocks of a group below their diagonals, times their pivots; each `longest` after the one before.
     panel: Vec<Square>,
-    /// A row of the border, or a right-hand side of the band.
-    run: Vec<Chunk>,
+    /// The length of the longest column below its diagonal.
+    longest: usize,
+    /// A right-hand side, filled up.
+    side: Vec<Chunk>,
 }
 
 /// What is factorised: a matrix, plus a fraction of a convexifying term (none if that is empty), plus a shift of the
@@ -48,6 +46,8 @@ pub(super) struct Regularised<'a> {
     pub(super) convexification: &'a [f64],
     pub(super) fraction: f64,
     pub(super) shift: f64,
+    /// How many unknowns are variables: the first ones.
+    pub(super) variables: usize,
 }
 
 impl Regularised<'_> {
@@ -91,18 +91,6 @@ fn forward(lower: &Square, x: &mut Chunk) {
     }
 }
 
-/// The sum of the products of two rows.
-#[inline(always)]
-fn dot(a: &[Chunk], b: &[Chunk]) -> f64 {
-    let mut sum = [0.0; BLOCK];
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..BLOCK {
-            sum[lane] += a[lane] * b[lane];
-        }
-    }
-    (sum[0] + sum[1]) + (sum[2] + sum[3])
-}
-
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a.abs() > b { a.abs() } else { b }
@@ -115,68 +103,68 @@ fn squares(numbers: &mut [f64]) -> &mut [Square] {
 }
 
 impl Factor {
-    /// Memory for the factors of a matrix of this envelope.
-    pub(super) fn new(envelope: &Envelope) -> Self {
-        let blocks = envelope.column.len() - 1;
+    /// Memory for the factors of a matrix with this storage.
+    pub(super) fn new(storage: &Storage) -> Self {
+        let columns = storage.columns();
+        let longest = (0..columns).map(|j| storage.blocks(j).len() - 1).max().unwrap_or(0);
         Self {
-            value: vec![0.0; envelope.len],
-            inverse: vec![[0.0; BLOCK]; blocks],
-            border_inverse: vec![0.0; envelope.border],
-            panel: vec![[[0.0; BLOCK]; BLOCK]; blocks],
-            run: vec![[0.0; BLOCK]; blocks],
+            value: vec![0.0; storage.len],
+            inverse: vec![[0.0; BLOCK]; columns],
+            panel: vec![[[0.0; BLOCK]; BLOCK]; TOGETHER * longest],
+            longest,
+            side: vec![[0.0; BLOCK]; columns],
         }
     }
 
     /// Factorises a matrix; the number of negative pivots, or none where a pivot vanishes.
-    pub(super) fn factorise(&mut self, envelope: &Envelope, sum: &Regularised<'_>) -> Option<usize> {
+    pub(super) fn factorise(&mut self, storage: &Storage, sum: &Regularised<'_>) -> Option<usize> {
         let mut negative = None;
-        dispatch(Factorise { factor: self, envelope, sum, negative: &mut negative });
+        dispatch(Factorise { factor: self, storage, sum, negative: &mut negative });
         negative
     }
 
     /// Replaces `b` by the solution of the system.
-    pub(super) fn solve(&mut self, envelope: &Envelope, b: &mut [f64]) {
-        dispatch(Solve { factor: self, envelope, b });
+    pub(super) fn solve(&mut self, storage: &Storage, b: &mut [f64]) {
+        dispatch(Solve { factor: self, storage, b });
     }
 
     #[inline(always)]
-    fn factorise_here(&mut self, envelope: &Envelope, sum: &Regularised<'_>) -> Option<usize> {
+    fn factorise_here(&mut self, storage: &Storage, sum: &Regularised<'_>) -> Option<usize> {
         self.value.copy_from_slice(sum.matrix);
         for (value, convexification) in self.value.iter_mut().zip(sum.convexification) {
             *value += sum.fraction * convexification;
         }
         if sum.shift != 0.0 {
-            for j in 0..envelope.band + envelope.border_variables {
-                self.value[envelope.position(j, j)] += sum.shift;
+            for j in 0..sum.variables {
+                self.value[storage.position(j, j)] += sum.shift;
             }
         }
         let mut negative = 0;
-        for component in &envelope.components {
-            for j in component.blocks.clone() {
-                negative += self.eliminate(envelope, component, j, sum)?;
+        for group in &storage.groups {
+            for j in group.clone() {
+                negative += self.eliminate(storage, (j, group), sum)?;
             }
-            self.subtract_from_corner(envelope, component);
+            self.subtract_group(storage, group);
         }
-        Some(negative + self.corner(envelope)?)
+        Some(negative)
     }
 
-    /// Eliminates the unknowns of column `j` of blocks from the band and the border's rows; how many pivots are
-    /// negative, or none if one vanishes.
+    /// Eliminates the unknowns of column `j` of blocks from the columns of its group; how many pivots are negative, or
+    /// none if one vanishes.
     #[inline(always)]
     fn eliminate(
         &mut self,
-        envelope: &Envelope,
-        component: &Component,
-        j: usize,
+        storage: &Storage,
+        (j, group): (usize, &Range<usize>),
         sum: &Regularised<'_>,
     ) -> Option<usize> {
-        let (band, rows) = self.value.split_at_mut(BLOCK * BLOCK * envelope.column[envelope.column.len() - 1]);
-        let (head, tail) = squares(band).split_at_mut(envelope.column[j + 1]);
-        let (diagonal, below) = head[envelope.column[j]..].split_first_mut()?;
-        let first = BLOCK * BLOCK * envelope.column[j];
+        let own = storage.blocks(j);
+        let (head, tail) = squares(&mut self.value).split_at_mut(own.end);
+        let (diagonal, below) = head[own.clone()].split_first_mut()?;
+        let first = BLOCK * BLOCK * own.start;
         let noise = std::array::from_fn(|c| NOISE * sum.at(first + c * BLOCK + c));
         let (pivots, inverse, mut largest) = factors_of(diagonal, &noise);
-        let panel = &mut self.panel[..below.len()];
+        let panel = &mut self.panel[(j - group.start) * self.longest..][..below.len()];
         for (block, panel) in below.iter_mut().zip(&mut *panel) {
             let mut columns = *block;
             for c in 0..BLOCK {
@@ -199,126 +187,92 @@ impl Factor {
             }
         }
         self.inverse[j] = inverse;
-        for (k, (factors, &at)) in below.iter().zip(&envelope.column[j + 1..]).enumerate() {
-            let to = &mut tail[at - envelope.column[j + 1]..];
-            for (to, panel) in to.iter_mut().zip(&panel[k..]) {
+        for (k, factors) in below[..group.end - 1 - j].iter().enumerate() {
+            // The rows of the next columns are the rest of those of this one.
+            for (to, panel) in tail[storage.column[j + 1 + k] - own.end..].iter_mut().zip(&panel[k..]) {
                 subtract_square(to, panel, factors);
-            }
-        }
-        for place in 0..component.columns.len() {
-            let row = component.row(place);
-            let offset = BLOCK * BLOCK * envelope.column[envelope.column.len() - 1];
-            let row = rows[row.start - offset..row.end - offset].as_chunks_mut::<BLOCK>().0;
-            let (own, after) = row[j - component.blocks.start..].split_first_mut()?;
-            forward(diagonal, own);
-            for (to, block) in after.iter_mut().zip(&*below) {
-                subtract_product(to, block, own);
             }
         }
         Some(pivots.iter().filter(|pivot| **pivot < 0.0).count())
     }
 
-    /// `S -= V D^-1 V^T` of one component.
+    /// Subtracts the columns of a group from all later ones.
     #[inline(always)]
-    fn subtract_from_corner(&mut self, envelope: &Envelope, component: &Component) {
-        let run = &mut self.run[..component.blocks.len()];
-        for (c, &a) in component.columns.iter().enumerate() {
-            let row = self.value[component.row(c)].as_chunks::<BLOCK>().0;
-            for ((to, v), inverse) in run.iter_mut().zip(row).zip(&self.inverse[component.blocks.clone()]) {
-                *to = std::array::from_fn(|lane| v[lane] * inverse[lane]);
-            }
-            for (d, &b) in component.columns[..=c].iter().enumerate() {
-                let sum = dot(run, self.value[component.row(d)].as_chunks::<BLOCK>().0);
-                self.value[envelope.corner + a as usize * envelope.border + b as usize] -= sum;
-            }
-        }
-    }
-
-    /// Factorises the corner; the number of negative pivots.
-    #[inline(always)]
-    fn corner(&mut self, envelope: &Envelope) -> Option<usize> {
-        let n = envelope.border;
-        let s = &mut self.value[envelope.corner..];
-        let mut negative = 0;
-        for j in 0..n {
-            let pivot = s[j * n + j];
-            let largest = (j + 1..n).fold(0.0_f64, |most, i| most.max(s[i * n + j].abs()));
-            if !pivot.is_finite() || pivot.abs() <= SINGULAR * largest || pivot == 0.0 {
-                return None;
-            }
-            let inverse = 1.0 / pivot;
-            self.border_inverse[j] = inverse;
-            negative += usize::from(pivot < 0.0);
-            for i in j + 1..n {
-                let factor = s[i * n + j] * inverse;
-                for k in j + 1..=i {
-                    s[i * n + k] -= factor * s[k * n + j];
+    fn subtract_group(&mut self, storage: &Storage, group: &Range<usize>) {
+        let last = group.end - 1;
+        let (head, tail) = squares(&mut self.value).split_at_mut(storage.column[group.end]);
+        let mut targets = storage.targets(last).iter();
+        let (runs, mut first) = (storage.runs(last), 0);
+        for (number, run) in runs.iter().enumerate() {
+            let end = first + run.len;
+            for k in first..end {
+                // Of each column of the group, the blocks below the group and the one that multiplies them.
+                let columns: [(&[Square], &Square); TOGETHER] = std::array::from_fn(|g| {
+                    let (g, inside) = (g.min(group.len() - 1), last - (group.start + g).min(last));
+                    (&self.panel[g * self.longest + inside..], &head[storage.column[group.start + g] + 1 + inside + k])
+                });
+                let columns = &columns[..group.len()];
+                // The rest of its own run begins at the diagonal of this column.
+                let at = storage.column[run.first + k - first] - storage.column[group.end];
+                subtract_columns(&mut tail[at..], k..end, columns);
+                let mut begin = end;
+                for (later, &at) in runs[number + 1..].iter().zip(&mut targets) {
+                    subtract_columns(&mut tail[at - storage.column[group.end]..], begin..begin + later.len, columns);
+                    begin += later.len;
                 }
             }
-            for i in j + 1..n {
-                s[i * n + j] *= inverse;
-            }
+            first = end;
         }
-        Some(negative)
     }
 
     #[inline(always)]
-    fn solve_here(&mut self, envelope: &Envelope, b: &mut [f64]) {
-        let (band, border) = b.split_at_mut(envelope.band);
-        self.run.fill([0.0; BLOCK]);
-        for (value, &padded) in band.iter().zip(&envelope.padded) {
-            self.run[padded / BLOCK][padded % BLOCK] = *value;
+    fn solve_here(&mut self, storage: &Storage, b: &mut [f64]) {
+        self.side.fill([0.0; BLOCK]);
+        for (value, &padded) in b.iter().zip(&storage.padded) {
+            self.side[padded / BLOCK][padded % BLOCK] = *value;
         }
-        let (blocks, _) = self.value.split_at(BLOCK * BLOCK * envelope.column[envelope.column.len() - 1]);
-        let blocks = blocks.as_chunks::<BLOCK>().0.as_chunks::<BLOCK>().0;
-        for (j, ends) in envelope.column.windows(2).enumerate() {
-            let (own, after) = self.run[j..].split_at_mut(1);
-            let column = &blocks[ends[0]..ends[1]];
-            forward(&column[0], &mut own[0]);
-            for (to, block) in after.iter_mut().zip(&column[1..]) {
-                subtract_product(to, block, &own[0]);
+        let blocks = self.value.as_chunks::<BLOCK>().0.as_chunks::<BLOCK>().0;
+        for j in 0..storage.columns() {
+            let (head, after) = self.side.split_at_mut(j + 1);
+            let (own, mut column) = (&mut head[j], &blocks[storage.blocks(j)]);
+            forward(&column[0], own);
+            column = &column[1..];
+            for run in storage.runs(j) {
+                let (here, rest) = column.split_at(run.len);
+                for (to, block) in after[run.first - j - 1..].iter_mut().zip(here) {
+                    subtract_product(to, block, own);
+                }
+                column = rest;
             }
         }
-        for (y, inverse) in self.run.iter_mut().zip(&self.inverse) {
+        for (y, inverse) in self.side.iter_mut().zip(&self.inverse) {
             *y = std::array::from_fn(|lane| y[lane] * inverse[lane]);
         }
-        for component in &envelope.components {
-            let run = &self.run[component.blocks.clone()];
-            for (place, &b) in component.columns.iter().enumerate() {
-                border[b as usize] -= dot(run, self.value[component.row(place)].as_chunks::<BLOCK>().0);
-            }
+        for j in (0..storage.columns()).rev() {
+            let (head, after) = self.side.split_at_mut(j + 1);
+            backward(&blocks[storage.blocks(j)], &mut head[j], (storage.runs(j), j + 1, after));
         }
-        Self::solve_corner(envelope, &self.value[envelope.corner..], &self.border_inverse, border);
-        for component in &envelope.components {
-            let (run, inverse) = (&mut self.run[component.blocks.clone()], &self.inverse[component.blocks.clone()]);
-            for (place, &b) in component.columns.iter().enumerate() {
-                let row = self.value[component.row(place)].as_chunks::<BLOCK>().0;
-                for ((y, v), inverse) in run.iter_mut().zip(row).zip(inverse) {
-                    *y = std::array::from_fn(|lane| y[lane] - v[lane] * border[b as usize] * inverse[lane]);
-                }
-            }
-        }
-        for (j, ends) in envelope.column.windows(2).enumerate().rev() {
-            let (own, after) = self.run[j..].split_at_mut(1);
-            let column = &blocks[ends[0]..ends[1]];
-            backward(column, &mut own[0], after);
-        }
-        for (value, &padded) in band.iter_mut().zip(&envelope.padded) {
-            *value = self.run[padded / BLOCK][padded % BLOCK];
+        for (value, &padded) in b.iter_mut().zip(&storage.padded) {
+            *value = self.side[padded / BLOCK][padded % BLOCK];
         }
     }
+}
 
-    #[inline(always)]
-    fn solve_corner(envelope: &Envelope, s: &[f64], inverse: &[f64], border: &mut [f64]) {
-        let n = envelope.border;
-        for i in 0..n {
-            let sum: f64 = (0..i).map(|j| s[i * n + j] * border[j]).sum();
-            border[i] -= sum;
+/// Subtracts some blocks of the columns of a group, each column times its factors, from blocks that follow one another.
+#[inline(always)]
+fn subtract_columns(to: &mut [Square], blocks: Range<usize>, columns: &[(&[Square], &Square)]) {
+    if let [(panel, factors)] = columns {
+        for (to, panel) in to.iter_mut().zip(&panel[blocks]) {
+            subtract_square(to, panel, factors);
         }
-        for i in (0..n).rev() {
-            let sum: f64 = (i + 1..n).map(|k| s[k * n + i] * border[k]).sum();
-            border[i] = border[i] * inverse[i] - sum;
+        return;
+    }
+    for (to, at) in to.iter_mut().zip(blocks) {
+        let mut sum = *to;
+        for (panel, factors) in columns {
+            subtract_square(&mut sum, &panel[at], factors);
         }
+        *to = sum;
     }
 }
 
@@ -356,16 +310,22 @@ fn subtract_square(to: &mut Square, panel: &Square, factors: &Square) {
     *to = sum;
 }
 
-/// `x = L^-T (x - sum of block^T y)` with the blocks of a column, the first of which is `L`.
+/// `x = L^-T (x - sum of block^T y)` with the blocks of a column, the first of which is `L`; `y` are the unknowns of the
+/// column's runs, from the first of `after` on.
 #[inline(always)]
-fn backward(column: &[Square], x: &mut Chunk, after: &[Chunk]) {
+fn backward(column: &[Square], x: &mut Chunk, (runs, first, after): (&[Run], usize, &[Chunk])) {
     let mut sums = [[0.0; BLOCK]; BLOCK];
-    for (block, y) in column[1..].iter().zip(after) {
-        for c in 0..BLOCK {
-            for r in 0..BLOCK {
-                sums[c][r] += block[c][r] * y[r];
+    let mut below = &column[1..];
+    for run in runs {
+        let (here, rest) = below.split_at(run.len);
+        for (block, y) in here.iter().zip(&after[run.first - first..]) {
+            for c in 0..BLOCK {
+                for r in 0..BLOCK {
+                    sums[c][r] += block[c][r] * y[r];
+                }
             }
         }
+        below = rest;
     }
     for c in (0..BLOCK).rev() {
         let sum = (sums[c][0] + sums[c][1]) + (sums[c][2] + sums[c][3]);
@@ -377,7 +337,7 @@ fn backward(column: &[Square], x: &mut Chunk, after: &[Chunk]) {
 /// A factorisation, to be compiled for the widest instructions of the processor.
 struct Factorise<'a> {
     factor: &'a mut Factor,
-    envelope: &'a Envelope,
+    storage: &'a Storage,
     sum: &'a Regularised<'a>,
     negative: &'a mut Option<usize>,
 }
@@ -385,26 +345,27 @@ struct Factorise<'a> {
 impl Task for Factorise<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
-        *self.negative = self.factor.factorise_here(self.envelope, self.sum);
+        *self.negative = self.factor.factorise_here(self.storage, self.sum);
     }
 }
 
 /// A solution, likewise.
 struct Solve<'a> {
     factor: &'a mut Factor,
-    envelope: &'a Envelope,
+    storage: &'a Storage,
     b: &'a mut [f64],
 }
 
 impl Task for Solve<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
-        self.factor.solve_here(self.envelope, self.b);
+        self.factor.solve_here(self.storage, self.b);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::ordering::Cliques;
     use super::*;
 
     /// A reproducible number in -1 .. 1.
@@ -413,13 +374,20 @@ mod tests {
         (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// A matrix as it is.
+    /// A matrix as it is, whose last unknown is a row.
     fn plain(matrix: &[f64]) -> Regularised<'_> {
-        Regularised { matrix, convexification: &[], fraction: 0.0, shift: 0.0 }
+        Regularised { matrix, convexification: &[], fraction: 0.0, shift: 0.0, variables: 11 }
     }
 
-    /// Two components of a band, two variables and one row in the border.
-    fn example() -> (Envelope, Vec<f64>, Vec<Vec<f64>>) {
+    /// The storage of some unknowns that meet in cliques.
+    fn storage_of(unknowns: usize, cliques: &[Vec<u32>]) -> Storage {
+        let mut all = Cliques::default();
+        cliques.iter().for_each(|clique| all.add(&mut clique.clone()));
+        Storage::new(unknowns, &all)
+    }
+
+    /// Two stretches of a band, two variables and one row that both meet.
+    fn example() -> (Storage, Vec<f64>, Vec<Vec<f64>>) {
         let cliques: Vec<Vec<u32>> = vec![
             vec![0, 1, 2, 9],
             vec![2, 3, 9, 11],
@@ -429,9 +397,9 @@ mod tests {
             vec![8, 10, 11],
             vec![9, 10],
         ];
-        let envelope = Envelope::new(9, [2, 1], cliques.iter().map(Vec::as_slice));
-        let (mut value, mut dense) = (vec![0.0; envelope.len], vec![vec![0.0; 12]; 12]);
-        envelope.clear(&mut value);
+        let storage = storage_of(12, &cliques);
+        let (mut value, mut dense) = (vec![0.0; storage.len], vec![vec![0.0; 12]; 12]);
+        storage.clear(&mut value);
         let mut seed = 7;
         for clique in &cliques {
             for &a in clique {
@@ -439,7 +407,7 @@ mod tests {
                     let (a, b) = (a as usize, b as usize);
                     let entry = noise(&mut seed) + if a == b { 4.0 } else { 0.0 };
                     let entry = if a == 11 && b == 11 { -entry } else { entry };
-                    value[envelope.position(a, b)] += entry;
+                    value[storage.position(a, b)] += entry;
                     dense[a][b] += entry;
                     if a != b {
                         dense[b][a] += entry;
@@ -447,40 +415,50 @@ mod tests {
                 }
             }
         }
-        (envelope, value, dense)
+        (storage, value, dense)
     }
 
     #[test]
-    fn components_are_what_nothing_connects() {
-        let (envelope, ..) = example();
-        let ranges: Vec<_> = envelope.components.iter().map(|c| (c.first, c.last, c.columns.clone())).collect();
-        assert_eq!(ranges, [(0, 4, vec![0, 2]), (4, 9, vec![1, 2])]);
+    fn what_nothing_connects_is_not_stored() {
+        let (storage, ..) = example();
+        // The stretches 0..4 and 4..9 meet the last three unknowns, and each other in none of them.
+        let meet = |a: usize, b: usize| {
+            let (a, b) = (storage.padded[a] / BLOCK, storage.padded[b] / BLOCK);
+            let (row, column) = (a.max(b), a.min(b));
+            row == column || storage.runs(column).iter().any(|run| (run.first..run.first + run.len).contains(&row))
+        };
+        for (a, b) in (0..4).flat_map(|a| (4..9).map(move |b| (a, b))) {
+            assert!(!meet(a, b), "{a} and {b}");
+        }
+        for (a, b) in [(0, 9), (3, 11), (4, 10), (8, 11), (9, 10)] {
+            assert!(meet(a, b), "{a} and {b}");
+        }
     }
 
     #[test]
     fn a_pivot_that_is_rounding_counts_as_positive_and_a_negative_one_as_negative() {
-        let envelope = Envelope::new(3, [0, 0], [&[0, 1, 2][..]].into_iter());
+        let storage = storage_of(3, &[vec![0, 1, 2]]);
         // [a a 0; a a+d 0; 0 0 1], whose second pivot is d.
         let negative = |d: f64| {
-            let mut value = vec![0.0; envelope.len];
-            envelope.clear(&mut value);
+            let mut value = vec![0.0; storage.len];
+            storage.clear(&mut value);
             for (i, j, entry) in [(0, 0, 1e16), (1, 0, 1e16), (1, 1, 1e16 + d), (2, 2, 1.0)] {
-                value[envelope.position(i, j)] = entry;
+                value[storage.position(i, j)] = entry;
             }
-            Factor::new(&envelope).factorise(&envelope, &plain(&value))
+            Factor::new(&storage).factorise(&storage, &plain(&value))
         };
         assert_eq!([-1e4, -2.0, 0.0, 2.0, 1e4].map(negative), [Some(1), Some(0), Some(0), Some(0), Some(0)]);
     }
 
     #[test]
     fn the_solution_solves_the_dense_system() {
-        let (envelope, value, dense) = example();
-        let mut factor = Factor::new(&envelope);
-        assert_eq!(factor.factorise(&envelope, &plain(&value)), Some(1));
+        let (storage, value, dense) = example();
+        let mut factor = Factor::new(&storage);
+        assert_eq!(factor.factorise(&storage, &plain(&value)), Some(1));
         let mut seed = 3;
         let x: Vec<f64> = (0..12).map(|_| noise(&mut seed)).collect();
         let mut b: Vec<f64> = dense.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
-        factor.solve(&envelope, &mut b);
+        factor.solve(&storage, &mut b);
         for (found, wanted) in b.iter().zip(&x) {
             assert!((found - wanted).abs() < 1e-13, "{found} {wanted}");
         }
@@ -497,16 +475,16 @@ mod tests {
                     cliques.push((j..=far).chain((noise(&mut seed) > 0.6).then_some(band)).collect());
                 }
                 cliques.push(vec![band, band + 1]);
-                let envelope = Envelope::new(band as usize, [2, 0], cliques.iter().map(Vec::as_slice));
+                let storage = storage_of(band as usize + 2, &cliques);
                 let n = band as usize + 2;
-                let (mut value, mut dense) = (vec![0.0; envelope.len], nalgebra::DMatrix::<f64>::zeros(n, n));
-                envelope.clear(&mut value);
+                let (mut value, mut dense) = (vec![0.0; storage.len], nalgebra::DMatrix::<f64>::zeros(n, n));
+                storage.clear(&mut value);
                 for clique in &cliques {
                     for &a in clique {
                         for &b in clique.iter().filter(|&&b| b <= a) {
                             let large = if a % 7 == 3 { -30.0 } else { 30.0 };
                             let entry = noise(&mut seed) + if a == b { large } else { 0.0 };
-                            value[envelope.position(a as usize, b as usize)] += entry;
+                            value[storage.position(a as usize, b as usize)] += entry;
                             dense[(a as usize, b as usize)] += entry;
                             if a != b {
                                 dense[(b as usize, a as usize)] += entry;
@@ -514,12 +492,12 @@ mod tests {
                         }
                     }
                 }
-                let mut factor = Factor::new(&envelope);
+                let mut factor = Factor::new(&storage);
                 let negative = dense.clone().symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
-                assert_eq!(factor.factorise(&envelope, &plain(&value)), Some(negative), "band {band} reach {reach}");
+                assert_eq!(factor.factorise(&storage, &plain(&value)), Some(negative), "band {band} reach {reach}");
                 let x = nalgebra::DVector::from_fn(n, |_, _| noise(&mut seed));
                 let mut b: Vec<f64> = (&dense * &x).iter().copied().collect();
-                factor.solve(&envelope, &mut b);
+                factor.solve(&storage, &mut b);
                 for (found, wanted) in b.iter().zip(&x) {
                     assert!((found - wanted).abs() < 1e-10, "band {band} reach {reach}: {found} {wanted}");
                 }
@@ -529,12 +507,12 @@ mod tests {
 
     #[test]
     fn a_shift_moves_variables_and_no_rows() {
-        let (envelope, value, dense) = example();
-        let mut factor = Factor::new(&envelope);
-        factor.factorise(&envelope, &Regularised { shift: 2.5, ..plain(&value) });
+        let (storage, value, dense) = example();
+        let mut factor = Factor::new(&storage);
+        factor.factorise(&storage, &Regularised { shift: 2.5, ..plain(&value) });
         let mut b: Vec<f64> = dense.iter().map(|row| row[11]).collect();
         // Column 11 of the shifted matrix is that of the matrix, since 11 is a row.
-        factor.solve(&envelope, &mut b);
+        factor.solve(&storage, &mut b);
         for (i, entry) in b.iter().enumerate() {
             assert!((entry - f64::from(u8::from(i == 11))).abs() < 1e-13);
         }
@@ -542,16 +520,16 @@ mod tests {
 
     #[test]
     fn a_share_of_a_change_is_as_if_the_matrix_had_it() {
-        let (envelope, value, _) = example();
+        let (storage, value, _) = example();
         let mut seed = 13;
         let convexification: Vec<f64> = value.iter().map(|_| 0.1 * noise(&mut seed)).collect();
         let whole: Vec<f64> =
             value.iter().zip(&convexification).map(|(value, convexification)| value + 0.25 * convexification).collect();
-        let (mut at_once, mut in_parts) = (Factor::new(&envelope), Factor::new(&envelope));
-        assert_eq!(at_once.factorise(&envelope, &plain(&whole)), Some(1));
+        let (mut at_once, mut in_parts) = (Factor::new(&storage), Factor::new(&storage));
+        assert_eq!(at_once.factorise(&storage, &plain(&whole)), Some(1));
         assert_eq!(
             in_parts.factorise(
-                &envelope,
+                &storage,
                 &Regularised { convexification: &convexification, fraction: 0.25, ..plain(&value) }
             ),
             Some(1)
@@ -561,16 +539,16 @@ mod tests {
 
     #[test]
     fn negative_pivots_count_negative_eigenvalues() {
-        let (envelope, mut value, dense) = example();
-        let mut factor = Factor::new(&envelope);
+        let (storage, mut value, dense) = example();
+        let mut factor = Factor::new(&storage);
         for j in [1, 5, 9] {
-            value[envelope.position(j, j)] -= 40.0;
+            value[storage.position(j, j)] -= 40.0;
         }
         let mut matrix = nalgebra::DMatrix::from_fn(12, 12, |i, j| dense[i][j]);
         for j in [1, 5, 9] {
             matrix[(j, j)] -= 40.0;
         }
         let negative = matrix.symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
-        assert_eq!(factor.factorise(&envelope, &plain(&value)), Some(negative));
+        assert_eq!(factor.factorise(&storage, &plain(&value)), Some(negative));
     }
 }

@@ -5,8 +5,9 @@
 //! ```
 //!
 //! [`system`] holds the scaled program, the matrix `A` and its factors. `supports` finds which slots depend on the same
-//! variables, `elements` condenses rows into second derivatives element by element, `ordering` divides the unknowns
-//! into a band and a border, `storage` says where the entries of that matrix are stored, `factor` factorises it.
+//! variables, `unknowns` which rows are not condensed, `elements` condenses the others into second derivatives element by
+//! element, `ordering` says in which order unknowns are eliminated, `storage` where the entries of that matrix and of its
+//! factors are stored, `factor` factorises it.
 
 mod elements;
 mod factor;
@@ -16,6 +17,7 @@ mod pattern;
 mod storage;
 mod supports;
 pub(crate) mod system;
+mod unknowns;
 
 pub(crate) use elements::{Curvature, Weights};
 pub(crate) use system::System;

@@ -1,117 +1,199 @@
-//! The order of the unknowns: which are in the band, which in the border (docs/maths.md, section 11.3).
+//! The order in which unknowns are eliminated (docs/maths.md, section 11.3).
 //!
-//! Variables that the program calls global go to the border, and so do variables that second
-//! derivatives connect with variables far away in the program's order. Rows that several elements add to
-//! (integrals), or whose variables are far apart, are unknowns of the border; all other rows are
-//! condensed into the second derivatives of their only element.
+//! Which unknowns meet is given as *cliques*: lists of unknowns of which every two meet. Eliminating an unknown joins all
+//! cliques that hold it to one, without itself: the rows of its column of `L`. Two orders are compared by what they cost:
+//! the program's own, which is that of time, and that of minimum degree, which finds what the coupling leaves apart:
+//! scenarios that share an input, phases, agents.
+//!
+//! Reference: P. R. Amestoy, T. A. Davis, I. S. Duff, *SIAM J. Matrix Anal. Appl.* 17 (1996).
 
-use super::supports::Supports;
-use crate::contract::{Block, Nlp, Target};
+use std::collections::{BTreeSet, HashSet};
 
-/// A reach beyond this multiple of the median is far.
-const FAR: usize = 4;
-/// A reach up to this is never far.
-const NEAR: usize = 24;
+/// Lists of unknowns of which every two meet, each of them once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cliques {
+    lists: Vec<Box<[u32]>>,
+    /// Looked up, never iterated.
+    known: HashSet<Box<[u32]>>,
+}
 
-/// Which unknown every variable is, and every row that is one.
+impl Cliques {
+    /// Adds a clique, unless it is known. The list is left sorted and without repetitions.
+    pub(super) fn add(&mut self, list: &mut Vec<u32>) {
+        list.sort_unstable();
+        list.dedup();
+        if !self.known.contains(list.as_slice()) {
+            self.known.insert(list.as_slice().into());
+            self.lists.push(list.as_slice().into());
+        }
+    }
+
+    /// The cliques in the order in which they were added, each increasing.
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> + Clone {
+        self.lists.iter().map(|list| &**list)
+    }
+
+    /// The cliques that hold each of `count` unknowns.
+    fn holding(&self, count: usize) -> Vec<Vec<u32>> {
+        let mut holding = vec![vec![]; count];
+        for (number, clique) in self.iter().enumerate() {
+            clique.iter().for_each(|&unknown| holding[unknown as usize].push(number as u32));
+        }
+        holding
+    }
+}
+
+/// An unknown that meets more than this multiple of the square root of all unknowns, and more than [`TYPICAL`] times the
+/// median, is eliminated last, as it would be anyway. The multiple is that of Amestoy, Davis and Duff.
+const MANY: f64 = 10.0;
+/// See [`MANY`]. Where all unknowns meet as many, as vehicles that keep apart do, the order among them matters.
+const TYPICAL: usize = 4;
+
+/// The unknowns in the program's order and in that of minimum degree, those that meet very many last.
+pub(super) fn candidates(count: usize, cliques: &Cliques) -> [Vec<u32>; 2] {
+    let holding = cliques.holding(count);
+    let meets = meeting(cliques, &holding);
+    let mut sorted = meets.clone();
+    sorted.sort_unstable();
+    let median = sorted.get(count / 2).copied().unwrap_or(0);
+    let most = ((MANY * (count as f64).sqrt()) as usize).max(TYPICAL * median);
+    let (late, early): (Vec<u32>, Vec<u32>) = (0..count as u32).partition(|&u| meets[u as usize] > most);
+    let is_late: Vec<bool> = meets.iter().map(|&meets| meets > most).collect();
+    let natural = early.iter().chain(&late).copied().collect();
+    let mut by_degree = minimum_degree(cliques, holding, &is_late);
+    by_degree.extend(&late);
+    [natural, by_degree]
+}
+
+/// How many others each unknown meets.
+fn meeting(cliques: &Cliques, holding: &[Vec<u32>]) -> Vec<usize> {
+    let mut last = vec![u32::MAX; holding.len()];
+    let count = |(unknown, holding): (usize, &Vec<u32>)| {
+        last[unknown] = unknown as u32;
+        let others = holding.iter().flat_map(|&clique| cliques.lists[clique as usize].iter());
+        others.filter(|&&other| std::mem::replace(&mut last[other as usize], unknown as u32) != unknown as u32).count()
+    };
+    holding.iter().enumerate().map(count).collect()
+}
+
+/// The order of approximate minimum degree, without the unknowns that are `late`; equal degrees in the program's order.
+fn minimum_degree(cliques: &Cliques, mut holding: Vec<Vec<u32>>, late: &[bool]) -> Vec<u32> {
+    let mut members: Vec<Vec<u32>> =
+        cliques.iter().map(|list| list.iter().copied().filter(|&u| !late[u as usize]).collect()).collect();
+    let size = |holding: &[u32], members: &[Vec<u32>]| holding.iter().map(|&c| members[c as usize].len()).sum();
+    let mut degree: Vec<usize> = holding.iter().map(|holding| size(holding, &members)).collect();
+    let mut queue: BTreeSet<(usize, u32)> =
+        (0..late.len()).filter(|&u| !late[u]).map(|u| (degree[u], u as u32)).collect();
+    let mut order = Vec::with_capacity(queue.len());
+    let mut joined_in = vec![u32::MAX; late.len()]; // The elimination that an unknown was last seen in.
+    let mut outside: Vec<usize> = vec![0; members.len()]; // Of each clique, how many are not in the new one;
+    let mut counted_in = vec![u32::MAX; members.len()]; // the elimination that they were counted in.
+    while let Some((_, pivot)) = queue.pop_first() {
+        let number = order.len() as u32;
+        order.push(pivot);
+        let mut joined: Vec<u32> = vec![];
+        joined_in[pivot as usize] = number;
+        for clique in std::mem::take(&mut holding[pivot as usize]) {
+            for u in std::mem::take(&mut members[clique as usize]) {
+                if std::mem::replace(&mut joined_in[u as usize], number) != number {
+                    joined.push(u);
+                }
+            }
+        }
+        for &u in &joined {
+            holding[u as usize].retain(|&clique| !members[clique as usize].is_empty());
+            for &clique in &holding[u as usize] {
+                let clique = clique as usize;
+                if std::mem::replace(&mut counted_in[clique], number) != number {
+                    outside[clique] = members[clique].len();
+                }
+                outside[clique] -= 1;
+            }
+        }
+        for &u in &joined {
+            // A clique within the new one says nothing more.
+            holding[u as usize].retain(|&clique| outside[clique as usize] > 0);
+            let beyond: usize = holding[u as usize].iter().map(|&clique| outside[clique as usize]).sum();
+            holding[u as usize].push(members.len() as u32);
+            queue.remove(&(degree[u as usize], u));
+            degree[u as usize] = joined.len() - 1 + beyond;
+            queue.insert((degree[u as usize], u));
+        }
+        members.push(joined);
+        outside.push(0);
+        counted_in.push(u32::MAX);
+    }
+    order
+}
+
+/// The elimination tree of an order, and its unknowns in postorder, so that each is followed by its parent or begins
+/// another branch. The fill is the same.
+///
+/// Reference: J. W. H. Liu, *SIAM J. Matrix Anal. Appl.* 11 (1990).
 #[derive(Clone, Debug)]
-pub(super) struct Order {
-    /// The unknown that each variable is.
-    pub(super) unknown: Vec<u32>,
-    /// Unknowns of the band.
-    pub(super) band: usize,
-    /// Variables of the border.
-    pub(super) border: usize,
-    /// For each row its number among the border rows; none for a condensed row.
-    pub(super) border_row: Vec<Option<u32>>,
-    /// The border rows.
-    pub(super) bordered: Vec<usize>,
+pub(super) struct Tree {
+    /// The unknowns in postorder.
+    pub(super) order: Vec<u32>,
+    /// Whether each of them is the parent of the one before.
+    pub(super) follows: Vec<bool>,
 }
 
-impl Order {
-    /// Orders the unknowns of a program.
-    pub(super) fn new<N: Nlp>(nlp: &N, supports: &[Supports]) -> Self {
-        let n = nlp.variables();
-        let mut in_border = vec![false; n];
-        in_border[nlp.globals()..].fill(true);
-        let limit = limit(nlp.blocks(), &in_border);
-        for (block, supports) in nlp.blocks().iter().zip(supports) {
-            far_variables(block, supports, limit, &mut in_border);
+impl Tree {
+    /// The tree of an order of all unknowns.
+    pub(super) fn new(order: &[u32], cliques: &Cliques) -> Self {
+        let parent = parents(order, cliques);
+        let mut children = vec![vec![]; order.len() + 1];
+        for (place, parent) in parent.iter().enumerate() {
+            children[parent.map_or(order.len(), |parent| parent as usize)].push(place);
         }
-        let (mut unknown, mut band) = (vec![0; n], 0);
-        for j in (0..n).filter(|&j| !in_border[j]) {
-            unknown[j] = band;
-            band += 1;
-        }
-        for (next, j) in (0..n).filter(|&j| in_border[j]).enumerate() {
-            unknown[j] = band + next as u32;
-        }
-        let mut border_row = vec![None; nlp.rows()];
-        let mut bordered = vec![];
-        for (row, _) in far_rows(nlp, limit, &in_border).iter().enumerate().filter(|(_, far)| **far) {
-            border_row[row] = Some(bordered.len() as u32);
-            bordered.push(row);
-        }
-        let border = n - band as usize;
-        Self { unknown, band: band as usize, border, border_row, bordered }
-    }
-}
-
-/// The reach that counts as far: a multiple of the median over elements.
-fn limit(blocks: &[Block], in_border: &[bool]) -> usize {
-    let mut reaches: Vec<usize> = blocks
-        .iter()
-        .flat_map(|block| (0..block.elements).map(|e| reach(block.variables(e).iter().copied(), in_border)))
-        .filter(|reach| *reach > 0)
-        .collect();
-    reaches.sort_unstable();
-    let median = reaches.get(reaches.len() / 2).copied().unwrap_or(0);
-    (FAR * median).max(NEAR)
-}
-
-/// The reach of some variables: how far apart those of the band are.
-fn reach(variables: impl Iterator<Item = u32>, in_border: &[bool]) -> usize {
-    let inside = variables.filter(|&j| !in_border[j as usize]);
-    let (low, high) = inside.fold((u32::MAX, 0), |(low, high), j| (low.min(j), high.max(j)));
-    high.saturating_sub(low) as usize
-}
-
-/// Moves variables to the border that second derivatives connect with others far before them.
-fn far_variables(block: &Block, supports: &Supports, limit: usize, in_border: &mut [bool]) {
-    for e in 0..block.elements {
-        if reach(block.variables(e).iter().copied(), in_border) <= limit {
-            continue;
-        }
-        for &(i, j) in &block.hessian {
-            let (a, b) = (supports.range(i), supports.range(j));
-            if a.is_empty() || b.is_empty() {
-                continue;
+        let (mut visited, mut open) = (Vec::with_capacity(order.len()), vec![(order.len(), 0)]);
+        while let Some((place, child)) = open.last_mut() {
+            if let Some(&next) = children[*place].get(*child) {
+                *child += 1;
+                open.push((next, 0));
+            } else {
+                visited.push(*place);
+                open.pop();
             }
-            let variables = || supports.variables(e, a.clone()).chain(supports.variables(e, b.clone()));
-            if reach(variables(), in_border) <= limit {
-                continue;
-            }
-            let low = variables().filter(|&j| !in_border[j as usize]).min().unwrap_or(0);
-            let far: Vec<u32> = variables().filter(|&j| (j - low.min(j)) as usize > limit).collect();
-            far.into_iter().for_each(|j| in_border[j as usize] = true);
+        }
+        visited.pop(); // The root of all.
+        let follows = |at: usize| at > 0 && parent[visited[at - 1]] == Some(visited[at] as u32);
+        Self {
+            follows: (0..visited.len()).map(follows).collect(),
+            order: visited.iter().map(|&place| order[place]).collect(),
         }
     }
 }
 
-/// Whether each row is a border row.
-fn far_rows<N: Nlp>(nlp: &N, limit: usize, in_border: &[bool]) -> Vec<bool> {
-    let mut defining = vec![0_usize; nlp.rows()];
-    let mut far = vec![false; nlp.rows()];
-    for block in nlp.blocks() {
-        for e in 0..block.elements {
-            let wide = reach(block.variables(e).iter().copied(), in_border) > limit;
-            for row in 0..block.rows {
-                if let Target::Row(i) = block.target[row * block.elements + e] {
-                    defining[i as usize] += 1;
-                    far[i as usize] |= wide || defining[i as usize] > 1;
+/// For each place in an order the next place that its column of `L` meets.
+fn parents(order: &[u32], cliques: &Cliques) -> Vec<Option<u32>> {
+    let mut place = vec![0; order.len()];
+    for (at, &unknown) in order.iter().enumerate() {
+        place[unknown as usize] = at as u32;
+    }
+    // The first of a clique makes the others meet: the pairs with it have the same fill.
+    let mut firsts = vec![vec![]; order.len()];
+    for clique in cliques.iter() {
+        let places = || clique.iter().map(|&u| place[u as usize]);
+        let Some(first) = places().min() else { continue };
+        places().filter(|&other| other != first).for_each(|other| firsts[other as usize].push(first));
+    }
+    let mut parent = vec![None; order.len()];
+    let mut ancestor: Vec<Option<u32>> = vec![None; order.len()];
+    for (at, firsts) in firsts.iter().enumerate() {
+        for &first in firsts {
+            let mut here = first;
+            while here != at as u32 {
+                let next = ancestor[here as usize].replace(at as u32);
+                match next {
+                    Some(next) => here = next,
+                    None => {
+                        parent[here as usize] = Some(at as u32);
+                        break;
+                    }
                 }
             }
         }
     }
-    far
+    parent
 }

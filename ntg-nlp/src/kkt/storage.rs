@@ -1,192 +1,157 @@
-//! Envelope (skyline) storage of the condensed matrix: where every entry is stored (docs/maths.md, section 11.3).
+//! Where the entries of the condensed matrix and of its factors are stored (docs/maths.md, section 11.3).
 //!
-//! Unknowns are numbered in three groups: the *band*, in the program's order; the variables of the *border*
-//! (durations, static variables, ends that meet a far start); the border rows (integrals and
-//! other rows that touch many unknowns).
+//! Unknowns stand in the order of their elimination, four to a *block*. A column of blocks is stored as its block on the
+//! diagonal and, below, those that the factors fill. Of a band these follow one another; what a duration, an integral or
+//! a shared input adds stands further below. Blocks that follow one another are a *run*.
 //!
 //! ```text
-//! [ K            ]   lower triangle in blocks of four by four, each column of them as long as the farthest
-//! [              ]   unknown it meets
-//! [ B    C       ]   for each component of the band the rows of the border that touch it; C is dense
+//! column j:  [ diagonal ][ run: first row, length ][ run ] ...
 //! ```
 //!
-//! A column of blocks is at least as long as what is left of its predecessor, so that the factors need no
-//! more memory than the matrix. Every component begins with a block of its own, and padding fills up its last block:
-//! unknowns with a diagonal of 1 and no other entries. Loops over a block thus have a constant length, which makes them
-//! fast.
+//! A block holds unknowns that a path of the elimination tree connects; a branch begins with a block of its own, and
+//! padding fills up the last one: unknowns with a diagonal of 1 and no other entries. Loops over a block thus have a
+//! constant length, which makes them fast.
+
+use super::ordering::{Cliques, Tree, candidates};
+use std::ops::Range;
 
 /// Unknowns of a block.
 pub(super) const BLOCK: usize = 4;
+/// Columns of blocks that are subtracted together where they have the same rows. More would leave the fastest memory.
+pub(super) const TOGETHER: usize = 4;
+/// The program's order is left for one that costs less than this fraction: it has longer runs.
+const GAIN: f64 = 0.8;
 
-/// A stretch of the band that no entry connects with the rest: an agent, as a rule.
-#[derive(Clone, Debug)]
-pub(super) struct Component {
-    /// The first unknown.
+/// Blocks of a column that follow one another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Run {
+    /// The first row of blocks.
     pub(super) first: usize,
-    /// One past the last unknown.
-    pub(super) last: usize,
-    /// The columns of blocks.
-    pub(super) blocks: std::ops::Range<usize>,
-    /// The unknowns of the border that touch it, counted from the first of the border.
-    pub(super) columns: Vec<u32>,
-    /// Where the part of `B` of this component begins: one row for each of `columns`.
-    pub(super) at: usize,
-}
-
-impl Component {
-    /// Where a row of this component's part of `B` is stored, by its place among `columns`.
-    #[inline(always)]
-    pub(super) fn row(&self, place: usize) -> std::ops::Range<usize> {
-        let stride = BLOCK * self.blocks.len();
-        self.at + place * stride..self.at + (place + 1) * stride
-    }
+    /// How many there are.
+    pub(super) len: usize,
 }
 
 /// The storage of a matrix and of its factors.
 #[derive(Clone, Debug)]
-pub(super) struct Envelope {
-    /// Unknowns of the band.
-    pub(super) band: usize,
-    /// Unknowns of the border that are variables.
-    pub(super) border_variables: usize,
-    /// Unknowns of the border.
-    pub(super) border: usize,
-    /// The padded index of each unknown of the band: its number once components are filled up.
+pub(super) struct Storage {
+    /// How many unknowns there are.
+    pub(super) unknowns: usize,
+    /// The padded index of each unknown: its number once blocks are filled up.
     pub(super) padded: Vec<usize>,
     /// Where each column of blocks begins, its diagonal first, counted in blocks; and the end.
     pub(super) column: Vec<usize>,
-    /// The components of the band, in order.
-    pub(super) components: Vec<Component>,
-    /// The component of each unknown of the band.
-    component_of: Vec<u32>,
-    /// For each component the position of each unknown of the border among its columns.
-    place: Vec<Vec<u32>>,
+    /// Columns that are subtracted together: each has, below the others, the same rows as they (a supernode).
+    pub(super) groups: Vec<Range<usize>>,
+    /// The runs of all columns.
+    runs: Vec<Run>,
+    /// Where the runs of each column begin, and the end.
+    runs_of: Vec<usize>,
+    /// For each column and each of its rows `a`: where the runs after that of `a` begin in column `a`, counted in blocks.
+    targets: Vec<usize>,
+    /// Where the targets of each column begin, and the end.
+    targets_of: Vec<usize>,
     /// Where the diagonal entries of the padding are stored.
     fillers: Vec<usize>,
-    /// Where `C` begins: row by row, the full square.
-    pub(super) corner: usize,
     /// Length of the storage. Its last entry is the sink, which is written to and never read.
     pub(super) len: usize,
 }
 
-/// No position.
-const NONE: u32 = u32::MAX;
+impl Storage {
+    /// The storage for cliques of unknowns, in the order that costs least.
+    pub(super) fn new(unknowns: usize, cliques: &Cliques) -> Self {
+        let [natural, by_degree] =
+            candidates(unknowns, cliques).map(|order| Fill::new(&Tree::new(&order, cliques), cliques));
+        let fill = if by_degree.cost() < GAIN * natural.cost() { by_degree } else { natural };
+        Self::of(unknowns, &fill)
+    }
 
-impl Envelope {
-    /// The envelope for cliques of unknowns: every two unknowns of a clique meet. `border` counts the
-    /// border's variables and border rows.
-    pub(super) fn new<'a>(band: usize, border: [usize; 2], cliques: impl Iterator<Item = &'a [u32]> + Clone) -> Self {
-        let mut last: Vec<usize> = (0..band).collect();
-        for clique in cliques.clone() {
-            if let Some(end) = clique.iter().map(|&u| u as usize).filter(|&u| u < band).max() {
-                clique.iter().map(|&u| u as usize).filter(|&u| u < band).for_each(|u| last[u] = last[u].max(end));
-            }
+    fn of(unknowns: usize, fill: &Fill) -> Self {
+        let mut column = vec![0];
+        for rows in &fill.rows {
+            column.push(column[column.len() - 1] + 1 + rows.len());
         }
-        for j in 1..band {
-            last[j] = last[j].max(last[j - 1]);
-        }
-        let mut envelope = Self {
-            band,
-            border_variables: border[0],
-            border: border[0] + border[1],
-            padded: vec![],
-            column: vec![0],
-            components: vec![],
-            component_of: vec![],
-            place: vec![],
+        let mut storage = Self {
+            unknowns,
+            padded: fill.padded.clone(),
+            len: BLOCK * BLOCK * column[fill.rows.len()] + 1,
+            column,
+            groups: groups(&fill.rows),
+            runs: vec![],
+            runs_of: vec![0],
+            targets: vec![],
+            targets_of: vec![0],
             fillers: vec![],
-            corner: 0,
-            len: 0,
         };
-        envelope.find_components(&last);
-        envelope.find_blocks(&last);
-        envelope.find_touching(cliques);
-        envelope
-    }
-
-    fn find_components(&mut self, last: &[usize]) {
-        let (mut first, mut block) = (0, 0);
-        for (j, last) in last.iter().enumerate() {
-            self.component_of.push(self.components.len() as u32);
-            self.padded.push(BLOCK * block + j - first);
-            if *last == j {
-                let blocks = block..block + (j + 1 - first).div_ceil(BLOCK);
-                block = blocks.end;
-                self.components.push(Component { first, last: j + 1, blocks, columns: vec![], at: 0 });
-                first = j + 1;
-            }
+        for rows in &fill.rows {
+            storage.runs.extend(rows.chunk_by(|a, b| a + 1 == *b).map(|run| Run { first: run[0], len: run.len() }));
+            storage.runs_of.push(storage.runs.len());
         }
-    }
-
-    /// Columns of blocks as long as the farthest unknown of any of their columns.
-    fn find_blocks(&mut self, last: &[usize]) {
-        let mut far: Vec<usize> = (0..self.components.last().map_or(0, |c| c.blocks.end)).collect();
-        for (padded, last) in self.padded.iter().zip(last) {
-            far[padded / BLOCK] = far[padded / BLOCK].max(self.padded[*last] / BLOCK);
-        }
-        for (block, far) in far.iter().enumerate() {
-            self.column.push(self.column[block] + far - block + 1);
-        }
-        self.len = BLOCK * BLOCK * self.column[far.len()];
-        for component in &self.components {
-            let filled = BLOCK * component.blocks.start + component.last - component.first;
-            let fillers = filled..BLOCK * component.blocks.end;
-            self.fillers.extend(fillers.map(|padded| entry(&self.column, padded, padded)));
-        }
-    }
-
-    fn find_touching<'a>(&mut self, cliques: impl Iterator<Item = &'a [u32]>) {
-        let mut touches = vec![vec![false; self.border]; self.components.len()];
-        for clique in cliques {
-            for &b in clique.iter().filter(|&&u| u as usize >= self.band) {
-                for &u in clique.iter().filter(|&&u| (u as usize) < self.band) {
-                    touches[self.component_of[u as usize] as usize][b as usize - self.band] = true;
+        for j in 0..fill.rows.len() {
+            let runs = storage.runs(j);
+            let mut targets = vec![];
+            for (number, run) in runs.iter().enumerate() {
+                for a in run.first..run.first + run.len {
+                    targets.extend(runs[number + 1..].iter().map(|later| storage.block(later.first, a)));
                 }
             }
+            storage.targets.extend(targets);
+            storage.targets_of.push(storage.targets.len());
         }
-        for (component, touches) in self.components.iter_mut().zip(touches) {
-            let mut place = vec![NONE; self.border];
-            for (b, _) in touches.iter().enumerate().filter(|(_, touches)| **touches) {
-                place[b] = component.columns.len() as u32;
-                component.columns.push(b as u32);
-            }
-            component.at = self.len;
-            self.len = component.row(component.columns.len()).start;
-            self.place.push(place);
-        }
-        self.corner = self.len;
-        self.len += self.border * self.border + 1;
+        let mut is_padding = vec![true; BLOCK * fill.rows.len()];
+        storage.padded.iter().for_each(|&padded| is_padding[padded] = false);
+        let fillers = (0..is_padding.len()).filter(|&padded| is_padding[padded]);
+        storage.fillers = fillers.map(|padded| storage.entry(padded, padded)).collect();
+        storage
     }
 
-    /// How many unknowns there are.
-    pub(super) fn unknowns(&self) -> usize {
-        self.band + self.border
+    /// The runs of a column of blocks below its diagonal, in order.
+    #[inline(always)]
+    pub(super) fn runs(&self, j: usize) -> &[Run] {
+        &self.runs[self.runs_of[j]..self.runs_of[j + 1]]
     }
 
-    /// Where the entry of two unknowns that meet in some clique is stored; of the corner the lower triangle.
+    /// Where the products of two blocks of a column belong that are not in one run: for each row `a` of the column, in
+    /// order, and each run after that of `a`, where that run begins in column `a`.
+    #[inline(always)]
+    pub(super) fn targets(&self, j: usize) -> &[usize] {
+        &self.targets[self.targets_of[j]..self.targets_of[j + 1]]
+    }
+
+    /// How many columns of blocks there are.
+    pub(super) fn columns(&self) -> usize {
+        self.column.len() - 1
+    }
+
+    /// Where a column of blocks is stored, its diagonal first, counted in blocks.
+    #[inline(always)]
+    pub(super) fn blocks(&self, j: usize) -> Range<usize> {
+        self.column[j]..self.column[j + 1]
+    }
+
+    /// Where the entry of two unknowns that meet in some clique is stored.
     pub(super) fn position(&self, a: usize, b: usize) -> usize {
-        let (low, high) = (a.min(b), a.max(b));
-        if high < self.band {
-            entry(&self.column, self.padded[high], self.padded[low])
-        } else if low < self.band {
-            let of = self.component_of[low] as usize;
-            let component = &self.components[of];
-            component.row(self.place[of][high - self.band] as usize).start + low - component.first
-        } else {
-            self.corner + (high - self.band) * self.border + low - self.band
-        }
+        let (a, b) = (self.padded[a], self.padded[b]);
+        self.entry(a.max(b), a.min(b))
     }
 
-    /// Where the entries of an unknown of the border with the variables are stored.
-    pub(super) fn row(&self, unknown: usize) -> impl Iterator<Item = usize> + '_ {
-        let border = unknown - self.band;
-        let parts = self.components.iter().zip(&self.place).filter(move |(_, place)| place[border] != NONE);
-        let band = parts.flat_map(move |(c, place)| {
-            let first = c.row(place[border] as usize).start;
-            first..first + c.last - c.first
-        });
-        let corner = self.corner + border * self.border;
-        band.chain(corner..corner + border.min(self.border_variables))
+    /// Where the entry of two padded indices is stored, the later index first.
+    fn entry(&self, high: usize, low: usize) -> usize {
+        BLOCK * BLOCK * self.block(high / BLOCK, low / BLOCK) + BLOCK * (low % BLOCK) + high % BLOCK
+    }
+
+    /// Where a block of the factors is stored.
+    fn block(&self, row: usize, j: usize) -> usize {
+        let mut at = self.column[j] + 1;
+        if row == j {
+            return at - 1;
+        }
+        for run in self.runs(j) {
+            if row < run.first + run.len {
+                return at + row - run.first;
+            }
+            at += run.len;
+        }
+        at
     }
 
     /// Sets a matrix to zero, but for the diagonal of the padding.
@@ -201,9 +166,72 @@ impl Envelope {
     }
 }
 
-/// Where the entry of two padded indices of the band is stored, the later index first: block by block, column by
-/// column.
-fn entry(column: &[usize], high: usize, low: usize) -> usize {
-    let block = column[low / BLOCK] + high / BLOCK - low / BLOCK;
-    BLOCK * BLOCK * block + BLOCK * (low % BLOCK) + high % BLOCK
+/// The blocks that the factors fill in one order.
+struct Fill {
+    /// The padded index of each unknown.
+    padded: Vec<usize>,
+    /// For each column of blocks the rows below its diagonal, increasing.
+    rows: Vec<Vec<usize>>,
+}
+
+impl Fill {
+    fn new(tree: &Tree, cliques: &Cliques) -> Self {
+        let (mut padded, mut next) = (vec![0; tree.order.len()], 0_usize);
+        for (&unknown, follows) in tree.order.iter().zip(&tree.follows) {
+            if !follows {
+                next = next.next_multiple_of(BLOCK);
+            }
+            padded[unknown as usize] = next;
+            next += 1;
+        }
+        let mut rows: Vec<Vec<usize>> = vec![vec![]; next.div_ceil(BLOCK)];
+        let mut blocks = vec![];
+        for clique in cliques.iter() {
+            blocks.clear();
+            blocks.extend(clique.iter().map(|&u| padded[u as usize] / BLOCK));
+            blocks.sort_unstable();
+            blocks.dedup();
+            if let [first, below @ ..] = &blocks[..] {
+                add(&mut rows[*first], below);
+            }
+        }
+        for j in 0..rows.len() {
+            let mut column = std::mem::take(&mut rows[j]);
+            column.sort_unstable();
+            column.dedup();
+            if let [parent, below @ ..] = &column[..] {
+                add(&mut rows[*parent], below);
+            }
+            rows[j] = column;
+        }
+        Self { padded, rows }
+    }
+
+    /// How many products of blocks the factors take.
+    fn cost(&self) -> f64 {
+        self.rows.iter().map(|rows| ((rows.len() + 1) * (rows.len() + 2)) as f64 / 2.0).sum()
+    }
+}
+
+/// Columns that follow one another and have the same rows but for themselves, at most [`TOGETHER`] of them.
+fn groups(rows: &[Vec<usize>]) -> Vec<Range<usize>> {
+    let joins = |j: usize| rows[j - 1].split_first().is_some_and(|(next, below)| *next == j && *below == rows[j]);
+    let mut groups: Vec<Range<usize>> = vec![];
+    for j in 0..rows.len() {
+        match groups.last_mut() {
+            Some(group) if group.len() < TOGETHER && joins(j) => group.end = j + 1,
+            _ => groups.push(j..j + 1),
+        }
+    }
+    groups
+}
+
+/// Adds rows to a column; repetitions are removed as soon as they would double its length.
+fn add(column: &mut Vec<usize>, rows: &[usize]) {
+    if column.len() + rows.len() > column.capacity() {
+        column.sort_unstable();
+        column.dedup();
+        column.reserve(column.len() + rows.len());
+    }
+    column.extend_from_slice(rows);
 }

@@ -11,10 +11,11 @@
 
 use super::elements::{Curvature, Elements, Rows, Weights};
 use super::factor::{Factor, Regularised};
-use super::ordering::Order;
+use super::ordering::Cliques;
 use super::pattern::Pattern;
-use super::storage::Envelope;
+use super::storage::Storage;
 use super::supports::Supports;
+use super::unknowns::Unknowns;
 use crate::contract::{Block, Evaluation, Nlp, NotFinite};
 use crate::options::Scaling;
 use crate::scaling::{Scales, Slopes, beside, variation};
@@ -25,8 +26,8 @@ pub(crate) struct System<W> {
     /// The patterns of the blocks that were analysed.
     patterns: Vec<Pattern>,
     elements: Elements,
-    order: Order,
-    envelope: Envelope,
+    unknowns: Unknowns,
+    storage: Storage,
     pub(crate) scales: Scales,
     /// The unfactorised matrix.
     matrix: Vec<f64>,
@@ -59,39 +60,34 @@ struct ScaledBy {
 }
 
 impl<W> System<W> {
-    /// Analyses a program: supports, order of the unknowns, pattern of the matrix.
+    /// Analyses a program: supports, border rows, order of elimination, storage of the matrix.
     pub(crate) fn new<N: Nlp<Workspace = W>>(nlp: &N) -> Self {
         let (n, m) = (nlp.variables(), nlp.rows());
         let sizes = Scales::sizes(nlp.limits());
         let supports: Vec<Supports> = nlp.blocks().iter().map(Supports::new).collect();
-        let order = Order::new(nlp, &supports);
-        let mut elements = Elements::new(nlp.blocks(), &supports, &order, &sizes);
-        let mut cliques: Vec<u32> = vec![];
-        let mut ends = vec![0];
-        elements.cliques(&order, |list| {
-            cliques.extend_from_slice(list);
-            ends.push(cliques.len());
-        });
-        let lists = ends.windows(2).map(|range| &cliques[range[0]..range[1]]);
-        let envelope = Envelope::new(order.band, [order.border, order.bordered.len()], lists);
-        elements.locate(&order, &envelope);
+        let unknowns = Unknowns::new(nlp, &supports);
+        let mut elements = Elements::new(nlp.blocks(), &supports, &unknowns, &sizes);
+        let mut cliques = Cliques::default();
+        elements.cliques(&unknowns, |list| cliques.add(list));
+        let storage = Storage::new(n + unknowns.bordered.len(), &cliques);
+        elements.locate(&unknowns, &storage);
         let (workspace, latest) = nlp.workspace();
         Self {
             patterns: nlp.blocks().iter().map(Pattern::of).collect(),
             elements,
             scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0 },
-            matrix: vec![0.0; envelope.len],
-            convexification: vec![0.0; envelope.len],
-            factor: Factor::new(&envelope),
-            right_hand_side: vec![0.0; envelope.unknowns()],
+            matrix: vec![0.0; storage.len],
+            convexification: vec![0.0; storage.len],
+            factor: Factor::new(&storage),
+            right_hand_side: vec![0.0; storage.unknowns],
             workspace,
             trial: latest.clone(),
             latest,
             x: vec![0.0; n],
             weights: vec![0.0; m],
             scaled_by: None,
-            order,
-            envelope,
+            unknowns,
+            storage,
         }
     }
 
@@ -191,16 +187,13 @@ impl<W> System<W> {
         let m = self.weights.len();
         let mut rows = vec![0.0; m + 2];
         self.elements.slopes(&mut rows);
-        rows.truncate(m);
-        if !self.order.bordered.is_empty() {
+        if !self.unknowns.bordered.is_empty() {
             let multipliers = vec![0.0; self.functions()];
             self.assemble(Weights { sigma: &multipliers, curvature: Curvature::None });
+            self.unknowns.bordered.iter().for_each(|&row| rows[row] = 0.0);
+            self.elements.border_slopes(&self.unknowns, &self.matrix, &mut rows);
         }
-        for (row, slope) in rows.iter_mut().enumerate() {
-            let Some(border) = self.order.border_row[row] else { continue };
-            let unknown = self.order.band + self.order.border + border as usize;
-            *slope = self.envelope.row(unknown).map(|at| self.matrix[at].abs()).fold(0.0, f64::max);
-        }
+        rows.truncate(m);
         Slopes { rows, variation: variation(nlp.blocks(), &self.latest, &self.scales.variables) }
     }
 
@@ -328,11 +321,10 @@ impl<W> System<W> {
 
     /// Builds the matrix at the latest point. Border rows need [`System::set_border_diagonal`] besides.
     pub(crate) fn assemble(&mut self, weights: Weights<'_>) {
-        self.envelope.clear(&mut self.matrix);
+        self.storage.clear(&mut self.matrix);
         self.elements.assemble(weights, &mut self.matrix);
-        for (weight, &unknown) in weights.sigma[self.first_variable()..].iter().zip(&self.order.unknown) {
-            let at = self.envelope.position(unknown as usize, unknown as usize);
-            self.matrix[at] += weight;
+        for (variable, weight) in weights.sigma[self.first_variable()..].iter().enumerate() {
+            self.matrix[self.storage.position(variable, variable)] += weight;
         }
     }
 
@@ -344,31 +336,28 @@ impl<W> System<W> {
 
     /// Sets the diagonal entry of a border row to `-compliance`.
     pub(crate) fn set_border_diagonal(&mut self, border: usize, compliance: f64) {
-        let unknown = self.order.band + self.order.border + border;
-        let at = self.envelope.position(unknown, unknown);
-        self.matrix[at] = -compliance;
+        let unknown = self.unknowns.variables + border;
+        self.matrix[self.storage.position(unknown, unknown)] = -compliance;
     }
 
     /// Factorises the matrix plus a fraction of the convexifying term and a shift of the variables' diagonal; whether
     /// its inertia is that of a minimum.
     pub(crate) fn factorise(&mut self, fraction: f64, shift: f64) -> bool {
         let convexification = if fraction == 0.0 { &[][..] } else { &self.convexification };
-        let sum = Regularised { matrix: &self.matrix, convexification, fraction, shift };
-        self.factor.factorise(&self.envelope, &sum) == Some(self.order.bordered.len())
+        let sum =
+            Regularised { matrix: &self.matrix, convexification, fraction, shift, variables: self.unknowns.variables };
+        self.factor.factorise(&self.storage, &sum) == Some(self.unknowns.bordered.len())
     }
 
     /// Replaces the right-hand side, by variable and by border row, by the solution.
     pub(crate) fn solve(&mut self, variables: &mut [f64], rows: &mut [f64]) {
-        for (value, &unknown) in variables.iter().zip(&self.order.unknown) {
-            self.right_hand_side[unknown as usize] = *value;
-        }
-        let first = self.order.band + self.order.border;
-        self.right_hand_side[first..].copy_from_slice(rows);
-        self.factor.solve(&self.envelope, &mut self.right_hand_side);
-        for (value, &unknown) in variables.iter_mut().zip(&self.order.unknown) {
-            *value = self.right_hand_side[unknown as usize];
-        }
-        rows.copy_from_slice(&self.right_hand_side[first..]);
+        let (first, second) = self.right_hand_side.split_at_mut(self.unknowns.variables);
+        first.copy_from_slice(&variables[..self.unknowns.variables]);
+        second.copy_from_slice(rows);
+        self.factor.solve(&self.storage, &mut self.right_hand_side);
+        let (first, second) = self.right_hand_side.split_at(self.unknowns.variables);
+        variables[..self.unknowns.variables].copy_from_slice(first);
+        rows.copy_from_slice(second);
     }
 
     /// The point of the last evaluation, in the program's own units, whether or not that evaluation succeeded.
@@ -378,7 +367,7 @@ impl<W> System<W> {
 
     /// The rows of the program that are unknowns of the border.
     pub(crate) fn border_rows(&self) -> &[usize] {
-        &self.order.bordered
+        &self.unknowns.bordered
     }
 
     /// The derivatives of the elements and the rows at the latest point, in the program's own units.

@@ -5,7 +5,7 @@
 //! those before them. Afterwards: the value of any linear combination that they determine.
 
 use super::slots::AffineMap;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A coefficient smaller than this part of the equation's largest is rounding.
 const NEGLIGIBLE: f64 = 1e-11;
@@ -24,6 +24,8 @@ pub(crate) struct Combination {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LinearSystem {
     equations: Vec<(u32, Combination)>,
+    /// The equation of each pivot.
+    equation_of: BTreeMap<u32, usize>,
 }
 
 impl From<&AffineMap> for Combination {
@@ -85,6 +87,7 @@ impl LinearSystem {
         let reduced = self.reduce(row);
         match reduced.largest() {
             Some((pivot, _)) => {
+                self.equation_of.insert(pivot, self.equations.len());
                 self.equations.push((pivot, reduced));
                 Ok(())
             }
@@ -110,11 +113,18 @@ impl LinearSystem {
     fn reduce(&self, row: &Combination) -> Combination {
         let mut row = row.clone();
         let size = row.largest().map_or(0.0, |(_, c)| c.abs());
-        for (pivot, equation) in &self.equations {
+        let numbers = |row: &Combination| -> BTreeSet<usize> {
+            row.terms.keys().filter_map(|variable| self.equation_of.get(variable).copied()).collect()
+        };
+        // An equation brings in pivots of later ones only, so all are taken in their order.
+        let mut due = numbers(&row);
+        while let Some(number) = due.pop_first() {
+            let (pivot, equation) = &self.equations[number];
             if let Some(c) = row.terms.remove(pivot) {
                 let times = -c / equation.terms[pivot];
                 row.add_scaled(times, equation);
                 row.terms.remove(pivot);
+                due.extend(numbers(equation).range(number + 1..));
             }
         }
         row.terms.retain(|_, c| c.abs() > NEGLIGIBLE * size);

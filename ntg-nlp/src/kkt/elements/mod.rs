@@ -18,10 +18,10 @@ mod plan;
 mod products;
 mod range_map;
 
-use super::ordering::Order;
 use super::pack::LANES;
-use super::storage::Envelope;
+use super::storage::Storage;
 use super::supports::Supports;
+use super::unknowns::Unknowns;
 use crate::contract::Block;
 use crate::scaling::{Scales, slot_sizes};
 use batching::Batching;
@@ -73,9 +73,9 @@ pub(crate) struct Weights<'a> {
 }
 
 impl Elements {
-    /// Plans the elements of blocks whose variables have these sizes, once the order of unknowns is known.
-    pub(super) fn new(blocks: &[Block], supports: &[Supports], order: &Order, sizes: &[f64]) -> Self {
-        let program = Program { order, sizes };
+    /// Plans the elements of blocks whose variables have these sizes, once the border rows are known.
+    pub(super) fn new(blocks: &[Block], supports: &[Supports], unknowns: &Unknowns, sizes: &[f64]) -> Self {
+        let program = Program { unknowns, sizes };
         let (mut packed, mut remainder) = (Plans::default(), Plans::default());
         for (number, (block, supports)) in blocks.iter().zip(supports).enumerate() {
             let (many, few) = batching::batch_elements(block, supports);
@@ -99,15 +99,15 @@ impl Elements {
     }
 
     /// The unknowns that meet in the matrix, as lists of which every two meet.
-    pub(super) fn cliques(&self, order: &Order, mut visit: impl FnMut(&[u32])) {
-        self.packed.plans.iter().for_each(|plan| plan.cliques(order, &mut visit));
-        self.remainder.plans.iter().for_each(|plan| plan.cliques(order, &mut visit));
+    pub(super) fn cliques(&self, unknowns: &Unknowns, mut visit: impl FnMut(&mut Vec<u32>)) {
+        self.packed.plans.iter().for_each(|plan| plan.cliques(unknowns, &mut visit));
+        self.remainder.plans.iter().for_each(|plan| plan.cliques(unknowns, &mut visit));
     }
 
     /// Computes the positions of all contributions in a matrix.
-    pub(super) fn locate(&mut self, order: &Order, envelope: &Envelope) {
-        self.packed.plans.iter_mut().for_each(|plan| plan.locate(order, envelope));
-        self.remainder.plans.iter_mut().for_each(|plan| plan.locate(order, envelope));
+    pub(super) fn locate(&mut self, unknowns: &Unknowns, storage: &Storage) {
+        self.packed.plans.iter_mut().for_each(|plan| plan.locate(unknowns, storage));
+        self.remainder.plans.iter_mut().for_each(|plan| plan.locate(unknowns, storage));
     }
 
     /// Marks the functions that are equalities.
@@ -121,6 +121,15 @@ impl Elements {
         let Self { packed, remainder, .. } = self;
         packed.plans.iter().for_each(|plan| plan.slopes(&mut packed.workspace, out));
         remainder.plans.iter().for_each(|plan| plan.slopes(&mut remainder.workspace, out));
+    }
+}
+
+impl Elements {
+    /// Raises the entry of each border row in `out` to its largest slope by any scaled variable, which a matrix holds that
+    /// was assembled with all scales of rows at 1.
+    pub(super) fn border_slopes(&self, unknowns: &Unknowns, matrix: &[f64], out: &mut [f64]) {
+        self.packed.plans.iter().for_each(|plan| plan.border_slopes(unknowns, matrix, out));
+        self.remainder.plans.iter().for_each(|plan| plan.border_slopes(unknowns, matrix, out));
     }
 }
 

@@ -1,10 +1,10 @@
 //! The plan of the elements of one block: their batches, and the positions of their contributions in the matrix
 //! (docs/maths.md, section 11.2).
 
-use super::super::ordering::Order;
 use super::super::pack::{Pack, Term};
-use super::super::storage::Envelope;
+use super::super::storage::Storage;
 use super::super::supports::Supports;
+use super::super::unknowns::Unknowns;
 use super::Rows;
 use super::batching::Batching;
 use super::products::{Entries, Products, closure};
@@ -71,7 +71,7 @@ pub(super) struct BorderRow<const L: usize> {
 
 /// What the plans of one program share.
 pub(super) struct Program<'a> {
-    pub(super) order: &'a Order,
+    pub(super) unknowns: &'a Unknowns,
     /// Sizes of the variables.
     pub(super) sizes: &'a [f64],
 }
@@ -85,15 +85,15 @@ impl<const L: usize> Plan<L> {
         batching: Batching<L>,
         program: &Program<'_>,
     ) -> Self {
-        let order = program.order;
-        let padding = order.unknown.len() as u32;
+        let unknowns = program.unknowns;
+        let padding = unknowns.variables as u32;
         let map = RangeMap::new(block, supports, &batching, program.sizes, padding);
-        let function = functions(block, &batching, order.border_row.len());
-        let nothing = order.border_row.len() as u32 + 1;
-        let inside = |q: u32| order.border_row.get(q as usize).is_some_and(Option::is_none);
+        let function = functions(block, &batching, unknowns.border_row.len());
+        let nothing = unknowns.border_row.len() as u32 + 1;
+        let inside = |q: u32| unknowns.border_row.get(q as usize).is_some_and(Option::is_none);
         let condensed = function.iter().map(|lanes: &[u32; L]| lanes.map(|q| if inside(q) { q } else { nothing }));
         let mut rows = rows(block);
-        let kinds: Vec<[bool; 2]> = (0..block.rows).map(|row| kinds(block, row, order)).collect();
+        let kinds: Vec<[bool; 2]> = (0..block.rows).map(|row| kinds(block, row, unknowns)).collect();
         let pairs = slot_pairs(block, &rows, &kinds, supports);
         let at = |i: usize, j: usize| pairs.iter().position(|&p| p == (i.max(j), i.min(j)));
         let pair_of = block.hessian.iter().map(|&(i, j)| at(i, j)).collect();
@@ -213,69 +213,60 @@ impl<const L: usize> Plan<L> {
     }
 
     /// The unknowns that meet in the matrix, as lists of which every two meet.
-    pub(super) fn cliques(&self, order: &Order, mut visit: impl FnMut(&[u32])) {
+    pub(super) fn cliques(&self, unknowns: &Unknowns, mut visit: impl FnMut(&mut Vec<u32>)) {
         let pairs = Entries::new(&self.supports, &self.filled.pairs).pairs;
         let mut list = vec![];
         for batch in 0..self.batching.batches() {
             for lane in 0..L {
+                let of = |range: std::ops::Range<usize>| {
+                    let variables = self.map.variables(batch)[range].iter();
+                    variables.filter_map(move |lanes| unknowns.of_variable(lanes[lane]))
+                };
                 for &(a, b) in &pairs {
                     let (a, b) = (&self.supports.all[a], &self.supports.all[b]);
                     list.clear();
-                    list.extend(self.unknowns(order, (batch, lane), a.first..a.last));
-                    list.extend(self.unknowns(order, (batch, lane), b.first..b.last));
-                    visit(&list);
+                    list.extend(of(a.first..a.last).chain(of(b.first..b.last)));
+                    visit(&mut list);
                 }
                 for (border, pack) in
                     self.border.iter().flat_map(|b| self.batching.packs_of(batch).map(move |p| (b, p)))
                 {
-                    let Some(row) = self.border_unknown(order, border.row, (pack, lane)) else { continue };
-                    let all = self.unknowns(order, (batch, lane), 0..self.supports.element_variables);
-                    all.for_each(|unknown| visit(&[unknown, row]));
+                    let Some(row) = unknowns.of_function(self.function_of(border, pack)[lane]) else { continue };
+                    for unknown in of(0..self.supports.element_variables) {
+                        list.clear();
+                        list.extend([unknown, row]);
+                        visit(&mut list);
+                    }
                 }
             }
         }
     }
 
-    /// The unknowns of some element variables of a lane of a batch.
-    fn unknowns<'a>(
-        &'a self,
-        order: &'a Order,
-        (batch, lane): (usize, usize),
-        element_variables: std::ops::Range<usize>,
-    ) -> impl Iterator<Item = u32> + 'a {
-        let variables = self.map.variables(batch)[element_variables].iter();
-        variables.filter_map(move |lanes| order.unknown.get(lanes[lane] as usize).copied())
-    }
-
-    /// The unknown of the border row that a lane of a pack adds to.
-    fn border_unknown(&self, order: &Order, row: usize, (pack, lane): (usize, usize)) -> Option<u32> {
-        let function = self.function[pack * self.rows.len() + row][lane] as usize;
-        let row = (*order.border_row.get(function)?)?;
-        Some((order.band + order.border) as u32 + row)
+    /// The functions that a border row of a pack adds to.
+    fn function_of(&self, border: &BorderRow<L>, pack: usize) -> [u32; L] {
+        self.function[pack * self.rows.len() + border.row]
     }
 
     /// Computes the positions of all contributions in a matrix.
-    pub(super) fn locate(&mut self, order: &Order, envelope: &Envelope) {
+    pub(super) fn locate(&mut self, unknowns: &Unknowns, storage: &Storage) {
         let entries = Entries::new(&self.supports, &self.filled.pairs);
         let mut position = vec![];
         let mut places = vec![vec![]; self.border.len()];
         for batch in 0..self.batching.batches() {
             let variables = self.map.variables(batch);
             let unknown =
-                |element_variable: usize, lane: usize| order.unknown.get(variables[element_variable][lane] as usize);
-            let place = |a: Option<&u32>, b: Option<&u32>| {
-                a.zip(b).map_or(envelope.sink(), |(a, b)| envelope.position(*a as usize, *b as usize)) as u32
+                |element_variable: usize, lane: usize| unknowns.of_variable(variables[element_variable][lane]);
+            let place = |a: Option<u32>, b: Option<u32>| {
+                a.zip(b).map_or(storage.sink(), |(a, b)| storage.position(a as usize, b as usize)) as u32
             };
             entries.each(&self.supports, |a, b| {
                 position.push(std::array::from_fn(|lane| place(unknown(a, lane), unknown(b, lane))));
             });
             for (border, places) in self.border.iter().zip(&mut places) {
                 for pack in self.batching.packs_of(batch) {
-                    places.extend((0..self.supports.element_variables).map(|element_variable| {
-                        std::array::from_fn(|lane| {
-                            let row = self.border_unknown(order, border.row, (pack, lane));
-                            place(unknown(element_variable, lane), row.as_ref())
-                        })
+                    let rows = self.function_of(border, pack).map(|function| unknowns.of_function(function));
+                    places.extend((0..self.supports.element_variables).map(|element_variable| -> [u32; L] {
+                        std::array::from_fn(|lane| place(unknown(element_variable, lane), rows[lane]))
                     }));
                 }
             }
@@ -283,6 +274,22 @@ impl<const L: usize> Plan<L> {
         self.position = position;
         for (border, position) in self.border.iter_mut().zip(places) {
             border.position = position;
+        }
+    }
+
+    /// Raises the entry of each border row in `out` to its largest slope by any scaled variable, which a matrix holds.
+    pub(super) fn border_slopes(&self, unknowns: &Unknowns, matrix: &[f64], out: &mut [f64]) {
+        let variables = self.supports.element_variables;
+        for border in &self.border {
+            for (pack, positions) in border.position.chunks_exact(variables.max(1)).enumerate() {
+                for (lane, &function) in self.function_of(border, pack).iter().enumerate() {
+                    if unknowns.of_function(function).is_some() {
+                        let inside = positions.iter().map(|at| at[lane] as usize).filter(|&at| at + 1 < matrix.len());
+                        let largest = inside.map(|at| matrix[at].abs()).fold(0.0, f64::max);
+                        out[function as usize] = largest.max(out[function as usize]);
+                    }
+                }
+            }
         }
     }
 }
@@ -297,10 +304,10 @@ fn rows(block: &Block) -> Vec<Row> {
 }
 
 /// Whether a row of a block is condensed, and whether it is a border row, in any element.
-fn kinds(block: &Block, row: usize, order: &Order) -> [bool; 2] {
+fn kinds(block: &Block, row: usize, unknowns: &Unknowns) -> [bool; 2] {
     let targets = &block.target[row * block.elements..][..block.elements];
     let of = |target: &Target| match target {
-        Target::Row(i) => Some(order.border_row[*i as usize].is_some()),
+        Target::Row(i) => Some(unknowns.border_row[*i as usize].is_some()),
         Target::Objective => None,
     };
     [targets.iter().any(|t| of(t) == Some(false)), targets.iter().any(|t| of(t) == Some(true))]
