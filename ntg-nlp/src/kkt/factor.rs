@@ -506,6 +506,46 @@ mod tests {
     }
 
     #[test]
+    fn any_pattern_is_solved() {
+        let mut seed = 29;
+        for count in [5, 12, 40, 90, 200] {
+            for size in [2, 4, 9] {
+                let mut pick = || ((noise(&mut seed).abs() * count as f64) as u32).min(count - 1);
+                let mut cliques: Vec<Vec<u32>> = (0..count).map(|_| (0..size).map(|_| pick()).collect()).collect();
+                cliques.extend((0..count).map(|j| vec![j]));
+                let storage = storage_of(count as usize, &cliques);
+                let n = count as usize;
+                let (mut value, mut dense) = (vec![0.0; storage.len], nalgebra::DMatrix::<f64>::zeros(n, n));
+                storage.clear(&mut value);
+                for clique in &mut cliques {
+                    clique.sort_unstable();
+                    clique.dedup();
+                    for (at, &a) in clique.iter().enumerate() {
+                        for &b in &clique[..=at] {
+                            let large = if a % 5 == 3 { -30.0 } else { 30.0 };
+                            let entry = noise(&mut seed) + if a == b { large } else { 0.0 };
+                            value[storage.position(a as usize, b as usize)] += entry;
+                            dense[(a as usize, b as usize)] += entry;
+                            if a != b {
+                                dense[(b as usize, a as usize)] += entry;
+                            }
+                        }
+                    }
+                }
+                let negative = dense.clone().symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
+                let mut factor = Factor::new(&storage);
+                assert_eq!(factor.factorise(&storage, &plain(&value)), Some(negative), "{count}, {size}");
+                let x = nalgebra::DVector::from_fn(n, |_, _| noise(&mut seed));
+                let mut b: Vec<f64> = (&dense * &x).iter().copied().collect();
+                factor.solve(&storage, &mut b);
+                for (found, wanted) in b.iter().zip(&x) {
+                    assert!((found - wanted).abs() < 1e-9, "{count}, {size}: {found} {wanted}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_shift_moves_variables_and_no_rows() {
         let (storage, value, dense) = example();
         let mut factor = Factor::new(&storage);

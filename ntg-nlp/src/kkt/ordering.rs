@@ -197,3 +197,29 @@ fn parents(order: &[u32], cliques: &Cliques) -> Vec<Option<u32>> {
     }
     parent
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_meets_everything_comes_last() {
+        // A star: its centre is the first in the program's order.
+        let mut cliques = Cliques::default();
+        (1..300).for_each(|leaf| cliques.add(&mut vec![0, leaf]));
+        for order in candidates(300, &cliques) {
+            assert_eq!(order.len(), 300);
+            assert_eq!(order.last(), Some(&0));
+        }
+    }
+
+    #[test]
+    fn a_parent_is_the_next_unknown_that_a_column_meets() {
+        // 0 meets 2 and 3; 1 meets 2; so eliminating 0 joins 2 and 3.
+        let mut cliques = Cliques::default();
+        [vec![0, 2], vec![0, 3], vec![1, 2], vec![4]].iter_mut().for_each(|clique| cliques.add(clique));
+        assert_eq!(parents(&[0, 1, 2, 3, 4], &cliques), [Some(2), Some(2), Some(3), None, None]);
+        let tree = Tree::new(&[0, 1, 2, 3, 4], &cliques);
+        assert_eq!((tree.order, tree.follows), (vec![0, 1, 2, 3, 4], vec![false, false, true, true, false]));
+    }
+}

@@ -235,3 +235,81 @@ fn add(column: &mut Vec<usize>, rows: &[usize]) {
     }
     column.extend_from_slice(rows);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn storage(unknowns: usize, lists: impl IntoIterator<Item = Vec<usize>>) -> Storage {
+        let mut cliques = Cliques::default();
+        for list in lists {
+            cliques.add(&mut list.iter().map(|&u| u as u32).collect());
+        }
+        Storage::new(unknowns, &cliques)
+    }
+
+    /// Products of blocks that the factors take.
+    fn cost(storage: &Storage) -> f64 {
+        (0..storage.columns()).map(|j| storage.blocks(j).len()).map(|len| (len * (len + 1)) as f64 / 2.0).sum()
+    }
+
+    #[test]
+    fn a_band_stays_in_the_order_of_time() {
+        for (count, reach) in [(40, 3), (200, 9), (1000, 5)] {
+            let band = (0..count - reach).map(|j| (j..=j + reach).collect());
+            let all = (0..count).map(|j| vec![j, count]);
+            let found = storage(count + 1, band.chain(all));
+            assert!(found.padded.windows(2).all(|pair| pair[1] == pair[0] + 1), "{count}, {reach}: {:?}", found.padded);
+        }
+    }
+
+    #[test]
+    fn scenarios_that_share_unknowns_cost_in_proportion() {
+        // Steps of two unknowns for each scenario, all scenarios of a step side by side, and one for all of them.
+        let (steps, width) = (20, 2);
+        let of = |scenarios: usize| {
+            let shared = steps * scenarios * width;
+            let unknown = move |step: usize, s: usize| (step * scenarios + s) * width;
+            let pairs = (1..steps).flat_map(move |step| {
+                (0..scenarios).map(move |s| {
+                    let (a, b) = (unknown(step - 1, s), unknown(step, s));
+                    vec![a, a + 1, b, b + 1, shared + step - 1, shared + step]
+                })
+            });
+            cost(&storage(shared + steps, pairs))
+        };
+        let costs = [8, 16, 32, 64].map(of);
+        for pair in costs.windows(2) {
+            assert!(pair[1] < 2.2 * pair[0], "{costs:?}");
+        }
+    }
+
+    #[test]
+    fn phases_with_durations_cost_in_proportion() {
+        // The durations come last in the program's order, and each meets its phase and the next one's beginning.
+        let steps = 12;
+        let of = |phases: usize| {
+            let count = steps * phases;
+            let pairs = (0..count - 1).map(move |j| vec![j, j + 1, count + j / steps, count + (j + 1) / steps]);
+            cost(&storage(count + phases, pairs))
+        };
+        let costs = [10, 20, 40, 80].map(of);
+        for pair in costs.windows(2) {
+            assert!(pair[1] < 2.1 * pair[0], "{costs:?}");
+        }
+    }
+
+    #[test]
+    fn columns_of_a_group_have_the_same_rows() {
+        let dense = storage(40, [(0..40).collect::<Vec<_>>()]);
+        assert_eq!(dense.groups, [0..4, 4..8, 8..10]);
+        let found = storage(60, (0..50).map(|j| vec![j, j + 3, j + 9, 59]));
+        assert_eq!(found.groups.iter().flat_map(Clone::clone).collect::<Vec<_>>(), Vec::from_iter(0..found.columns()));
+        for group in &found.groups {
+            let rows = |j: usize| found.runs(j).iter().flat_map(|run| run.first..run.first + run.len);
+            for j in group.clone() {
+                assert!(rows(j).eq((j + 1..group.end).chain(rows(group.end - 1))), "column {j} of {group:?}");
+            }
+        }
+    }
+}
