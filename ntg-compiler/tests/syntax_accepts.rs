@@ -75,6 +75,18 @@ fn brackets(expr: &Expr) -> String {
             let (first, last) = (brackets(&over.first), brackets(&over.last));
             format!("{op:?}({} in {first}..{last},{}{width})", over.index.text, brackets(body))
         }
+        ExprKind::If(conditional) => {
+            let branches = conditional.branches.iter().map(|branch| {
+                let sides: Vec<String> = branch.condition.sides().into_iter().map(brackets).collect();
+                let smooth = branch.smooth.iter().map(|width| format!("~{}", brackets(width))).collect::<String>();
+                format!("{}{smooth}?{}:", sides.join("|"), brackets(&branch.value))
+            });
+            format!("({}{})", branches.collect::<String>(), brackets(&conditional.otherwise))
+        }
+        ExprKind::Steps(steps) => {
+            let lets = steps.lets.iter().map(|step| format!("{}={};", step.name.text, brackets(&step.value)));
+            format!("{{{}{}}}", lets.collect::<String>(), brackets(&steps.value))
+        }
     }
 }
 
@@ -270,6 +282,20 @@ fn the_first_example() {
     assert_eq!(spec.problem.name.text, "VanDerPol");
     let kinds: Vec<bool> = spec.problem.items.iter().map(|item| matches!(item.kind, ItemKind::Block(_))).collect();
     assert_eq!(kinds, [false, false, false, false, true, true]);
+}
+
+#[test]
+fn a_conditional_is_one_operand_to_its_last_brace() {
+    for (text, wanted) in [
+        ("if a <= b { 1 } else { 2 } + 3", "(+(a|b?1:2)+3)"),
+        ("-if a in 1 .. 2 { 1 } else { 2 } ^ 2", "(-((a|1|2?1:2)^2))"),
+        ("if a <= smooth smooth unit_ { x } else { y }", "(a|smooth~unit_?x:y)"),
+        ("if a <= b smooth c * d { 1 } else if e >= f { 2 } else { 3 }", "(a|b~(*c*d)?1:e|f?2:3)"),
+        ("if a == if b <= c { 1 } else { 2 } { 3 } else { 4 }", "(a|(b|c?1:2)?3:4)"),
+        ("f(if a <= b { let c = 2; let d [m] = c; c * d } else { (1, 2) })", "f((a|b?{c=2;d=c;(*c*d)}:<1,2>))"),
+    ] {
+        assert_eq!(brackets(&expression(text)), wanted, "{text}");
+    }
 }
 
 #[test]

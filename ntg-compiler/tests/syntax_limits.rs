@@ -35,7 +35,7 @@ fn long_specs_take_a_linear_time() {
 }
 
 /// Each way of nesting, `depth` deep in brackets, signs or powers.
-fn nests(depth: usize) -> [String; 8] {
+fn nests(depth: usize) -> [String; 10] {
     let calls = |open: &str, close: &str, n: usize| format!("{}x{}", open.repeat(n), close.repeat(n));
     [
         calls("(", ")", depth),
@@ -45,6 +45,8 @@ fn nests(depth: usize) -> [String; 8] {
         calls("-", "", depth),
         calls("2^", "", depth),
         calls("(-2^", ")", depth / 3),
+        calls("if a <= ", " { 1 } else { 2 }", depth - 1),
+        calls("if a <= b { 1 } else { ", " }", depth),
         format!("1 [{}m{}]", "(".repeat(depth - 1), ")".repeat(depth - 1)),
     ]
 }

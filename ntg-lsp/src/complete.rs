@@ -22,7 +22,7 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
         items.extend(ITEM_WORDS.iter().chain(OTHER_ITEM_WORDS).chain(&["for"]).map(|word| keyword(word)));
     } else {
         items.extend(EXPRESSION_WORDS.iter().map(|word| keyword(word)));
-        items.extend(["spline", "held", "gauss", "uniform", "after", "through", "from"].map(keyword));
+        items.extend(["else", "smooth", "spline", "held", "gauss", "uniform", "after", "through", "from"].map(keyword));
     }
     items.extend(tools::functions().map(function));
     items
@@ -51,7 +51,7 @@ fn kind(kind: Kind) -> CompletionItemKind {
         Kind::Problem | Kind::Agent | Kind::Phase => CompletionItemKind::MODULE,
         Kind::Const => CompletionItemKind::CONSTANT,
         Kind::Param => CompletionItemKind::PROPERTY,
-        Kind::Variable | Kind::Duration | Kind::Index | Kind::Argument => CompletionItemKind::VARIABLE,
+        Kind::Variable | Kind::Duration | Kind::Index | Kind::Argument | Kind::Step => CompletionItemKind::VARIABLE,
         Kind::Output => CompletionItemKind::FIELD,
         Kind::Function | Kind::Table => CompletionItemKind::FUNCTION,
         Kind::Let | Kind::Term | Kind::Constraint => CompletionItemKind::VALUE,
@@ -148,7 +148,9 @@ pub fn explained(word: &str) -> Option<String> {
         "param" => "`param v_max = 0.25 [km/s];`: a value that a program may change without compiling again",
         "variable" => "`variable m0 in 1 .. 5 [kg];`: a free number, constant in time",
         "output" => "`output x, y [km]: spline(order = 5, intervals = 8);`: what moves",
-        "fn" => "`fn blend(u, w) = ...;`: a function, written out where it is applied",
+        "fn" => {
+            "`fn blend(u, w) = ...;`, `fn lift(v [m/s]) [N] { let q = ...; ... }`: a function, written out where it is applied"
+        }
         "let" => "`let speed [km/s] = hypot(der(x), der(y));`: a named expression, also reported and plotted",
         "table" => "`table thrust(t [s]) [kN] = linear { 0: 18; 6: 0; }`: data",
         "continuation" => "`continuation width = (20, 10, 5) [deg];`: a parameter solved for in turn",
@@ -170,6 +172,9 @@ pub fn explained(word: &str) -> Option<String> {
         "integral" => "`integral(e)`: over real time",
         "sum" => "`sum(i in 1 .. N, e)`",
         "prod" => "`prod(i in 1 .. N, e)`",
+        "if" => "`if a <= b smooth w { x } else { y }`: a value that depends on a condition",
+        "else" => "`if a <= b { x } else { y }`: the value where the condition does not hold",
+        "smooth" => "`if a <= b smooth w { x } else { y }`: the width over which both branches blend",
         "for" => "`for i in 1 .. N { ... }`: constraints or guesses for every index",
         "t" => "mission time",
         "tau" => "scaled time of the phase, from 0 to 1",

@@ -40,6 +40,8 @@ pub enum Kind {
     Index,
     /// A parameter of a function.
     Argument,
+    /// A `let` among the steps of a value.
+    Step,
     /// A term of the objective.
     Term,
     /// A constraint.

@@ -16,7 +16,7 @@ pub fn symbols(analysis: &Analysis) -> Vec<DocumentSymbol> {
 fn symbol(analysis: &Analysis, declaration: &Declaration) -> DocumentSymbol {
     let inside = declaration.inner.map(|scope| {
         let own = analysis.names().declarations.iter().filter(|inner| {
-            inner.scope == scope && !matches!(inner.kind, Kind::Problem | Kind::Index | Kind::Argument)
+            inner.scope == scope && !matches!(inner.kind, Kind::Problem | Kind::Index | Kind::Argument | Kind::Step)
         });
         let mut own: Vec<&Declaration> = own.collect();
         own.sort_by_key(|inner| inner.name.span);
@@ -45,7 +45,7 @@ fn kind(kind: Kind) -> SymbolKind {
         Kind::Output => SymbolKind::FIELD,
         Kind::Function | Kind::Table => SymbolKind::FUNCTION,
         Kind::Constraint | Kind::Term => SymbolKind::EVENT,
-        Kind::Variable | Kind::Duration | Kind::Let | Kind::Index | Kind::Argument => SymbolKind::VARIABLE,
+        Kind::Variable | Kind::Duration | Kind::Let | Kind::Index | Kind::Argument | Kind::Step => SymbolKind::VARIABLE,
     }
 }
 

@@ -89,6 +89,7 @@ codes! {
     ShapeMismatch "E046" "shapes that do not fit";
     NoNumber "E047" "a vector or matrix where one number is needed";
     MixedVector "E048" "a vector of different kinds of quantities";
+    WrongCondition "E049" "a condition that decides nothing";
     VariesAlong "E050" "a trajectory quantity where a single number stands";
     TimeOutOfPlace "E051" "`t` or `tau` where it has no value";
     EventAlong "E052" "an event time or integral where an expression belongs to a point";

@@ -317,7 +317,9 @@ impl<'a> Elaborator<'a> {
         let Some(arguments) = self.arguments(cx, of) else { return self.poison(span) };
         let entity = look_up(&self.scopes, cx.scope, &of.function.text).map(|(_, declared)| declared.entity);
         let formal: Vec<String> = match entity {
-            Some(Entity::Function(f)) => self.functions[f].function.parameters.iter().map(|p| p.text.clone()).collect(),
+            Some(Entity::Function(f)) => {
+                self.functions[f].function.parameters.iter().map(|p| p.name.text.clone()).collect()
+            }
             Some(Entity::Table(t)) => self.signatures[t].axes.iter().map(|(name, _)| name.clone()).collect(),
             _ => {
                 let message = "`partial` differentiates the application of a `fn` or a `table`";

@@ -29,6 +29,8 @@ const MOST_LOOKS: usize = 100_000;
 struct Frame<'a> {
     arguments: Vec<(&'a str, &'a Expr)>,
     outer: Option<Rc<Frame<'a>>>,
+    /// Whether it is a step of a value: names that it does not have are those of the frame around it.
+    is_step: bool,
 }
 
 /// An expression that is going to be differentiated so often.
@@ -77,15 +79,13 @@ impl<'a> Elaborator<'a> {
             ExprKind::Path(path) => {
                 let [only] = path.segments.as_slice() else { return };
                 let text = only.name.text.as_str();
-                let argument = frame.as_ref().and_then(|frame| {
-                    frame
-                        .arguments
-                        .iter()
-                        .find(|(name, _)| *name == text)
-                        .map(|(_, value)| (*value, frame.outer.clone()))
-                });
-                if let Some((expr, frame)) = argument {
-                    return open.push(Look { expr, around: *around, frame });
+                let mut next = frame.clone();
+                while let Some(frame) = next {
+                    let argument = frame.arguments.iter().find(|(name, _)| *name == text);
+                    if let Some((_, expr)) = argument {
+                        return open.push(Look { expr, around: *around, frame: frame.outer.clone() });
+                    }
+                    next = frame.outer.clone().filter(|_| frame.is_step);
                 }
                 match look_up(&self.scopes, scope, text).map(|(_, declared)| declared.entity) {
                     Some(Entity::Output) if text == name => *highest = (*highest).max(*around),
@@ -118,14 +118,30 @@ impl<'a> Elaborator<'a> {
                 let entity = look_up(&self.scopes, scope, &call.function.text).map(|(_, declared)| declared.entity);
                 let Some(Entity::Function(function)) = entity else { return call.arguments.iter().for_each(also) };
                 let declared = self.functions[function].function;
-                let names = declared.parameters.iter().map(|parameter| parameter.text.as_str());
+                let names = declared.parameters.iter().map(|parameter| parameter.name.text.as_str());
                 let arguments = names.zip(&call.arguments).collect();
-                let depth = std::iter::successors(frame.clone(), |frame| frame.outer.clone()).count();
+                let around_it = std::iter::successors(frame.clone(), |frame| frame.outer.clone());
+                let depth = around_it.filter(|frame| !frame.is_step).count();
                 const DEEPEST: usize = 64;
                 if depth < DEEPEST {
-                    let inner = Rc::new(Frame { arguments, outer: frame.clone() });
+                    let inner = Rc::new(Frame { arguments, outer: frame.clone(), is_step: false });
                     open.push(Look { expr: &declared.body, around: *around, frame: Some(inner) });
                 }
+            }
+            ExprKind::If(conditional) => {
+                conditional.branches.iter().for_each(|branch| {
+                    branch.condition.sides().into_iter().for_each(&mut also);
+                    also(&branch.value);
+                });
+                also(&conditional.otherwise);
+            }
+            ExprKind::Steps(steps) => {
+                let mut frame = frame.clone();
+                for step in &steps.lets {
+                    let arguments = vec![(step.name.text.as_str(), &step.value)];
+                    frame = Some(Rc::new(Frame { arguments, outer: frame, is_step: true }));
+                }
+                open.push(Look { expr: &steps.value, around: *around, frame });
             }
             ExprKind::Number(_)
             | ExprKind::Pi

@@ -144,6 +144,9 @@ pub(super) struct Elaborator<'a> {
     /// Shapes of the members of definitions in each scope, and of functions.
     pub(super) member_shapes: HashMap<(usize, ScopeId), Option<Shape>>, // Looked up, never iterated.
     pub(super) function_shapes: HashMap<FunctionKey, Option<Shape>>, // Looked up, never iterated.
+    /// The definitions whose shapes are being looked for, and whether one needs its own.
+    pub(super) shaping: Vec<usize>,
+    pub(super) recurs: bool,
     pub(super) unknown_indices: u32,
     /// The sums of squares of which nodes are the roots.
     pub(super) squares: HashMap<NodeId, NodeId>, // Looked up, never iterated.
@@ -203,6 +206,8 @@ impl<'a> Elaborator<'a> {
             output_axes: Vec::new(),
             member_shapes: HashMap::new(),
             function_shapes: HashMap::new(),
+            shaping: Vec::new(),
+            recurs: false,
             unknown_indices: 0,
             squares: HashMap::new(),
             opened: None,

@@ -16,14 +16,22 @@ use super::shape::{Ends, Shape, whole_axes};
 use super::value::{Flaw, Value};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{Expr, MulOp, Segment};
+use crate::syntax::ast::{Expr, MulOp, Segment, Unit};
 
 /// An argument of a function that is a vector: an expression, and where it was written.
 pub(super) struct Lazy<'a> {
     pub(super) cx: Context<'a>,
     pub(super) expr: &'a Expr,
     pub(super) shape: Shape,
+    /// The unit that was stated for it.
+    pub(super) stated: Option<Stated<'a>>,
     pub(super) known: RefCell<HashMap<Vec<Form>, Value>>, // Looked up, never iterated.
+}
+
+/// The unit that something is said to have, and what that is.
+pub(super) struct Stated<'a> {
+    pub(super) unit: &'a Unit,
+    pub(super) what: String,
 }
 
 impl<'a> Elaborator<'a> {
@@ -171,7 +179,10 @@ impl<'a> Elaborator<'a> {
             return known.clone();
         }
         let inner = Context { loops: cx.loops.clone(), ..lazy.cx.clone() };
-        let value = self.element(&inner, lazy.expr, &place);
+        let mut value = self.element_or_zero(&inner, lazy.expr, &place);
+        if let Some(stated) = lazy.stated.as_ref().filter(|_| value.is_sound()) {
+            value = self.stated_argument(value, stated);
+        }
         lazy.known.borrow_mut().insert(place, value.clone());
         value
     }

@@ -54,6 +54,11 @@ impl<'a> Elaborator<'a> {
             ExprKind::Product(factors) => self.product(cx, factors, span),
             ExprKind::Power(base, exponent) => self.power(cx, base, exponent, span),
             ExprKind::Call(call) => self.call(cx, call, at),
+            ExprKind::If(conditional) => self.conditional(cx, conditional, at, span),
+            ExprKind::Steps(steps) => match self.steps(cx, steps) {
+                Some(inner) => self.element_or_zero(&inner, &steps.value, at),
+                None => self.poison(span),
+            },
             ExprKind::Der { of, order } => self.derivative(cx, (of, at), order.as_deref(), span),
             ExprKind::Partial { of, argument } => self.partial(cx, of, argument, span),
             ExprKind::Integral { path, of } => self.integral(cx, path.as_ref(), (of, at), span),
@@ -128,6 +133,7 @@ impl<'a> Elaborator<'a> {
             "add" => format!("{that} cannot be added to {this}"),
             "subtract" => format!("{that} cannot be subtracted from {this}"),
             "compare" => format!("{this} cannot be compared with {that}"),
+            "if" => format!("one branch of an `if` is {this}, another one {that}"),
             _ => format!("{this} and {that} cannot be joined by `{verb}`"),
         };
         // Two statements are no expression to underline as a whole.

@@ -344,7 +344,7 @@ impl<'a> Elaborator<'a> {
         arguments: Vec<Meaning<'a>>,
         at: &[Form],
     ) -> Value {
-        let (declared, scope) = (self.functions[function].function, self.functions[function].scope);
+        let declared = self.functions[function].function;
         let count = declared.parameters.len();
         if !self.arity(call, count, count) {
             return self.poison(call.span);
@@ -358,14 +358,17 @@ impl<'a> Elaborator<'a> {
                 .help("write it without itself: functions are inlined, so they cannot recur; use `sum` or `prod` over an index");
             return self.refuse(finding, call.span);
         }
-        let mut inner = Context { locals: None, lexical: scope, ..cx.clone() };
-        for (parameter, argument) in declared.parameters.iter().zip(arguments) {
-            inner = inner.with(&parameter.text, argument);
-        }
         let before = self.found.len();
+        let Some(inner) = self.inside_function(cx, function, call, arguments) else {
+            self.tell_use(before, call);
+            return self.poison(call.span);
+        };
         self.inlining.push(function);
         let mut value = self.element_or_zero(&inner, &declared.body, at);
         self.inlining.pop();
+        if let Some(unit) = declared.unit.as_ref().filter(|_| value.is_sound()) {
+            value = self.declared_unit(value, unit, &format!("the value of `{}`", declared.name.text));
+        }
         self.tell_use(before, call);
         if let Some(Flaw::Misplaced(inside)) = &value.flaw
             && !call.span.contains(inside.span)

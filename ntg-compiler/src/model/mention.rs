@@ -2,8 +2,8 @@
 
 use crate::syntax::ast::{Expr, ExprKind};
 
-/// Names that stand alone and without index in an expression. What is taken at other points
-/// (`integral`, `initial`, `final`) or bound by an index is left out.
+/// Names that stand alone and without index in an expression, whatever else happens. What is taken at other points
+/// (`integral`, `initial`, `final`) or bound by an index is left out, and so are branches, which may not be chosen.
 pub(super) fn mentioned(expr: &Expr) -> Vec<&str> {
     let mut names = Vec::new();
     let mut open = vec![expr];
@@ -22,7 +22,10 @@ pub(super) fn mentioned(expr: &Expr) -> Vec<&str> {
             ExprKind::Product(factors) => open.extend(factors.iter().map(|(_, factor)| factor)),
             ExprKind::Power(base, exponent) => open.extend([&**base, &**exponent]),
             ExprKind::Call(call) | ExprKind::Partial { of: call, .. } => open.extend(&call.arguments),
-            ExprKind::Number(_)
+            ExprKind::If(conditional) => open.extend(conditional.branches[0].condition.sides()),
+            // Steps may hide names.
+            ExprKind::Steps(_)
+            | ExprKind::Number(_)
             | ExprKind::Pi
             | ExprKind::Time
             | ExprKind::ScaledTime
@@ -33,4 +36,25 @@ pub(super) fn mentioned(expr: &Expr) -> Vec<&str> {
         }
     }
     names
+}
+
+/// Every name in an expression that is made of names, numbers and operations alone.
+pub(super) fn names_in(expr: &Expr) -> Option<Vec<&str>> {
+    let mut names = Vec::new();
+    let mut open = vec![expr];
+    while let Some(expr) = open.pop() {
+        match &expr.kind {
+            ExprKind::Path(path) => match path.segments.as_slice() {
+                [only] if only.indices.is_empty() => names.push(only.name.text.as_str()),
+                _ => return None,
+            },
+            ExprKind::Number(_) | ExprKind::Pi => {}
+            ExprKind::Neg(inner) => open.push(inner),
+            ExprKind::Sum(terms) => open.extend(terms.iter().map(|(_, term)| term)),
+            ExprKind::Product(factors) => open.extend(factors.iter().map(|(_, factor)| factor)),
+            ExprKind::Power(base, exponent) => open.extend([&**base, &**exponent]),
+            _ => return None,
+        }
+    }
+    Some(names)
 }

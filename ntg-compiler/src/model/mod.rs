@@ -8,6 +8,7 @@
 mod arguments;
 mod check;
 mod collocated;
+mod conditions;
 mod constants;
 mod constraints;
 mod continuity;
@@ -42,6 +43,7 @@ mod settle;
 mod shape;
 mod shape_calls;
 mod shape_names;
+mod steps;
 mod suggest;
 mod table_data;
 mod table_report;

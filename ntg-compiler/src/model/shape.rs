@@ -71,7 +71,7 @@ impl Shape {
     }
 
     /// The shape of two things that must have one; none where they do not fit.
-    fn joined(&self, other: &Self) -> Option<Self> {
+    pub(super) fn joined(&self, other: &Self) -> Option<Self> {
         match (self, other) {
             (Self::Any, shape) | (shape, Self::Any) => Some(shape.clone()),
             (a, b) => (a == b).then(|| a.clone()),
@@ -152,6 +152,11 @@ impl<'a> Elaborator<'a> {
                 self.is_number(cx, exponent).then_some(Shape::NUMBER)
             }
             ExprKind::Call(call) => self.call_shape(cx, call),
+            ExprKind::If(conditional) => self.conditional_shape(cx, conditional),
+            ExprKind::Steps(steps) => {
+                let inner = self.step_shapes(cx, steps)?;
+                self.shape(&inner, &steps.value)
+            }
             ExprKind::Der { of, .. } => self.shape(cx, of),
             ExprKind::Partial { .. } => Some(Shape::NUMBER),
             ExprKind::Integral { path, of } | ExprKind::Boundary { path, of, .. } => {

@@ -71,11 +71,29 @@ impl<'a> Elaborator<'a> {
         // A function that uses itself is told of when it is applied.
         self.function_shapes.insert(key.clone(), Some(Shape::NUMBER));
         let mut inner = Context { locals: None, lexical: scope, ..cx.clone() };
-        for (parameter, shape) in declared.parameters.iter().zip(&key.1) {
-            inner = inner.with(&parameter.text, Meaning::Shaped(shape.clone()));
-        }
+        let outside = inner.clone();
         let before = self.found.len();
-        let shape = self.shape(&inner, &declared.body);
+        for ((parameter, shape), expr) in declared.parameters.iter().zip(&key.1).zip(&call.arguments) {
+            let stated = parameter.shape.as_ref().map(|stated| self.stated_shape(&outside, stated));
+            let shape = match stated {
+                Some(stated) => {
+                    let help = format!("`{}` states the size of this argument", declared.name.text);
+                    let Some(shape) = self.fits(stated, (parameter.name.span, shape), expr.span, &help) else {
+                        self.function_shapes.insert(key.clone(), None);
+                        return None;
+                    };
+                    shape
+                }
+                None => shape.clone(),
+            };
+            inner = inner.with(&parameter.name.text, Meaning::Shaped(shape));
+        }
+        let mut shape = self.shape(&inner, &declared.body);
+        if let (Some(stated), Some(found)) = (&declared.shape, &shape) {
+            let stated = self.stated_shape(&outside, stated);
+            let help = "state the size that the value has, or leave it out";
+            shape = self.fits(stated, (declared.name.span, found), declared.body.span, help);
+        }
         self.tell_use(before, call);
         self.function_shapes.insert(key, shape.clone());
         shape

@@ -139,6 +139,7 @@ impl<'a> Elaborator<'a> {
     pub(super) fn member_shape(&mut self, cx: &Context<'a>, definition: usize) -> Option<Shape> {
         let key = (definition, cx.scope);
         if let Some(known) = self.member_shapes.get(&key) {
+            self.recurs |= self.shaping.contains(&definition);
             return known.clone();
         }
         // What needs itself is a number here; whoever elaborates it tells of the circle.
@@ -151,7 +152,9 @@ impl<'a> Elaborator<'a> {
             inner = inner.with(&index.text, Meaning::Index(unknown));
         }
         let value = self.definitions[definition].value;
+        self.shaping.push(definition);
         let shape = self.shape(&inner, value);
+        self.shaping.pop();
         self.member_shapes.insert(key, shape.clone());
         shape
     }

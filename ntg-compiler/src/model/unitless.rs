@@ -31,7 +31,11 @@ impl Look {
                     self.unit(&name.unit);
                     self.bounds(&name.bounds);
                 }),
-                ItemKind::Function(f) => self.expr(&f.body),
+                ItemKind::Function(f) => {
+                    f.parameters.iter().for_each(|argument| self.unit(&argument.unit));
+                    self.unit(&f.unit);
+                    self.expr(&f.body);
+                }
                 ItemKind::Let(l) => {
                     self.unit(&l.unit);
                     self.expr(&l.value);
@@ -127,6 +131,19 @@ impl Look {
                 ExprKind::Reduce(reduction) => {
                     open.push(&reduction.body);
                     open.extend(&reduction.width);
+                }
+                ExprKind::If(conditional) => {
+                    for branch in &conditional.branches {
+                        open.extend(branch.condition.sides());
+                        open.extend(&branch.smooth);
+                        open.push(&branch.value);
+                    }
+                    open.push(&conditional.otherwise);
+                }
+                ExprKind::Steps(steps) => {
+                    steps.lets.iter().for_each(|step| self.unit(&step.unit));
+                    open.extend(steps.lets.iter().map(|step| &step.value));
+                    open.push(&steps.value);
                 }
                 ExprKind::Pi | ExprKind::Time | ExprKind::ScaledTime | ExprKind::Path(_) | ExprKind::Event { .. } => {}
             }

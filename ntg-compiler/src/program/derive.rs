@@ -10,7 +10,8 @@ use ntg_structure::{Degree as OutDegree, Kernel};
 
 use super::KernelBody;
 use super::kernel::Mode;
-use crate::expr::{Binary, Dag, Degree, Entry, InputId, Node, NodeId, Unary, degree, gradient, hessian};
+use super::probes::probes;
+use crate::expr::{Dag, Degree, Entry, InputId, NodeId, degree, gradient, hessian};
 use crate::source::Span;
 
 /// Why differentiation cannot fail here.
@@ -89,48 +90,5 @@ fn out_degree(degree: Degree) -> OutDegree {
         Degree::Linear => OutDegree::Linear,
         Degree::Quadratic => OutDegree::Quadratic,
         Degree::Nonlinear => OutDegree::Nonlinear,
-    }
-}
-
-/// Operations that can give infinity or NaN from finite operands: first their values, then the
-/// factors in which their derivatives are singular.
-fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (Vec<NodeId>, Vec<Span>) {
-    // What the compiler has made itself, such as `1 / T`, is of no help to a person.
-    let schedule: Vec<NodeId> = dag.schedule(values).into_iter().filter(|id| origin.contains_key(id)).collect();
-    let (mut nodes, mut spans) = (Vec::new(), Vec::new());
-    for id in &schedule {
-        if may_fail(dag, dag.node(*id)) {
-            nodes.push(*id);
-            spans.push(origin[id]);
-        }
-    }
-    for id in schedule {
-        let singular = match *dag.node(id) {
-            Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, _, _) => id,
-            Node::Unary(Unary::Asin | Unary::Acos, a) => {
-                let square = dag.powi(a, 2);
-                let one = dag.constant(1.0);
-                dag.sub(one, square)
-            }
-            _ => continue,
-        };
-        let one = dag.constant(1.0);
-        nodes.push(dag.div(one, singular));
-        spans.push(origin[&id]);
-    }
-    (nodes, spans)
-}
-
-/// Overflow of sums and products is left out: the row itself tells of it.
-fn may_fail(dag: &Dag, node: &Node) -> bool {
-    match node {
-        Node::Unary(op, _) => matches!(
-            op,
-            Unary::Sqrt | Unary::Log | Unary::Exp | Unary::Tan | Unary::Asin | Unary::Acos | Unary::Sinh | Unary::Cosh
-        ),
-        Node::Binary(Binary::Div, _, divisor) => dag.is_constant(*divisor).is_none(),
-        Node::Binary(Binary::Pow, _, _) | Node::Table { .. } => true,
-        Node::Powi(_, exponent) => *exponent < 0,
-        _ => false,
     }
 }

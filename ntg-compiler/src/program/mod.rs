@@ -14,6 +14,7 @@ mod mission;
 mod names;
 mod pieces;
 mod points;
+mod probes;
 
 pub use lower::lower;
 

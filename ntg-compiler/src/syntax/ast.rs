@@ -250,15 +250,30 @@ pub struct Spline {
     pub span: Span,
 }
 
-/// `fn name(parameters) = body;`
+/// `fn name(parameters) [size] [unit] = body;`, or `{ ... }` in place of `= body;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Function {
     /// Its name.
     pub name: Ident,
     /// Its parameters, one at least.
-    pub parameters: Vec<Ident>,
+    pub parameters: Vec<Argument>,
+    /// The stated size of its value.
+    pub shape: Option<Shape>,
+    /// The stated unit of its value.
+    pub unit: Option<Unit>,
     /// Its value.
     pub body: Expr,
+}
+
+/// `v`, `v [m/s]`, `r[3] [m]`: a parameter of a function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Argument {
+    /// Its name.
+    pub name: Ident,
+    /// Its size, where it is stated; else any.
+    pub shape: Option<Shape>,
+    /// Its unit, where it is stated; else any.
+    pub unit: Option<Unit>,
 }
 
 /// `let name = value;`, `let name[i in 1 .. N] [unit] = value;`, `let name[3] = value;`

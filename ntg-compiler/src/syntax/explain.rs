@@ -11,6 +11,7 @@ use super::words::{ITEM_WORDS, LATER_WORDS, OTHER_ITEM_WORDS, is_reserved, neare
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 
+mod conditions;
 mod expected;
 
 use expected::Expected;
@@ -88,7 +89,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
     for part in statement {
         relates |= matches!(part, "==" | "<=" | ">=" | "<" | ">" | "!=");
     }
-    if relates {
+    if relates && word != "if" {
         let finding = Diagnostic::new(Code::Misplaced, token.span, "a constraint stands in no block");
         return finding.help("write it in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`");
     }
@@ -98,6 +99,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
         _ if matches!(word, "vector" | "matrix") => {
             finding.help("a vector is declared by its size: `output r[3]: ...`, `param J[3, 3] = ...`")
         }
+        _ if word == "if" => finding.help("an `if` is a value: `let y = if a <= b { ... } else { ... };`"),
         _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
         Some(meant) => finding.help(format!("did you mean `{meant}`?")),
         None => finding.help("a statement begins with a word such as `let`, `output`, `param` or `trajectory`"),
@@ -215,6 +217,9 @@ impl Here<'_> {
         let after_number = self.before.is_some_and(|token| token.kind == TokenKind::Number);
         if this == "**" {
             return Some("write `^` for a power".into());
+        }
+        if let Some(advice) = self.advice_on_conditions(this, before) {
+            return Some(advice.into());
         }
         if after_number && is_word {
             return Some(format!(

@@ -6,6 +6,7 @@
 //! wrong scope. After a finding the node holds something harmless, which no one sees.
 
 mod calls;
+mod conditions;
 mod constraints;
 mod declarations;
 mod expressions;

@@ -186,9 +186,12 @@ impl Walk<'_> {
     /// word that only a declaration begins with.
     fn next_statement(&self, body: Body, at: usize, end: usize) -> usize {
         let mut index = at;
+        let mut has_branches = false;
         while index < end {
             match self.text(index) {
                 ";" => return index + 1,
+                "if" => has_branches = true,
+                "{" if has_branches => index = self.closers[index],
                 "{" => {
                     return (self.closers[index] + 1 + usize::from(self.text(self.closers[index] + 1) == ";")).min(end);
                 }

@@ -102,7 +102,11 @@ structures! {
     Output { role, names, course }
     OutputName { name, shape, unit, bounds, span }
     Spline { order, intervals, knots, smoothness, span }
-    Function { name, parameters, body }
+    Function { name, parameters, shape, unit, body }
+    Argument { name, shape, unit }
+    Conditional { branches, otherwise }
+    Branch { condition, smooth, value, span }
+    Steps { lets, value }
     Let { name, shape, unit, value }
     Table { is_param, name, axes, unit, method, data }
     Axis { name, symmetry, unit, span }
@@ -194,6 +198,8 @@ impl Erase for ExprKind {
             Self::Product(x) => x.erase(),
             Self::Call(x) => x.erase(),
             Self::Reduce(x) => x.erase(),
+            Self::If(x) => x.erase(),
+            Self::Steps(x) => x.erase(),
             Self::Power(base, exponent) => {
                 base.erase();
                 exponent.erase();

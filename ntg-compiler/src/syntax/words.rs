@@ -26,12 +26,12 @@ pub const ITEM_WORDS: &[&str] = &[
 
 /// Words with a meaning in expressions, some of which also begin a declaration.
 pub const EXPRESSION_WORDS: &[&str] = &[
-    "der", "duration", "end", "final", "for", "in", "initial", "integral", "partial", "pi", "prod", "start", "sum",
-    "t", "tau",
+    "der", "duration", "end", "final", "for", "if", "in", "initial", "integral", "partial", "pi", "prod", "start",
+    "sum", "t", "tau",
 ];
 
 /// Words kept free for later versions of the language.
-pub const LATER_WORDS: &[&str] = &["at", "if", "import", "piecewise", "scale", "soft", "unit", "use"];
+pub const LATER_WORDS: &[&str] = &["at", "import", "scale", "soft", "unit", "use"];
 
 /// Words that Rust refuses as names even in their raw form.
 pub(crate) const NEVER_NAMES: &[&str] = &["Self", "crate", "self", "super"];

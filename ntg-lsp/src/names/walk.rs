@@ -287,8 +287,10 @@ impl Walk {
 
     fn function(&mut self, scope: usize, function: &Function, span: Span) {
         let before = self.locals.len();
+        self.size(scope, &function.shape);
         for parameter in &function.parameters {
-            let local = self.declare(scope, parameter, Kind::Argument, span, None, Some(span));
+            self.size(scope, &parameter.shape);
+            let local = self.declare(scope, &parameter.name, Kind::Argument, span, None, Some(span));
             self.locals.push(local);
         }
         self.in_function = true;
@@ -354,16 +356,7 @@ impl Walk {
             let doc = constraint.doc.as_ref().map(|doc| doc.text.clone());
             self.declare(scope, name, Kind::Constraint, constraint.span, doc, None);
         }
-        match &constraint.relation {
-            Relation::Compare { left, right, .. } => [left, right].into_iter().for_each(|e| self.expr(scope, e)),
-            Relation::Between { first, middle, last, .. } => {
-                [first, middle, last].into_iter().for_each(|e| self.expr(scope, e));
-            }
-            Relation::In { value, bounds } => {
-                self.expr(scope, value);
-                self.bounds(scope, bounds);
-            }
-        }
+        constraint.relation.sides().into_iter().for_each(|side| self.expr(scope, side));
     }
 
     fn guess(&mut self, scope: usize, guess: &GuessKind) {
@@ -397,6 +390,15 @@ impl Walk {
                 self.expr(scope, exponent);
             }
             ExprKind::Call(call) => self.call(scope, call),
+            ExprKind::If(conditional) => {
+                for branch in &conditional.branches {
+                    branch.condition.sides().into_iter().for_each(|side| self.expr(scope, side));
+                    branch.smooth.iter().for_each(|width| self.expr(scope, width));
+                    self.expr(scope, &branch.value);
+                }
+                self.expr(scope, &conditional.otherwise);
+            }
+            ExprKind::Steps(steps) => self.steps(scope, steps, expr.span),
             ExprKind::Der { of, order } => {
                 let (indices, in_function) = (self.indices.clone(), self.in_function);
                 self.names.derivatives.push(Derivative { span: expr.span, scope, indices, in_function });
@@ -417,6 +419,19 @@ impl Walk {
                 reduction.width.iter().for_each(|width| walk.expr(scope, width));
             }),
         }
+    }
+
+    /// Names for the steps of a value, each known in those behind it.
+    fn steps(&mut self, scope: usize, steps: &Steps, within: Span) {
+        let before = self.locals.len();
+        for step in &steps.lets {
+            self.named(scope, step, within);
+            let statement = step.name.span.to(step.value.span);
+            let local = self.declare(scope, &step.name, Kind::Step, statement, None, Some(within));
+            self.locals.push(local);
+        }
+        self.expr(scope, &steps.value);
+        self.locals.truncate(before);
     }
 
     fn call(&mut self, scope: usize, call: &Call) {

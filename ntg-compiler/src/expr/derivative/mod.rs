@@ -11,6 +11,7 @@
 mod forward;
 mod hessian;
 mod local;
+mod mask;
 mod pushing;
 mod reverse;
 mod rules;

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use super::DerivativeError;
 use super::hessian::Entry;
 use super::local::second_partials;
+use super::mask::{joined, masked};
 use super::reverse::active_nodes;
 use super::rules::{Rule, rule};
 use crate::expr::dag::Dag;
@@ -80,7 +81,7 @@ impl Sweep {
             for operand in &operands {
                 let share = rule.pull(dag, adjoint, *operand);
                 let total = match self.adjoints.get(operand) {
-                    Some(sum) => dag.add(*sum, share),
+                    Some(sum) => joined(dag, *sum, share),
                     None => share,
                 };
                 self.adjoints.insert(*operand, total);
@@ -117,7 +118,7 @@ impl Sweep {
         for p in operands {
             let mut share = rule.pull(dag, weight, *p);
             if *p == other {
-                share = dag.add(share, share); // The pair stood for both halves of the matrix.
+                share = joined(dag, share, share); // The pair stood for both halves of the matrix.
             }
             self.add(dag, *p, other, share);
         }
@@ -138,7 +139,7 @@ impl Sweep {
             return Ok(());
         }
         for second in second_partials(dag, id, operands)? {
-            let share = dag.mul(adjoint, second.value);
+            let share = masked(dag, adjoint, &mut |dag, adjoint| dag.mul(adjoint, second.value));
             self.add(dag, second.p, second.q, share);
         }
         Ok(())
@@ -148,12 +149,13 @@ impl Sweep {
     /// `c c / h`: free of cancellation, unlike the derivative of the quotient.
     fn create_for_hypot(&mut self, dag: &mut Dag, h: NodeId, (a, b): (NodeId, NodeId), adjoint: NodeId) {
         let (c, s) = (dag.div(a, h), dag.div(b, h));
-        let share = dag.div(adjoint, h);
         for (p, q, x, y, negative) in [(a, a, s, s, false), (a, b, c, s, true), (b, b, c, c, false)] {
             if self.is_active.contains(&p) && self.is_active.contains(&q) {
-                let product = dag.mul(x, y);
-                let second = dag.mul(share, product);
-                let second = if negative { dag.neg(second) } else { second };
+                let second = masked(dag, adjoint, &mut |dag, adjoint| {
+                    let (share, product) = (dag.div(adjoint, h), dag.mul(x, y));
+                    let second = dag.mul(share, product);
+                    if negative { dag.neg(second) } else { second }
+                });
                 self.add(dag, p, q, second);
             }
         }
@@ -165,7 +167,7 @@ impl Sweep {
             return;
         }
         let total = match self.edges.get(&p).and_then(|row| row.get(&q)) {
-            Some(sum) => dag.add(*sum, share),
+            Some(sum) => joined(dag, *sum, share),
             None => share,
         };
         self.edges.entry(p).or_default().insert(q, total);

@@ -1,6 +1,7 @@
 //! Reverse mode: all first derivatives of one root in one sweep (docs/maths.md, (2.2)).
 
 use super::DerivativeError;
+use super::mask::joined;
 use super::rules::rule;
 use crate::expr::dag::Dag;
 use crate::expr::hash::{Map, Set};
@@ -24,7 +25,7 @@ pub fn gradient(dag: &mut Dag, root: NodeId, wrt: &[InputId]) -> Result<Vec<Node
         for operand in rule.operands(|x| is_active.contains(&x)) {
             let share = rule.pull(dag, adjoint, operand);
             let total = match adjoints.get(&operand) {
-                Some(sum) => dag.add(*sum, share),
+                Some(sum) => joined(dag, *sum, share),
                 None => share,
             };
             adjoints.insert(operand, total);

@@ -4,6 +4,7 @@
 //! Takes a node, gives a [`Rule`]. Partial derivatives of one node share a divisor,
 //! which is divided by once: reverse mode divides the adjoint, forward mode the sum.
 
+use super::mask::masked;
 use crate::expr::dag::Dag;
 use crate::expr::node::{Binary, Node, NodeId, Unary};
 
@@ -37,8 +38,12 @@ impl Rule {
         all.into_iter().filter(|x| active(*x)).collect()
     }
 
-    /// `weight * d value / d operand`.
+    /// `weight * d value / d operand`, made behind the masks of the weight.
     pub(super) fn pull(&self, dag: &mut Dag, weight: NodeId, operand: NodeId) -> NodeId {
+        masked(dag, weight, &mut |dag, weight| self.pull_bare(dag, weight, operand))
+    }
+
+    fn pull_bare(&self, dag: &mut Dag, weight: NodeId, operand: NodeId) -> NodeId {
         match self {
             Self::Smooth { factors, divisor } => {
                 let Some((_, numerator)) = factors.iter().find(|(x, _)| *x == operand) else {

@@ -2,6 +2,7 @@
 //!
 //! See `ast` for what holds of these types.
 
+use super::{Let, Relation};
 use crate::source::Span;
 
 /// A name, in Unicode form NFC.
@@ -164,6 +165,41 @@ pub enum ExprKind {
     },
     /// `sum(i in 1 .. N, e)` and its sisters.
     Reduce(Box<Reduction>),
+    /// `if a <= b smooth w { ... } else { ... }`
+    If(Box<Conditional>),
+    /// `{ let a = ...; value }`: a value with names for its steps, as the body of a function or a branch.
+    Steps(Box<Steps>),
+}
+
+/// `if a <= b smooth w { ... } else if c <= d { ... } else { ... }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conditional {
+    /// What is tried in turn, one at least.
+    pub branches: Vec<Branch>,
+    /// The value where none of their conditions holds.
+    pub otherwise: Expr,
+}
+
+/// `if condition smooth width { value }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branch {
+    /// What decides; never a `Between`.
+    pub condition: Relation,
+    /// Over how much of what is compared the branch blends into the next one.
+    pub smooth: Option<Expr>,
+    /// The value where the condition holds.
+    pub value: Expr,
+    /// From `if` to the end of the condition.
+    pub span: Span,
+}
+
+/// `{ let a = ...;  let b = ...;  value }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Steps {
+    /// The names, each known in those behind it; one at least.
+    pub lets: Vec<Let>,
+    /// The value.
+    pub value: Expr,
 }
 
 /// A number with its unit.

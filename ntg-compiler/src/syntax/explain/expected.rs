@@ -173,6 +173,10 @@ fn kind(rule: Rule) -> Kind {
         | R::number
         | R::numeral
         | R::parenthesis
+        | R::conditional
+        | R::branch
+        | R::kw_if
+        | R::condition
         | R::call
         | R::callee
         | R::word
@@ -185,6 +189,7 @@ fn kind(rule: Rule) -> Kind {
         | R::event
         | R::event_word => Kind::Expression,
         R::name
+        | R::argument
         | R::segment
         | R::axis
         | R::axis_name
@@ -214,7 +219,7 @@ fn kind(rule: Rule) -> Kind {
 fn mark(rule: Rule) -> Kind {
     use Rule as R;
     match rule {
-        R::left_brace | R::rows | R::head_end => Kind::Mark("{"),
+        R::left_brace | R::value_block | R::rows | R::head_end => Kind::Mark("{"),
         R::right_brace => Kind::Mark("}"),
         R::left_parenthesis | R::settings => Kind::Mark("("),
         R::right_parenthesis => Kind::Mark(")"),
@@ -231,6 +236,7 @@ fn mark(rule: Rule) -> Kind {
         R::extent => Kind::Mark("="),
         R::after => Kind::Keyword("after".into()),
         R::spline => Kind::Keyword("spline".into()),
+        R::smoothness => Kind::Keyword("smooth".into()),
         R::course => Kind::Keyword("held".into()),
         R::method => Kind::Name,
         R::place

@@ -248,7 +248,7 @@ impl Writer<'_> {
 /// What stands in a block that begins with that word.
 fn body(word: &str) -> Body {
     match word {
-        "problem" | "phase" | "agent" => Body::Items,
+        "problem" | "phase" | "agent" | "fn" => Body::Items,
         "table" => Body::Rows,
         _ => Body::Statements,
     }

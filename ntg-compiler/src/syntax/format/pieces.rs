@@ -46,8 +46,13 @@ pub(super) struct Piece {
     pub(super) breaks: usize,
     /// Its first column, in characters from 0.
     pub(super) column: usize,
-    /// For a bracket, where its partner is.
+    /// Its first byte and the one behind its last, in the text.
+    start: u32,
+    end: u32,
+    /// For a bracket, where its partner is; for the `if` of a conditional, its last brace.
     pub(super) partner: usize,
+    /// For an `if`, whether a conditional begins here; for `smooth`, whether it is the keyword.
+    pub(super) is_keyword: bool,
     /// For a `(`, whether it opens a parenthesis of an expression, and no list of arguments.
     pub(super) is_parenthesis: bool,
 }
@@ -96,6 +101,12 @@ impl Pieces {
                 _ => {}
             }
         }
+        for at in 0..list.len() {
+            if let Some(end) = list[at].is_keyword.then(|| roles.conditionals.get(&list[at].start)).flatten() {
+                let last = (at..list.len()).find(|last| list[*last].kind == Kind::Close && list[*last].end == *end);
+                list[at].partner = last.expect("a conditional ends with a brace");
+            }
+        }
         Self { list }
     }
 
@@ -108,7 +119,12 @@ impl Pieces {
         range.contains(&at).then(|| &self.list[at])
     }
 
-    /// The places of a range that no bracket inside it encloses, brackets that open there included.
+    /// Whether a whole `if .. else ..` begins there.
+    pub(super) fn is_conditional(&self, at: usize) -> bool {
+        self.list[at].is_keyword && self.list[at].partner > at
+    }
+
+    /// The places of a range that no bracket or `if` inside it encloses, those that open there included.
     pub(super) fn outer(&self, range: Range<usize>) -> impl Iterator<Item = usize> {
         let mut next = range.start;
         std::iter::from_fn(move || {
@@ -116,7 +132,8 @@ impl Pieces {
             if at >= range.end {
                 return None;
             }
-            next = if self.list[at].kind == Kind::Open { self.list[at].partner + 1 } else { at + 1 };
+            let opens = self.list[at].kind == Kind::Open || self.is_conditional(at);
+            next = if opens { self.list[at].partner + 1 } else { at + 1 };
             Some(at)
         })
     }
@@ -139,6 +156,10 @@ struct Roles {
     units: HashMap<u32, u32>,
     signs: HashSet<u32>,
     parentheses: HashSet<u32>,
+    /// Where conditionals begin and end.
+    conditionals: HashMap<u32, u32>,
+    /// Where `smooth` is the keyword.
+    smooth: HashSet<u32>,
 }
 
 impl Roles {
@@ -149,6 +170,11 @@ impl Roles {
             match pair.as_rule() {
                 Rule::unit => _ = roles.units.insert(span.start, span.end),
                 Rule::minus => _ = roles.signs.insert(span.start),
+                Rule::conditional => {
+                    let end = span.start as usize + pair.as_str().trim_end().len();
+                    roles.conditionals.insert(span.start, Span::new(end, end).end);
+                }
+                Rule::kw_smooth => _ = roles.smooth.insert(span.start),
                 Rule::parenthesis => _ = roles.parentheses.insert(span.start),
                 _ => {}
             }
@@ -206,7 +232,10 @@ fn merged(text: &str, scan: &Scan, roles: &Roles) -> Vec<Piece> {
                 text: written.to_owned(),
                 breaks: gap.matches('\n').count().max(carried).min(2),
                 column: text[line.min(start)..start].chars().count(),
+                start: span.start,
+                end: span.end,
                 partner: 0,
+                is_keyword: roles.conditionals.contains_key(&span.start) || roles.smooth.contains(&span.start),
                 is_parenthesis: roles.parentheses.contains(&span.start),
             };
             carried = push(&mut pieces, piece);

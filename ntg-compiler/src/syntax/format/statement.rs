@@ -9,6 +9,8 @@ use std::ops::Range;
 use super::layout::{Fit, Op};
 use super::pieces::{Kind, Pieces};
 
+mod conditional;
+
 /// The stream of a statement, with its `;` if it has one.
 pub(super) fn statement(pieces: &Pieces, mut range: Range<usize>) -> Vec<Op> {
     let mut stream = Stream { pieces, ops: vec![] };
@@ -118,10 +120,13 @@ impl Stream<'_> {
         self.operators(range.start..signs[0]);
         self.ops.push(Op::Indent);
         for (i, sign) in signs.iter().enumerate() {
-            if *sign > range.start {
+            let end = signs.get(i + 1).copied().unwrap_or(range.end);
+            // The braces of an `if` in parentheses break by themselves.
+            if *sign > range.start && self.holds_conditional(sign + 1..end) {
+                self.space();
+            } else if *sign > range.start {
                 self.ops.push(Op::Break(true));
             }
-            let end = signs.get(i + 1).copied().unwrap_or(range.end);
             self.text(&self.pieces[*sign].text.clone());
             let operand = self.behind(*sign, end);
             if operand < end {
@@ -154,6 +159,7 @@ impl Stream<'_> {
                 self.space();
             }
             match piece.kind {
+                _ if self.pieces.is_conditional(at) => self.conditional(at),
                 Kind::Open => self.brackets(at),
                 Kind::LineComment | Kind::BlockComment => self.comment(at),
                 _ => self.text(&piece.text.clone()),
@@ -214,6 +220,11 @@ impl Stream<'_> {
         let commas = self.commas(&inside);
         // Numbers run on like words; anything longer gets a line of its own where one is not enough.
         let is_run = !commas.is_empty() && self.pieces.outer(inside.clone()).all(|at| self.is_short(at));
+        if self.holds_conditional(open..close + 1) {
+            self.text("(");
+            self.atoms(inside);
+            return self.text(")");
+        }
         self.ops.push(Op::Open(if is_run { Fit::Fill } else { Fit::All }));
         self.text(&self.pieces[open].text.clone());
         let mut start = self.behind(open, close);

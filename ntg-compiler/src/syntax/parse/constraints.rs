@@ -52,17 +52,17 @@ impl Build {
             let end = bounds.span;
             (Relation::In { value: first, bounds }, end)
         } else {
-            self.chain(first, parts)
+            self.chain(first, parts, "constraints")
         };
         Constraint { doc, name, relation, span: start.to(end) }
     }
 
     /// `a <= b`, `a <= b <= c`, and everything like it that must be refused.
-    fn chain(&mut self, first: Expr, mut parts: Parts<'_>) -> (Relation, Span) {
+    pub(super) fn chain(&mut self, first: Expr, mut parts: Parts<'_>, of: &str) -> (Relation, Span) {
         let mut signs: Vec<Sign> = vec![];
         let mut others: Vec<Expr> = vec![];
         while let Some(pair) = parts.optional(Rule::relation) {
-            signs.push(self.relation(&pair));
+            signs.push(self.relation(&pair, of));
             others.push(self.expression(parts.required(Rule::expression)));
         }
         let all = others.last().map_or(first.span, |last| first.span.to(last.span));
@@ -83,7 +83,7 @@ impl Build {
         (relation, all)
     }
 
-    fn relation(&mut self, pair: &Pair<'_>) -> Sign {
+    fn relation(&mut self, pair: &Pair<'_>, of: &str) -> Sign {
         use Comparison::{AtLeast, AtMost, Equal};
         let span = self.span(pair);
         let (meant, help) = match pair.as_str() {
@@ -97,7 +97,7 @@ impl Build {
             "=" => (Equal, "write `==`"),
             _ => (Equal, "say which side is meant, with `<=` or `>=`"),
         };
-        let message = format!("`{}` is not a relation of constraints", pair.as_str());
+        let message = format!("`{}` is not a relation of {of}", pair.as_str());
         self.report(Code::WrongRelation, span, message, help);
         (meant, span)
     }

@@ -4,8 +4,8 @@ use super::Build;
 use super::parts::Parts;
 use super::shapes::Indices;
 use crate::syntax::ast::{
-    Const, Continuation, Course, Function, Let, Objective, Output, OutputName, Param, Role, Sense, Spline, Unit,
-    Variable,
+    Argument, Const, Continuation, Course, Function, Let, Objective, Output, OutputName, Param, Role, Sense, Spline,
+    Unit, Variable,
 };
 use crate::syntax::grammar::{Pair, Rule};
 
@@ -102,10 +102,24 @@ impl Build {
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
         let mut parameters = vec![];
-        while let Some(pair) = parts.optional(Rule::name) {
-            parameters.push(self.name(&pair));
+        while let Some(pair) = parts.optional(Rule::argument) {
+            parameters.push(self.argument(pair));
         }
-        Function { name, parameters, body: self.expression(parts.required(Rule::expression)) }
+        let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::Refused));
+        let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
+        let body = match parts.optional(Rule::value_block) {
+            Some(block) => self.value_block(block),
+            None => self.expression(parts.required(Rule::expression)),
+        };
+        Function { name, parameters, shape, unit, body }
+    }
+
+    fn argument(&mut self, pair: Pair<'_>) -> Argument {
+        let mut parts = Parts::of(pair);
+        let name = self.name(&parts.required(Rule::name));
+        let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::Refused));
+        let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
+        Argument { name, shape, unit }
     }
 
     pub(super) fn named(&mut self, pair: Pair<'_>) -> Let {

@@ -53,6 +53,7 @@ impl Build {
         let kind = match pair.as_rule() {
             Rule::number => ExprKind::Number(self.number(pair)),
             Rule::parenthesis => return self.parenthesis(pair),
+            Rule::conditional => ExprKind::If(Box::new(self.conditional(pair))),
             Rule::call => self.call(pair),
             Rule::word => word(pair.as_str()),
             _ => ExprKind::Path(self.path(pair)),

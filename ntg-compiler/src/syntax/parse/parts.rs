@@ -83,10 +83,12 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_continuation
             | R::kw_continuous
             | R::kw_duration
+            | R::kw_else
             | R::kw_fn
             | R::kw_for
             | R::kw_from
             | R::kw_guess
+            | R::kw_if
             | R::kw_in
             | R::kw_input
             | R::kw_jump
@@ -95,6 +97,7 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_param
             | R::kw_phase
             | R::kw_problem
+            | R::kw_smooth
             | R::kw_spline
             | R::kw_start
             | R::kw_state

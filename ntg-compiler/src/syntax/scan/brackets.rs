@@ -1,7 +1,7 @@
 //! Which bracket closes which, how deep they nest, and which one was forgotten.
 //!
-//! A `(` or `[` never spans a `;` or a brace in this language, so one that does was forgotten, and the rest
-//! of the spec can still be read. A forgotten `}` shows only at the end of the text; the opener to
+//! A `(` or `[` never spans a `;` or a brace in this language, those of an `if` excepted, so one that does was
+//! forgotten, and the rest of the spec can still be read. A forgotten `}` shows only at the end of the text; the opener to
 //! blame is then the one inside which something began that may not stand there.
 
 use super::{MAX_DEPTH, MAX_FINDINGS, Token, TokenKind};
@@ -13,8 +13,9 @@ use crate::syntax::words::ITEM_WORDS;
 #[derive(Default)]
 pub(super) struct Brackets {
     open: Vec<Frame>,
-    /// The chain outside all brackets.
+    /// The chain and the conditions outside all brackets.
     outer_chain: usize,
+    outer_ifs: usize,
     /// Brackets and chains together.
     depth: usize,
     /// The last token.
@@ -34,6 +35,8 @@ struct Frame {
     head: Option<Span>,
     /// How many unary minus signs and `^` wait for their operand.
     chain: usize,
+    /// How many `if` wait for the brace of their branch.
+    ifs: usize,
 }
 
 impl Brackets {
@@ -41,7 +44,7 @@ impl Brackets {
     pub(super) fn token(&mut self, token: Token, text: &str, clean: &mut [u8], found: &mut Vec<Diagnostic>) {
         let byte = text.as_bytes()[token.span.start as usize];
         match token.kind {
-            TokenKind::Open => self.open(byte, token.span, found),
+            TokenKind::Open => self.open(byte, (token.span, text), found),
             TokenKind::Close => {
                 if !self.close(byte, token.span, found) && byte != b'}' {
                     clean[token.span.start as usize] = b' ';
@@ -68,10 +71,11 @@ impl Brackets {
         self.suspects.truncate(missing);
         let rest = missing - self.suspects.len();
         // What no suspicion explains is blamed on the innermost braces.
-        let openers = self.open.iter().rev().map(|frame| frame.span).take(rest);
-        let blamed: Vec<Span> = self.suspects.iter().copied().chain(openers).collect();
-        for span in blamed {
-            let finding = unclosed(span, "{").label(Span::new(end, end), "the text ends here");
+        let openers = self.open.iter().rev().map(|frame| (frame.span, frame.opener)).take(rest);
+        let blamed: Vec<(Span, u8)> = self.suspects.iter().map(|span| (*span, b'{')).chain(openers).collect();
+        for (span, opener) in blamed {
+            let finding =
+                unclosed(span, &(opener as char).to_string()).label(Span::new(end, end), "the text ends here");
             report(found, finding);
         }
         missing > 0 || self.unmatched_brace
@@ -82,14 +86,32 @@ impl Brackets {
         self.too_deep
     }
 
-    fn open(&mut self, opener: u8, span: Span, found: &mut Vec<Diagnostic>) {
+    fn open(&mut self, opener: u8, (span, text): (Span, &str), found: &mut Vec<Diagnostic>) {
         let mut head = None;
-        if opener == b'{' {
+        if opener == b'{' && !self.begins_branch(text, found) {
             self.drop_parentheses(found);
             head = self.first_word.take();
         }
-        self.open.push(Frame { opener, span, head, chain: 0 });
+        self.open.push(Frame { opener, span, head, chain: 0, ifs: 0 });
         self.depth += 1;
+    }
+
+    /// Whether a brace opens a branch of an `if`; brackets inside its condition were forgotten then.
+    fn begins_branch(&mut self, text: &str, found: &mut Vec<Diagnostic>) -> bool {
+        if self.last.is_some_and(|last| &text[last.span.start as usize..last.span.end as usize] == "else") {
+            return true;
+        }
+        let inside = self.open.iter().rev().take_while(|frame| frame.opener != b'{').count();
+        let waits = self.open.iter().rev().take(inside + 1).position(|frame| frame.ifs > 0);
+        if waits.is_none() && (self.outer_ifs == 0 || inside < self.open.len()) {
+            return false;
+        }
+        for _ in 0..waits.unwrap_or(inside) {
+            self.drop_top(found);
+        }
+        *self.open.last_mut().map_or(&mut self.outer_ifs, |frame| &mut frame.ifs) -= 1;
+        self.depth -= 1;
+        true
     }
 
     /// Gives whether the bracket closes anything.
@@ -122,6 +144,10 @@ impl Brackets {
 
     fn word(&mut self, span: Span, text: &str) {
         let word = |span: Span| &text[span.start as usize..span.end as usize];
+        if word(span) == "if" {
+            *self.open.last_mut().map_or(&mut self.outer_ifs, |frame| &mut frame.ifs) += 1;
+            self.depth += 1;
+        }
         if !self.at_statement_start(text) {
             return;
         }
@@ -133,6 +159,7 @@ impl Brackets {
             "phase" => matches!(this, "phase" | "agent" | "problem"),
             "agent" => matches!(this, "agent" | "problem"),
             "problem" => this == "problem",
+            "fn" => this != "let" && ITEM_WORDS.contains(&this),
             _ => {
                 let block =
                     matches!(this, "initial" | "final") && text[span.end as usize..].trim_start().starts_with('{');
@@ -155,6 +182,7 @@ impl Brackets {
         if byte == b';' {
             self.drop_parentheses(found);
             self.first_word = None;
+            self.depth -= std::mem::take(self.open.last_mut().map_or(&mut self.outer_ifs, |frame| &mut frame.ifs));
         }
         let chain = self.open.last_mut().map_or(&mut self.outer_chain, |frame| &mut frame.chain);
         if nests {
@@ -181,7 +209,7 @@ impl Brackets {
 
     fn pop(&mut self) -> Option<Frame> {
         let frame = self.open.pop()?;
-        self.depth -= 1 + frame.chain;
+        self.depth -= 1 + frame.chain + frame.ifs;
         Some(frame)
     }
 

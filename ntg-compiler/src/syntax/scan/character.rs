@@ -63,6 +63,7 @@ fn advice(c: char) -> (&'static str, String) {
         '#' => ("", "comments begin with `//`"),
         '@' => ("*", "write `*`, which is the product of matrices too"),
         '!' => ("", "write each constraint with `==`, `<=` or `>=`"),
+        '?' => ("", "write `if a <= b { ... } else { ... }`"),
         '&' => ("", "write two statements: all of them hold"),
         '|' => ("", "write `abs(x)` for a magnitude"),
         _ if c.is_whitespace() || c.is_control() => ("", "write an ordinary blank"),

@@ -1,0 +1,114 @@
+//! What to look at when a value is not finite.
+//!
+//! Takes the values of a kernel, gives the subexpressions that can fail, each with its place. A part of a branch counts
+//! where that branch is taken only: elsewhere it may have no value, and nothing is wrong.
+
+use std::collections::HashMap;
+
+use crate::expr::{Binary, Dag, Node, NodeId, Unary};
+use crate::source::Span;
+
+/// A branch: a condition, and whether it holds.
+type Guard = (NodeId, bool);
+
+/// In how many branches a part may stand; one that stands in more is not looked at.
+const MOST_BRANCHES: usize = 4;
+
+/// In which branches each node is needed: none for those needed everywhere.
+struct Guards(HashMap<NodeId, Vec<Vec<Guard>>>); // Looked up, never iterated.
+
+impl Guards {
+    fn of(dag: &Dag, roots: &[NodeId]) -> Self {
+        let mut all: HashMap<NodeId, Vec<Vec<Guard>>> = roots.iter().map(|root| (*root, vec![vec![]])).collect();
+        for id in dag.schedule(roots).into_iter().rev() {
+            let own = all.get(&id).cloned().unwrap_or_default();
+            let mut need = |operand: NodeId, guard: Option<Guard>| {
+                let known = all.entry(operand).or_default();
+                for branch in &own {
+                    let mut branch = branch.clone();
+                    branch.extend(guard);
+                    if !known.contains(&branch) && known.len() <= MOST_BRANCHES {
+                        known.push(branch);
+                    }
+                }
+                if known.iter().any(Vec::is_empty) {
+                    *known = vec![vec![]];
+                }
+            };
+            match dag.node(id) {
+                Node::Select { condition, then, otherwise } => {
+                    need(*condition, None);
+                    need(*then, Some((*condition, true)));
+                    need(*otherwise, Some((*condition, false)));
+                }
+                node => node.for_each_operand(|operand| need(operand, None)),
+            }
+        }
+        Self(all)
+    }
+
+    /// `probe` where the node is needed, and 0 elsewhere; none where that is too much to ask.
+    fn around(&self, dag: &mut Dag, id: NodeId, probe: NodeId) -> Option<NodeId> {
+        let branches = self.0.get(&id)?;
+        if branches.len() > MOST_BRANCHES {
+            return None;
+        }
+        let zero = dag.constant(0.0);
+        let masked = branches.iter().map(|guards| {
+            guards.iter().rev().fold(probe, |inner, (condition, holds)| match holds {
+                true => dag.select(*condition, inner, zero),
+                false => dag.select(*condition, zero, inner),
+            })
+        });
+        let masked: Vec<NodeId> = masked.collect();
+        Some(match masked.as_slice() {
+            [only] => *only,
+            several => dag.sum(several),
+        })
+    }
+}
+
+/// Operations that can give infinity or NaN from finite operands: first their values, then the
+/// factors in which their derivatives are singular.
+pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (Vec<NodeId>, Vec<Span>) {
+    // What the compiler has made itself, such as `1 / T`, is of no help to a person.
+    let guards = Guards::of(dag, values);
+    let schedule: Vec<NodeId> = dag.schedule(values).into_iter().filter(|id| origin.contains_key(id)).collect();
+    let (mut nodes, mut spans) = (Vec::new(), Vec::new());
+    for id in &schedule {
+        if may_fail(dag, dag.node(*id)) {
+            nodes.extend(guards.around(dag, *id, *id));
+            spans.resize(nodes.len(), origin[id]);
+        }
+    }
+    for id in schedule {
+        let singular = match *dag.node(id) {
+            Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, _, _) => id,
+            Node::Unary(Unary::Asin | Unary::Acos, a) => {
+                let square = dag.powi(a, 2);
+                let one = dag.constant(1.0);
+                dag.sub(one, square)
+            }
+            _ => continue,
+        };
+        let one = dag.constant(1.0);
+        let inverse = dag.div(one, singular);
+        nodes.extend(guards.around(dag, id, inverse));
+        spans.resize(nodes.len(), origin[&id]);
+    }
+    (nodes, spans)
+}
+
+/// Overflow of sums and products is left out: the row itself tells of it.
+fn may_fail(dag: &Dag, node: &Node) -> bool {
+    match node {
+        Node::Unary(op, _) => matches!(
+            op,
+            Unary::Sqrt | Unary::Log | Unary::Exp | Unary::Tan | Unary::Asin | Unary::Acos | Unary::Sinh | Unary::Cosh
+        ),
+        Node::Binary(Binary::Div, _, divisor) => dag.is_constant(*divisor).is_none(),
+        Node::Binary(Binary::Pow, _, _) | Node::Table { .. } => true,
+        Node::Powi(_, exponent) => *exponent < 0,
+        _ => false,
+    }
+}
