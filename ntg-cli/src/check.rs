@@ -4,6 +4,7 @@ mod json;
 
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
 use ntg_compiler::source::Source;
+use ntg_compiler::syntax::{self, FileKind};
 use serde_json::Value;
 
 use crate::arguments::{self, Format};
@@ -14,8 +15,10 @@ use crate::{Exit, files::BesideSpec};
 struct Checked {
     /// What it is called in messages.
     name: String,
-    /// The problem's name; none where it is not well formed.
+    /// The problem's name; none where it is not well formed, and in a library.
     problem: Option<String>,
+    /// Whether it is a library without errors.
+    is_library: bool,
     /// Its text as far as it could be read, and what was found in it.
     found: Option<(Source, Vec<Diagnostic>)>,
     /// Why it could not be read.
@@ -35,23 +38,43 @@ pub(crate) fn run(arguments: &arguments::Check) -> Exit {
         Format::Text => checked.iter().for_each(text),
         Format::Json => files::print(&format!("{:#}", json::document(&checked))),
     }
-    let is_good = checked.iter().all(|spec| spec.problem.is_some());
+    let is_good = checked.iter().all(Checked::is_good);
     if is_good { Exit::Done } else { Exit::Bad }
+}
+
+impl Checked {
+    fn is_good(&self) -> bool {
+        self.problem.is_some() || self.is_library
+    }
 }
 
 fn check(read: Result<(Source, BesideSpec), Failure>) -> Checked {
     match read {
+        Ok((source, loader)) if syntax::file_kind(&source) == FileKind::Library => {
+            let found = ntg_compiler::check_library(&source, &loader);
+            let is_library = found.iter().all(|finding| finding.severity != Severity::Error);
+            Checked { name: source.name.clone(), problem: None, is_library, found: Some((source, found)), unread: None }
+        }
         Ok((source, loader)) => {
             let (problem, found) = match ntg_compiler::compile(&source, &loader) {
                 Ok(compiled) => (Some(compiled.program.structure.name), compiled.notes),
                 Err(found) => (None, found.into_iter().collect()),
             };
-            Checked { name: source.name.clone(), problem, found: Some((source, found)), unread: None }
+            Checked {
+                name: source.name.clone(),
+                problem,
+                is_library: false,
+                found: Some((source, found)),
+                unread: None,
+            }
         }
         Err(Failure::NotText(source, finding)) => {
-            Checked { name: source.name.clone(), problem: None, found: Some((source, vec![*finding])), unread: None }
+            let (name, found) = (source.name.clone(), Some((source, vec![*finding])));
+            Checked { name, problem: None, is_library: false, found, unread: None }
         }
-        Err(Failure::Unread { name, message }) => Checked { name, problem: None, found: None, unread: Some(message) },
+        Err(Failure::Unread { name, message }) => {
+            Checked { name, problem: None, is_library: false, found: None, unread: Some(message) }
+        }
     }
 }
 
@@ -65,6 +88,7 @@ fn text(checked: &Checked) {
     }
     match &checked.problem {
         Some(problem) => files::print(&format!("{}: `{problem}` is well formed", checked.name)),
+        None if checked.is_library => files::print(&format!("{}: a library, well formed", checked.name)),
         None => {
             let errors = |found: &[Diagnostic]| found.iter().filter(|f| f.severity == Severity::Error).count();
             let errors = checked.found.as_ref().map_or(1, |(_, found)| errors(found));

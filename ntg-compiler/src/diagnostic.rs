@@ -12,6 +12,8 @@ mod render;
 
 pub use code::Code;
 
+use std::sync::Arc;
+
 use crate::source::{Source, Span};
 
 /// How grave a finding is.
@@ -41,6 +43,19 @@ pub struct Diagnostic {
     pub labels: Vec<(Span, String)>,
     /// What to write instead, in the user's own names.
     pub help: Option<String>,
+    /// Places in libraries, each library once.
+    pub libraries: Vec<InLibrary>,
+}
+
+/// Places of a finding that lie in a library.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InLibrary {
+    /// The library's text.
+    pub source: Arc<Source>,
+    /// What the finding is about, if it is about this library; its own `span` is then where the spec uses it.
+    pub span: Option<Span>,
+    /// Other places that matter, and why.
+    pub labels: Vec<(Span, String)>,
 }
 
 /// One or more findings, in source order. Never empty: the type of "it failed".
@@ -50,7 +65,15 @@ pub struct Diagnostics(Vec<Diagnostic>);
 impl Diagnostic {
     /// A finding without labels or help; its severity is the one of the code's letter.
     pub fn new(code: Code, span: Span, message: impl Into<String>) -> Self {
-        Self { code, severity: code.severity(), message: message.into(), span, labels: vec![], help: None }
+        Self {
+            code,
+            severity: code.severity(),
+            message: message.into(),
+            span,
+            labels: vec![],
+            help: None,
+            libraries: vec![],
+        }
     }
 
     /// What to write instead, in the user's own names.
@@ -64,6 +87,13 @@ impl Diagnostic {
     #[must_use]
     pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push((span, text.into()));
+        self
+    }
+
+    /// The same for a text that begins at byte `base`.
+    pub(crate) fn shifted(mut self, base: usize) -> Self {
+        self.span = self.span.shifted(base);
+        self.labels.iter_mut().for_each(|(span, _)| *span = span.shifted(base));
         self
     }
 

@@ -15,6 +15,7 @@ pub mod expr;
 pub mod model;
 pub mod program;
 pub mod source;
+pub mod standard;
 pub mod syntax;
 
 use diagnostic::{Diagnostic, Diagnostics, Severity};
@@ -29,6 +30,11 @@ pub struct Compiled {
     pub program: Program,
     /// What the user should know though nothing is wrong: gradients that may jump, fits of tables.
     pub notes: Vec<Diagnostic>,
+}
+
+/// Everything found in a library by itself; errors are among them where it cannot be used.
+pub fn check_library(source: &Source, loader: &dyn Loader) -> Vec<Diagnostic> {
+    model::check_library(source, loader)
 }
 
 /// Compiles a spec.

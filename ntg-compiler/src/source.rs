@@ -114,6 +114,12 @@ impl Span {
         Self { start: self.start.min(other.start), end: self.end.max(other.end) }
     }
 
+    /// The same span in a text that begins at byte `base`.
+    #[must_use]
+    pub(crate) fn shifted(self, base: usize) -> Self {
+        Self::new(self.start as usize + base, self.end as usize + base)
+    }
+
     /// Whether `other` lies within this span.
     pub fn contains(self, other: Self) -> bool {
         self.start <= other.start && other.end <= self.end

@@ -306,7 +306,7 @@ fn tokens(text: &str) -> Vec<String> {
         let mut rest = line.split("//").next().unwrap_or("").trim();
         while let Some(first) = rest.chars().next() {
             let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '\u{307}';
-            let joined = ["..", "==", "<=", ">="].iter().find(|joined| rest.starts_with(**joined));
+            let joined = ["..", "==", "<=", ">=", "::"].iter().find(|joined| rest.starts_with(**joined));
             let string = rest.starts_with('"').then(|| rest[1..].find('"').map_or(rest.len(), |end| end + 2));
             // Numbers with a fraction or an exponent are one token.
             let number = first.is_ascii_digit().then(|| {

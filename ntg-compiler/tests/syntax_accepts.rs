@@ -387,7 +387,7 @@ fn rough_tokens(text: &str) -> Vec<(String, bool)> {
             }
         } else if rest.starts_with(|c: char| c.is_alphabetic()) {
             end_of(|c| c.is_alphanumeric() || c == '_' || c == '\u{307}')
-        } else if ["..", "==", "<=", ">="].iter().any(|joint| rest.starts_with(joint)) {
+        } else if ["..", "==", "<=", ">=", "::"].iter().any(|joint| rest.starts_with(joint)) {
             2
         } else {
             rest.chars().next().map_or(1, char::len_utf8)

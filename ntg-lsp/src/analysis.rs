@@ -11,8 +11,10 @@ use ntg_compiler::diagnostic::{Diagnostic, Severity};
 use ntg_compiler::model::Loader;
 use ntg_compiler::model::problem::Problem;
 use ntg_compiler::source::{Source, Span};
-use ntg_compiler::syntax::{self, ast::Spec};
+use ntg_compiler::syntax::ast::{Library, Spec};
+use ntg_compiler::syntax::{self, FileKind};
 
+use crate::libraries::{self, Used};
 use crate::lines::Lines;
 use crate::names::Names;
 
@@ -43,6 +45,8 @@ pub struct Analysis {
     pub problem: Option<Problem>,
     /// The syntax tree, if nothing is wrong with the syntax.
     whole: Option<Spec>,
+    /// The same of a library.
+    library: Option<Library>,
     names: OnceCell<Names>,
     loader: Beside,
 }
@@ -52,6 +56,12 @@ impl Analysis {
     pub fn new(name: &str, text: String, loader: Beside) -> Self {
         let source = Source::new(name, text);
         let lines = Lines::new(&source.text);
+        if syntax::file_kind(&source) == FileKind::Library {
+            let found = ntg_compiler::check_library(&source, &loader);
+            let library = syntax::parse_library(&source, 0).ok();
+            let (names, problem, whole) = (OnceCell::new(), None, None);
+            return Self { source, lines, found, problem, whole, library, names, loader };
+        }
         let (whole, problem, found) = match syntax::parse(&source) {
             Ok(spec) => {
                 let (problem, found) = ntg_compiler::model::build(&spec, &source, &loader);
@@ -59,15 +69,21 @@ impl Analysis {
             }
             Err(found) => (None, None, found.into_iter().collect()),
         };
-        Self { source, lines, found, problem, whole, names: OnceCell::new(), loader }
+        Self { source, lines, found, problem, whole, library: None, names: OnceCell::new(), loader }
     }
 
     /// Its names, as far as it can be read.
     pub fn names(&self) -> &Names {
-        self.names.get_or_init(|| match &self.whole {
-            Some(spec) => Names::of(spec),
-            None => readable(&self.source).as_ref().map(Names::of).unwrap_or_default(),
+        self.names.get_or_init(|| match (&self.whole, &self.library) {
+            (Some(spec), _) => Names::of(spec),
+            (None, Some(library)) => Names::of_library(library, self.source.span()),
+            (None, None) => readable(&self.source).as_ref().map(Names::of).unwrap_or_default(),
         })
+    }
+
+    /// The libraries that the text uses.
+    pub fn uses(&self) -> Vec<Used> {
+        libraries::used(&self.source, &self.loader)
     }
 
     /// Where the files are that the spec names.

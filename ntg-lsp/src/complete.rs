@@ -2,9 +2,13 @@
 
 use lsp_types::{CompletionItem, CompletionItemKind};
 use ntg_compiler::model::tools;
+use ntg_compiler::source::Source;
+use ntg_compiler::standard;
+use ntg_compiler::syntax::ast::ItemKind;
 use ntg_compiler::syntax::{EXPRESSION_WORDS, ITEM_WORDS, OTHER_ITEM_WORDS};
 
 use crate::analysis::Analysis;
+use crate::libraries;
 use crate::names::Kind;
 
 /// The proposals at a byte.
@@ -17,15 +21,74 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
     if is_in_unit(text, start) {
         return tools::unit_symbols().map(unit).collect();
     }
+    if let Some(items) = of_libraries(analysis, start) {
+        return items;
+    }
     let mut items = names(analysis, byte);
     if text[..start].trim_end().ends_with([';', '{', '}']) || text[..start].trim().is_empty() {
+        items.push(keyword("use"));
         items.extend(ITEM_WORDS.iter().chain(OTHER_ITEM_WORDS).chain(&["for"]).map(|word| keyword(word)));
     } else {
         items.extend(EXPRESSION_WORDS.iter().map(|word| keyword(word)));
         items.extend(["else", "smooth", "spline", "held", "gauss", "uniform", "after", "through", "from"].map(keyword));
     }
+    for used in analysis.uses() {
+        items.push(CompletionItem {
+            label: used.name.clone(),
+            kind: Some(CompletionItemKind::MODULE),
+            detail: Some(format!("the library `{}`: `{}::...`", used.source.name, used.name)),
+            ..CompletionItem::default()
+        });
+    }
     items.extend(tools::functions().map(function));
     items
+}
+
+/// The names behind `std::` or behind a library and `::`.
+fn of_libraries(analysis: &Analysis, start: usize) -> Option<Vec<CompletionItem>> {
+    let text = &analysis.source.text;
+    let is_use = statement(text, start).trim_start().starts_with("use");
+    // In the braces of a `use` the library stands before them.
+    let open = statement_of_use(text, start);
+    if is_use && libraries::behind(text, start) == Some("std") {
+        let module = |name: &&str| CompletionItem {
+            label: name.trim_start_matches("std::").to_owned(),
+            kind: Some(CompletionItemKind::MODULE),
+            detail: standard::library(name)
+                .and_then(|text| text.lines().next())
+                .map(|line| line.trim_start_matches("// ").to_owned()),
+            ..CompletionItem::default()
+        };
+        return Some(standard::names().iter().map(module).collect());
+    }
+    let library = match open {
+        Some(library) => library,
+        None => libraries::behind(text, start)?,
+    };
+    let whole = format!("use std::{library};");
+    let mut uses = analysis.uses();
+    if !uses.iter().any(|used| used.name == library) {
+        uses = libraries::used(&Source::new("", whole), analysis.loader());
+    }
+    let used = uses.iter().find(|used| used.name == library)?;
+    let items = used.items().map(|(name, item)| CompletionItem {
+        label: name.text.clone(),
+        kind: Some(match item.kind {
+            ItemKind::Const(_) => CompletionItemKind::CONSTANT,
+            _ => CompletionItemKind::FUNCTION,
+        }),
+        detail: Some(used.head(item)),
+        documentation: item.doc.as_ref().map(|doc| lsp_types::Documentation::String(doc.text.clone())),
+        ..CompletionItem::default()
+    });
+    Some(items.collect())
+}
+
+/// The library whose names are listed in the braces around a place.
+fn statement_of_use(text: &str, byte: usize) -> Option<&str> {
+    let before = &text[..byte];
+    let brace = before.rfind('{').filter(|brace| !before[*brace..].contains(['}', ';']))?;
+    libraries::behind(text, brace)
 }
 
 fn names(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
@@ -148,6 +211,9 @@ pub fn explained(word: &str) -> Option<String> {
         "param" => "`param v_max = 0.25 [km/s];`: a value that a program may change without compiling again",
         "variable" => "`variable m0 in 1 .. 5 [kg];`: a free number, constant in time",
         "output" => "`output x, y [km]: spline(order = 5, intervals = 8);`: what moves",
+        "use" => {
+            "`use std::rotation;`, `use \"shuttle.ntg\" as shuttle;`: constants, functions and tables of a library"
+        }
         "fn" => {
             "`fn blend(u, w) = ...;`, `fn lift(v [m/s]) [N] { let q = ...; ... }`: a function, written out where it is applied"
         }

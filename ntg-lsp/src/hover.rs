@@ -9,6 +9,7 @@ use ntg_structure::Unit;
 
 use crate::analysis::Analysis;
 use crate::complete;
+use crate::libraries;
 use crate::names::{Declaration, Derivative, Kind};
 use crate::words;
 
@@ -30,6 +31,13 @@ pub fn hover(analysis: &Analysis, byte: usize) -> Option<(String, Span)> {
         let of = |derivative: &&Derivative| derivative.span.start == word.start;
         let derivative = analysis.names().derivatives.iter().find(of)?;
         return Some((expansion(analysis, derivative), derivative.span));
+    }
+    let uses = analysis.uses();
+    if let Some((used, _, item)) = libraries::find(&uses, &analysis.source.text, word) {
+        let mut parts = vec![format!("```ntg\n{}\n```", used.head(item))];
+        parts.extend(item.doc.as_ref().map(|doc| doc.text.clone()));
+        parts.push(format!("of the library `{}`", used.source.name));
+        return Some((parts.join("\n\n"), word));
     }
     if let Some(mention) = analysis.names().at(byte) {
         let declared = mention.declarations.iter().filter_map(|at| analysis.names().declarations.get(*at));

@@ -10,6 +10,7 @@
 pub mod analysis;
 pub mod complete;
 pub mod hover;
+pub mod libraries;
 pub mod lines;
 pub mod names;
 pub mod outline;

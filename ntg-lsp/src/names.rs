@@ -9,7 +9,7 @@ mod walk;
 use std::collections::HashMap;
 
 use ntg_compiler::source::Span;
-use ntg_compiler::syntax::ast::{Ident, Spec};
+use ntg_compiler::syntax::ast::{Ident, Library, Spec};
 
 /// What a declaration declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +117,13 @@ impl Names {
     /// The names of a spec.
     pub fn of(spec: &Spec) -> Self {
         let mut names = walk::names(spec);
+        names.mentions.sort_by_key(|mention| mention.span);
+        names
+    }
+
+    /// The names of a library, whose text is `all`.
+    pub fn of_library(library: &Library, all: Span) -> Self {
+        let mut names = walk::library(library, all);
         names.mentions.sort_by_key(|mention| mention.span);
         names
     }

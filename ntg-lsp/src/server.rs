@@ -22,7 +22,7 @@ use serde_json::Value;
 
 use crate::analysis::{Analysis, Beside};
 use crate::lines::Lines;
-use crate::{complete, hover, outline, rename};
+use crate::{complete, hover, libraries, outline, rename};
 
 /// What went wrong between the editor and the server.
 pub type ProtocolError = Box<dyn std::error::Error + Send + Sync>;
@@ -238,6 +238,12 @@ impl Server<'_> {
         let uri = params.text_document_position_params.text_document.uri.clone();
         let place = self.place(&params.text_document_position_params);
         json(place.and_then(|(analysis, byte)| {
+            let uses = analysis.uses();
+            if let Some((used, name, _)) = libraries::find(&uses, &analysis.source.text, analysis.word(byte)) {
+                let uri: Uri = format!("file://{}", used.path.as_ref()?.display()).parse().ok()?;
+                let range = Lines::new(&used.source.text).range(&used.source.text, name.span);
+                return Some(GotoDefinitionResponse::Array(vec![Location::new(uri, range)]));
+            }
             let mention = analysis.names().at(byte)?;
             let places = mention.declarations.iter().map(|at| analysis.names().declarations[*at].name.span);
             let range = |span| analysis.lines.range(&analysis.source.text, span);
@@ -292,6 +298,12 @@ fn diagnostic(analysis: &Analysis, uri: &Uri, finding: &Finding) -> Diagnostic {
         Severity::Note => DiagnosticSeverity::INFORMATION,
     };
     let help = finding.help.as_ref().map_or_else(String::new, |help| format!("\nhelp: {help}"));
+    let elsewhere: String = finding
+        .libraries
+        .iter()
+        .filter_map(|library| Some((&library.source, library.source.place(library.span?.start))))
+        .map(|(source, place)| format!("\nin {}, line {}, column {}", source.name, place.line, place.column))
+        .collect();
     let related = finding.labels.iter().map(|(span, message)| DiagnosticRelatedInformation {
         location: Location::new(uri.clone(), range(*span)),
         message: message.clone(),
@@ -301,7 +313,7 @@ fn diagnostic(analysis: &Analysis, uri: &Uri, finding: &Finding) -> Diagnostic {
         severity: Some(severity),
         code: Some(NumberOrString::String(finding.code.text().to_owned())),
         source: Some("ntg".to_owned()),
-        message: format!("{}{help}", finding.message),
+        message: format!("{}{elsewhere}{help}", finding.message),
         related_information: Some(related.collect()),
         ..Diagnostic::default()
     }

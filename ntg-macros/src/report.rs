@@ -53,6 +53,15 @@ fn in_words(finding: &Diagnostic, source: &Source) -> String {
             false => format!("\nnote: {label}: `{snippet}` in line {line}, column {column}"),
         });
     }
+    for library in &finding.libraries {
+        let name = &library.source.name;
+        let own = library.span.map(|span| (span, "this is about"));
+        for (span, label) in own.into_iter().chain(library.labels.iter().map(|(span, text)| (*span, text.as_str()))) {
+            let place = library.source.place(span.start);
+            let (line, column, snippet) = (place.line, place.column, library.source.snippet(span));
+            text.push_str(&format!("\nnote: {label}: `{snippet}` in {name}, line {line}, column {column}"));
+        }
+    }
     if let Some(help) = &finding.help {
         text.push_str(&format!("\nhelp: {help}"));
     }

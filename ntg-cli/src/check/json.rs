@@ -15,7 +15,7 @@ pub(super) fn document(checked: &[Checked]) -> Value {
     let files = checked.iter().map(|spec| {
         json!({
             "file": spec.name,
-            "well_formed": spec.problem.is_some(),
+            "well_formed": spec.is_good(),
             "problem": or_null(spec.problem.as_ref()),
         })
     });
@@ -34,6 +34,16 @@ pub(super) fn document(checked: &[Checked]) -> Value {
 
 fn finding(source: &Source, finding: &Diagnostic) -> Value {
     let labels = finding.labels.iter().map(|(span, text)| json!({ "message": text, "range": range(source, *span) }));
+    let libraries = finding.libraries.iter().map(|library| {
+        let source = &*library.source;
+        let labels =
+            library.labels.iter().map(|(span, text)| json!({ "message": text, "range": range(source, *span) }));
+        json!({
+            "file": source.name,
+            "range": library.span.map(|span| range(source, span)),
+            "labels": labels.collect::<Vec<_>>(),
+        })
+    });
     json!({
         "file": source.name,
         "code": finding.code.text(),
@@ -41,6 +51,7 @@ fn finding(source: &Source, finding: &Diagnostic) -> Value {
         "message": finding.message,
         "range": range(source, finding.span),
         "labels": labels.collect::<Vec<_>>(),
+        "libraries": libraries.collect::<Vec<_>>(),
         "help": or_null(finding.help.as_ref()),
     })
 }
@@ -54,6 +65,7 @@ fn unread(file: &str, message: &str) -> Value {
         "message": message,
         "range": null,
         "labels": [],
+        "libraries": [],
         "help": null,
     })
 }

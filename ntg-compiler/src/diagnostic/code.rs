@@ -121,6 +121,7 @@ codes! {
     EmptyFamily "E084" "a family without members";
     WrongAfter "E085" "an index after which a phase cannot follow";
     WhichAgent "E086" "an agent that is not named";
+    WrongLibrary "E087" "a library that cannot be used";
 
     SourceTooLarge "E090" "a spec too large to be read";
     TooManySteps "E091" "a problem too large to be given a meaning";

@@ -7,7 +7,7 @@
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-use super::{Diagnostic, Severity};
+use super::{Diagnostic, InLibrary, Severity};
 use crate::source::{SNIPPET_WIDTH, Source, Span};
 
 /// See [`Diagnostic::render`].
@@ -18,7 +18,18 @@ pub(super) fn render(finding: &Diagnostic, source: &Source, colour: bool) -> Str
         Severity::Note => Level::NOTE,
     };
     let title = level.primary_title(finding.message.as_str()).id(finding.code.text());
-    let group = title.element(snippet(finding, source));
+    let (own, others): (Vec<&InLibrary>, Vec<&InLibrary>) =
+        finding.libraries.iter().partition(|library| library.span.is_some());
+    let mut group = title.elements(own.into_iter().filter_map(|library| {
+        let whole = library.labels.iter().map(|(span, _)| *span).fold(library.span?, Span::to);
+        Some(snippet((whole, library.span), &library.labels, &library.source))
+    }));
+    let whole = finding.labels.iter().map(|(span, _)| *span).fold(finding.span, Span::to);
+    group = group.element(snippet((whole, Some(finding.span)), &finding.labels, source));
+    let group = group.elements(others.into_iter().filter_map(|library| {
+        let whole = library.labels.iter().map(|(span, _)| *span).reduce(Span::to)?;
+        Some(snippet((whole, None), &library.labels, &library.source))
+    }));
     let group = match &finding.help {
         Some(help) => group.element(Level::HELP.message(help.as_str())),
         None => group,
@@ -28,9 +39,12 @@ pub(super) fn render(finding: &Diagnostic, source: &Source, colour: bool) -> Str
     renderer.render(&[group]).trim_end().to_owned()
 }
 
-/// The lines that the finding's places touch, with the places marked.
-fn snippet<'a>(finding: &'a Diagnostic, source: &'a Source) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
-    let all = finding.labels.iter().map(|(span, _)| *span).fold(finding.span, Span::to);
+/// The lines that some places touch, with the places marked: what the finding is about, and labels.
+fn snippet<'a>(
+    (all, primary): (Span, Option<Span>),
+    labels: &'a [(Span, String)],
+    source: &'a Source,
+) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
     let mut first = source.line_start(source.boundary(all.start as usize));
     if source.text[first..].starts_with('\u{feff}') {
         first += '\u{feff}'.len_utf8(); // The byte order mark takes no column.
@@ -42,11 +56,12 @@ fn snippet<'a>(finding: &'a Diagnostic, source: &'a Source) -> Snippet<'a, annot
         start - first..end - first
     };
 
-    let own = finding.labels.iter().find(|(span, _)| *span == finding.span).map(|(_, text)| text.as_str());
-    let others = finding.labels.iter().filter(|(span, _)| *span != finding.span);
+    let is_own = |span: &Span| Some(*span) == primary;
+    let own = labels.iter().find(|(span, _)| is_own(span)).map(|(_, text)| text.as_str());
+    let others = labels.iter().filter(|(span, _)| !is_own(span));
     Snippet::source(&source.text[first..last])
         .path(source.name.as_str())
         .line_start(source.place(all.start).line)
-        .annotation(AnnotationKind::Primary.span(within(finding.span)).label(own))
+        .annotations(primary.map(|span| AnnotationKind::Primary.span(within(span)).label(own)))
         .annotations(others.map(|(span, text)| AnnotationKind::Context.span(within(*span)).label(text.as_str())))
 }

@@ -47,7 +47,7 @@ impl<'a> Elaborator<'a> {
         arguments: Vec<Meaning<'a>>,
     ) -> Option<Context<'a>> {
         let (declared, scope) = (self.functions[function].function, self.functions[function].scope);
-        let mut inner = Context { locals: None, lexical: scope, ..cx.clone() };
+        let mut inner = self.home(cx, scope);
         let outside = inner.clone();
         for ((parameter, argument), expr) in declared.parameters.iter().zip(arguments).zip(&call.arguments) {
             let sized = match &parameter.shape {

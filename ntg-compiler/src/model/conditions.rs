@@ -337,7 +337,7 @@ impl<'a> Elaborator<'a> {
             Some(Meaning::Index(_)) => true,
             Some(_) => false,
             None if self.index_in_sight(cx, name).is_some() => true,
-            None => match look_up(&self.scopes, cx.scope, name).map(|(_, declared)| declared.entity) {
+            None => match look_up(&self.scopes, cx.names(), name).map(|(_, declared)| declared.entity) {
                 Some(Entity::Definition(definition)) => self.definitions[definition].is_const,
                 _ => false,
             },

@@ -197,7 +197,7 @@ impl<'a> Elaborator<'a> {
             Some(Meaning::Argument(_) | Meaning::Lazy(_) | Meaning::Shaped(_)) => return None,
             None => {}
         }
-        let mut next = Some(cx.scope);
+        let mut next = Some(cx.names());
         while let Some(id) = next {
             let scope = &self.scopes[id];
             if scope.names.contains_key(name) {
@@ -229,7 +229,8 @@ impl<'a> Elaborator<'a> {
         let name = index.text.as_str();
         self.index_names.entry(name).or_insert(index.span);
         let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
-        let declared = super::scope::look_up(&self.scopes, cx.lexical, name).map(|(_, declared)| declared);
+        let declared =
+            super::scope::look_up(&self.scopes, cx.library.unwrap_or(cx.lexical), name).map(|(_, declared)| declared);
         if hidden || declared.is_some() {
             let mut finding = Diagnostic::new(Code::DeclaredTwice, index.span, format!("`{name}` is declared twice"))
                 .label(index.span, "declared again as an index here");

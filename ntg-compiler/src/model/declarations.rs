@@ -43,10 +43,17 @@ impl<'a> Elaborator<'a> {
         self.hidden_outputs();
     }
 
-    fn add_scope(&mut self, parent: Option<ScopeId>, index: Option<&'a ast::Ident>, items: &'a [Item]) -> ScopeId {
+    pub(super) fn add_scope(
+        &mut self,
+        parent: Option<ScopeId>,
+        index: Option<&'a ast::Ident>,
+        items: &'a [Item],
+    ) -> ScopeId {
         let agent = parent.and_then(|p| self.scopes[p].agent);
         let names = Default::default();
-        self.scopes.push(Scope { parent, agent, phase: None, index, names, order: Vec::new() });
+        let libraries = Default::default();
+        let (phase, order, is_library, is_broken) = (None, Vec::new(), false, false);
+        self.scopes.push(Scope { parent, agent, phase, index, names, order, libraries, is_library, is_broken });
         self.items.push(items);
         self.scopes.len() - 1
     }
@@ -61,7 +68,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn item(&mut self, scope: ScopeId, item: &'a Item) {
+    pub(super) fn item(&mut self, scope: ScopeId, item: &'a Item) {
         let doc = doc_text(&item.doc);
         match &item.kind {
             ItemKind::Const(c) => {

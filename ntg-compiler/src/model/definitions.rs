@@ -98,7 +98,7 @@ impl<'a> Elaborator<'a> {
         let Definition { value: expr, scope, unit, is_const, name, .. } = &self.definitions[definition];
         let (expr, lexical, unit, is_const, name) = (*expr, *scope, *unit, *is_const, *name);
         let indices: Vec<&'a ast::Ident> = self.definitions[definition].indices().collect();
-        let mut inner = Context { locals: None, lexical, allow, ..cx.clone() };
+        let mut inner = Context { allow, ..self.home(cx, lexical) };
         for (index, form) in indices.iter().zip(place) {
             inner = inner.with(&index.text, Meaning::Index(form.clone()));
         }
@@ -210,7 +210,9 @@ impl<'a> Elaborator<'a> {
         let mut circle = Vec::new();
         'search: while let Some(path) = open.pop() {
             for name in mentioned(self.definitions[path[path.len() - 1]].value) {
-                match look_up(&self.scopes, cx.scope, name).map(|(_, declared)| declared.entity) {
+                match look_up(&self.scopes, self.home(cx, self.definitions[path[path.len() - 1]].scope).names(), name)
+                    .map(|(_, declared)| declared.entity)
+                {
                     Some(Entity::Definition(next)) if next == definition => {
                         circle = path;
                         break 'search;
@@ -244,8 +246,9 @@ impl<'a> Elaborator<'a> {
                 continue;
             }
             open.push((next, true));
+            let home = self.home(cx, self.definitions[next].scope).names();
             for name in mentioned(self.definitions[next].value) {
-                if let Some((_, declared)) = look_up(&self.scopes, cx.scope, name)
+                if let Some((_, declared)) = look_up(&self.scopes, home, name)
                     && let Entity::Definition(inner) = declared.entity
                     && self.definitions[inner].shape.is_none()
                     && self.member_shape(cx, inner).is_some_and(|shape| shape.is_number())
@@ -270,8 +273,9 @@ impl<'a> Elaborator<'a> {
                 continue;
             }
             open.push((next, true));
+            let home = self.home(cx, self.definitions[next].scope).names();
             for name in mentioned(self.definitions[next].value) {
-                if let Some((_, declared)) = look_up(&self.scopes, cx.scope, name)
+                if let Some((_, declared)) = look_up(&self.scopes, home, name)
                     && let Entity::Definition(inner) = declared.entity
                     && !self.member_shapes.contains_key(&(inner, cx.scope))
                     && seen.insert(inner)

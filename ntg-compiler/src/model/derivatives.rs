@@ -315,7 +315,7 @@ impl<'a> Elaborator<'a> {
     /// `partial(f(s, w), s)`.
     pub(super) fn partial(&mut self, cx: &Context<'a>, of: &'a Call, argument: &'a Expr, span: Span) -> Value {
         let Some(arguments) = self.arguments(cx, of) else { return self.poison(span) };
-        let entity = look_up(&self.scopes, cx.scope, &of.function.text).map(|(_, declared)| declared.entity);
+        let entity = look_up(&self.scopes, cx.names(), &of.function.text).map(|(_, declared)| declared.entity);
         let formal: Vec<String> = match entity {
             Some(Entity::Function(f)) => {
                 self.functions[f].function.parameters.iter().map(|p| p.name.text.clone()).collect()

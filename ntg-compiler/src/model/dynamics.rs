@@ -29,6 +29,8 @@ const MOST_LOOKS: usize = 100_000;
 struct Frame<'a> {
     arguments: Vec<(&'a str, &'a Expr)>,
     outer: Option<Rc<Frame<'a>>>,
+    /// Where other names are looked up.
+    scope: ScopeId,
     /// Whether it is a step of a value: names that it does not have are those of the frame around it.
     is_step: bool,
 }
@@ -74,6 +76,8 @@ impl<'a> Elaborator<'a> {
         highest: &mut usize,
     ) {
         let Look { expr, around, frame } = look;
+        let own = scope;
+        let scope = frame.as_ref().map_or(scope, |frame| frame.scope);
         let mut also = |expr: &'a Expr| open.push(Look { expr, around: *around, frame: frame.clone() });
         match &expr.kind {
             ExprKind::Path(path) => {
@@ -124,7 +128,9 @@ impl<'a> Elaborator<'a> {
                 let depth = around_it.filter(|frame| !frame.is_step).count();
                 const DEEPEST: usize = 64;
                 if depth < DEEPEST {
-                    let inner = Rc::new(Frame { arguments, outer: frame.clone(), is_step: false });
+                    let home = self.functions[function].scope;
+                    let scope = if self.scopes[home].is_library { home } else { own };
+                    let inner = Rc::new(Frame { arguments, outer: frame.clone(), scope, is_step: false });
                     open.push(Look { expr: &declared.body, around: *around, frame: Some(inner) });
                 }
             }
@@ -139,7 +145,7 @@ impl<'a> Elaborator<'a> {
                 let mut frame = frame.clone();
                 for step in &steps.lets {
                     let arguments = vec![(step.name.text.as_str(), &step.value)];
-                    frame = Some(Rc::new(Frame { arguments, outer: frame, is_step: true }));
+                    frame = Some(Rc::new(Frame { arguments, outer: frame, scope, is_step: true }));
                 }
                 open.push(Look { expr: &steps.value, around: *around, frame });
             }

@@ -16,7 +16,7 @@ use super::derivatives::{Jump, Lacking};
 use super::dimension::Dimension;
 use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
-use super::scope::{Declared, Entity, Scope, ScopeId};
+use super::scope::{Context, Declared, Entity, Scope, ScopeId};
 use super::shape::{Ends, FunctionKey, Shape};
 use super::units::{self, Quantity};
 use super::value::{Flaw, OpenIndex, Value};
@@ -107,6 +107,10 @@ pub(super) type Items<'a> = &'a [ast::Item];
 /// See the module's header.
 pub(super) struct Elaborator<'a> {
     pub(super) source: &'a Source,
+    /// Where the spec's own text ends, if texts of libraries stand behind it.
+    pub(super) main: Option<u32>,
+    /// The folder of each library's scope, for the files that its tables name.
+    pub(super) folders: HashMap<ScopeId, String>, // Looked up, never iterated.
     pub(super) loader: &'a dyn Loader,
     pub(super) problem: Problem,
     pub(super) scopes: Vec<Scope<'a>>,
@@ -180,6 +184,8 @@ impl<'a> Elaborator<'a> {
     pub(super) fn new(source: &'a Source, loader: &'a dyn Loader) -> Self {
         Self {
             source,
+            main: None,
+            folders: HashMap::new(),
             loader,
             problem: Problem::default(),
             scopes: Vec::new(),
@@ -292,8 +298,20 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Notes where a node was first written, and the nodes made on the way to it.
+    /// The context of a text that stands in a scope: a library's own names, else those of the context.
+    pub(super) fn home(&self, cx: &Context<'a>, scope: ScopeId) -> Context<'a> {
+        if self.scopes[scope].is_library {
+            return Context { locals: None, library: Some(scope), ..cx.clone() };
+        }
+        Context { locals: None, lexical: scope, library: None, ..cx.clone() }
+    }
+
+    /// Notes where a node was first written, and the nodes made on the way to it. What stands in a library has the
+    /// place where the spec uses it.
     pub(super) fn origin(&mut self, node: NodeId, span: Span) {
+        if self.main.is_some_and(|end| span.start > end) {
+            return;
+        }
         let mut open = vec![node];
         while let Some(node) = open.pop() {
             // What has a place already has parts with places.

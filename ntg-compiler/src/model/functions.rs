@@ -135,7 +135,7 @@ impl<'a> Elaborator<'a> {
     /// The application of anything.
     pub(super) fn call(&mut self, cx: &Context<'a>, call: &'a Call, at: &[Form]) -> Value {
         let name = call.function.text.as_str();
-        match look_up(&self.scopes, cx.scope, name).map(|(_, declared)| declared.entity) {
+        match look_up(&self.scopes, cx.names(), name).map(|(_, declared)| declared.entity) {
             Some(Entity::Function(function)) => {
                 let Some(arguments) = self.arguments(cx, call) else { return self.poison(call.span) };
                 self.inline(cx, function, call, arguments, at)
@@ -177,7 +177,13 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding.help(help), call.span);
         }
         let finding = Diagnostic::new(Code::NoFunction, span, format!("unknown function `{name}`"));
-        let names = visible(&self.scopes, cx.scope);
+        if self.is_of_broken_library(cx.names(), name) {
+            return self.poison(call.span);
+        }
+        if let Some(help) = self.library_help(cx.names(), name) {
+            return self.refuse(finding.help(help), call.span);
+        }
+        let names = visible(&self.scopes, cx.names());
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
         let habit = HABITS.iter().find(|(habit, _)| *habit == name).map(|(_, right)| *right);
         let finding = match (
@@ -385,8 +391,18 @@ impl<'a> Elaborator<'a> {
     /// Findings inside a function's body say in which use of it they were made.
     pub(super) fn tell_use(&mut self, before: usize, call: &Call) {
         for finding in &mut self.found[before..] {
-            let told = finding.labels.iter().any(|(_, label)| label.starts_with("in this use"));
-            if !told && finding.severity == Severity::Error && !call.span.contains(finding.span) {
+            // What a library finds is told at every use on the way to the spec's own text.
+            let in_library = self.main.is_some_and(|end| finding.span.start > end);
+            let is_use = |label: &str| label.starts_with("in this use");
+            let told = match in_library {
+                true => finding
+                    .labels
+                    .iter()
+                    .any(|(span, label)| is_use(label) && self.main.is_some_and(|end| span.start <= end)),
+                false => finding.labels.iter().any(|(_, label)| is_use(label)),
+            };
+            let is_told = finding.severity == Severity::Error || in_library;
+            if !told && is_told && !call.span.contains(finding.span) {
                 finding.labels.push((call.span, format!("in this use of `{}`", call.function.text)));
             }
         }

@@ -33,6 +33,9 @@ pub fn given(source: &Source, unit: &Unit) -> Result<Vec<f64>, Diagnostics> {
         index: None,
         names: HashMap::new(),
         order: vec![],
+        libraries: HashMap::new(),
+        is_library: false,
+        is_broken: false,
     });
     pass.items.push(&[]);
     let cx = Context::of(PROBLEM, Allow::Constants);

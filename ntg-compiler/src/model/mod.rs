@@ -24,6 +24,7 @@ mod functions;
 mod given;
 mod guess;
 mod kinds;
+mod library;
 mod mention;
 mod mission;
 mod named;
@@ -50,6 +51,7 @@ mod table_report;
 mod tables;
 mod time;
 pub mod tools;
+mod trial;
 mod unitless;
 mod units;
 mod value;
@@ -58,9 +60,10 @@ mod windows;
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::Source;
-use crate::syntax::ast;
+use crate::syntax::{self, ast};
 use elaborator::{Elaborator, doc_text};
 pub use given::given;
+use library::Libraries;
 use problem::Problem;
 
 /// Gets the text of the files that a spec names; the compiler reads none itself.
@@ -75,18 +78,45 @@ pub trait Loader {
 /// The meaning of a spec, and everything found on the way: errors, then there is no problem, and
 /// notes, which are in `Problem::notes` too.
 pub fn build(spec: &ast::Spec, source: &Source, loader: &dyn Loader) -> (Option<Problem>, Vec<Diagnostic>) {
-    let mut pass = Elaborator::new(source, loader);
-    pass.elaborate(&spec.problem);
-    let failed = pass.has_failed();
-    let Elaborator { mut found, mut problem, .. } = pass;
+    let libraries = Libraries::load(&spec.uses, source, loader);
+    let (mut problem, found) = elaborated(spec, &libraries, loader);
+    let mut found = libraries.told(found, None);
+    let failed = found.iter().any(|finding| finding.severity == Severity::Error);
     found.sort_by_key(|finding| (finding.span.start, finding.span.end));
     problem.notes = found.iter().filter(|finding| finding.severity != Severity::Error).cloned().collect();
     ((!failed).then_some(problem), found)
 }
 
+/// What a spec means with its libraries, and what was found, in places of the joined text.
+fn elaborated(spec: &ast::Spec, libraries: &Libraries, loader: &dyn Loader) -> (Problem, Vec<Diagnostic>) {
+    let mut pass = Elaborator::new(&libraries.joined, loader);
+    pass.elaborate(&spec.problem, libraries, &spec.uses);
+    let Elaborator { found, problem, .. } = pass;
+    (problem, found)
+}
+
+/// Everything found in a library by itself: each function that states its arguments is tried with such arguments.
+pub fn check_library(source: &Source, loader: &dyn Loader) -> Vec<Diagnostic> {
+    let library = match syntax::parse_library(source, 0) {
+        Ok(library) => library,
+        Err(found) => return found.into_iter().collect(),
+    };
+    let around = trial::around(&library);
+    let mut found = match syntax::parse(&around) {
+        Ok(spec) => {
+            let libraries = Libraries::of_library(source, &around, loader);
+            let (_, found) = elaborated(&trial::using(spec), &libraries, loader);
+            libraries.told(found, Some(0))
+        }
+        Err(_) => vec![], // A name that makes no spec was told of.
+    };
+    found.sort_by_key(|finding| (finding.span.start, finding.span.end));
+    found
+}
+
 impl<'a> Elaborator<'a> {
     /// The pass, step by step; each needs what the ones before it have found.
-    fn elaborate(&mut self, problem: &'a ast::Problem) {
+    fn elaborate(&mut self, problem: &'a ast::Problem, libraries: &'a Libraries, uses: &'a [ast::Use]) {
         self.problem.name.clone_from(&problem.name.text);
         self.problem.doc = doc_text(&problem.doc);
         self.problem.span = problem.name.span;
@@ -94,6 +124,9 @@ impl<'a> Elaborator<'a> {
             self.time = dimension::Dimension::NONE;
         }
         self.declarations(problem);
+        if !libraries.files.is_empty() {
+            self.libraries(libraries, uses);
+        }
         self.order_phases();
         self.parameters();
         self.continuations();

@@ -72,7 +72,7 @@ impl<'a> Elaborator<'a> {
             self.no_index(segment, "an index");
             return self.index_value(cx, &form, text, span);
         }
-        match look_up(&self.scopes, cx.scope, text) {
+        match look_up(&self.scopes, cx.names(), text) {
             Some((_, declared)) => self.entity(cx, declared.entity, segment, (span, at)),
             None => self.unknown(cx, segment, true),
         }
@@ -80,13 +80,19 @@ impl<'a> Elaborator<'a> {
 
     /// Tells of a name that nothing has.
     fn unknown(&mut self, cx: &Context<'a>, segment: &Segment, outwards: bool) -> Value {
-        let (scope, text) = (cx.scope, &segment.name.text);
+        let (scope, text) = (cx.names(), &segment.name.text);
         let names: Vec<&str> = if outwards {
             visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
         } else {
             self.scopes[scope].order.clone()
         };
         let finding = Diagnostic::new(Code::UnknownName, segment.name.span, format!("unknown name `{text}`"));
+        if self.is_of_broken_library(scope, text) {
+            return self.poison(segment.span);
+        }
+        if let Some(help) = self.library_help(scope, text) {
+            return self.refuse(finding.help(help), segment.span);
+        }
         if let Some(bound) = self.index_names.get(text.as_str()) {
             let help = format!("`{text}` is an index: it has a value only inside its `for`, its sum or its family");
             return self.refuse(finding.label(*bound, "bound here").help(help), segment.span);
@@ -133,7 +139,8 @@ impl<'a> Elaborator<'a> {
     }
 
     fn declared_within(&self, name: &str) -> Option<(String, ScopeId)> {
-        let scope = (1..self.scopes.len()).find(|scope| self.scopes[*scope].names.contains_key(name))?;
+        let is_it = |scope: &ScopeId| !self.scopes[*scope].is_library && self.scopes[*scope].names.contains_key(name);
+        let scope = (1..self.scopes.len()).find(is_it)?;
         let inner = &self.scopes[scope];
         let segment = |name: &Ident, scope: ScopeId| match self.scopes[scope].index {
             Some(index) => format!("{}[{}]", name.text, index.text),

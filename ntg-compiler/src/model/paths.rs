@@ -20,7 +20,7 @@ impl<'a> Elaborator<'a> {
         for segment in segments {
             let text = segment.name.text.as_str();
             let entity = match &inner {
-                None => look_up(&self.scopes, cx.scope, text).map(|(_, declared)| declared.entity),
+                None => look_up(&self.scopes, cx.names(), text).map(|(_, declared)| declared.entity),
                 Some(inner) => self.scopes[inner.scope].names.get(text).map(|declared| declared.entity),
             };
             let around = inner.unwrap_or_else(|| cx.clone());

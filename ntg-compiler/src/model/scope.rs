@@ -29,6 +29,11 @@ pub(super) struct Scope<'a> {
     pub(super) agent: Option<usize>,
     /// The phase it is.
     pub(super) phase: Option<usize>,
+    /// The libraries that are known here by a name.
+    pub(super) libraries: HashMap<&'a str, ScopeId>, // Looked up, never iterated.
+    /// Whether it is a library, and whether that could not be read: nothing is told of its names then.
+    pub(super) is_library: bool,
+    pub(super) is_broken: bool,
     /// The name of its family's index.
     pub(super) index: Option<&'a ast::Ident>,
     /// Its own names.
@@ -157,6 +162,8 @@ pub(super) struct Context<'a> {
     pub(super) locals: Option<Rc<Local<'a>>>,
     /// The members around the expression that are made one by one.
     pub(super) members: Rc<Vec<i64>>,
+    /// The library whose text it is: its names are looked up there, and nowhere else.
+    pub(super) library: Option<ScopeId>,
 }
 
 impl<'a> Context<'a> {
@@ -172,7 +179,13 @@ impl<'a> Context<'a> {
             loops: Rc::default(),
             locals: None,
             members: Rc::default(),
+            library: None,
         }
+    }
+
+    /// The scope in which names are looked up.
+    pub(super) fn names(&self) -> ScopeId {
+        self.library.unwrap_or(self.scope)
     }
 
     /// The same context with another point.
@@ -241,10 +254,26 @@ pub(super) fn visible<'s, 'a: 's>(scopes: &'s [Scope<'a>], scope: ScopeId) -> Ve
 
 /// What a name means in a scope, and in which scope it was found.
 pub(super) fn look_up(scopes: &[Scope<'_>], scope: ScopeId, name: &str) -> Option<(ScopeId, Declared)> {
+    if let Some((library, inner)) = name.split_once("::") {
+        let id = library_named(scopes, scope, library)?;
+        return scopes[id].names.get(inner).map(|declared| (id, *declared));
+    }
     let mut next = Some(scope);
     while let Some(id) = next {
         if let Some(declared) = scopes[id].names.get(name) {
             return Some((id, *declared));
+        }
+        next = scopes[id].parent;
+    }
+    None
+}
+
+/// The library that is known by a name in a scope.
+pub(super) fn library_named(scopes: &[Scope<'_>], scope: ScopeId, name: &str) -> Option<ScopeId> {
+    let mut next = Some(scope);
+    while let Some(id) = next {
+        if let Some(library) = scopes[id].libraries.get(name) {
+            return Some(*library);
         }
         next = scopes[id].parent;
     }

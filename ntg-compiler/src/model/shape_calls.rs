@@ -15,7 +15,7 @@ use crate::syntax::ast::Call;
 impl<'a> Elaborator<'a> {
     pub(super) fn call_shape(&mut self, cx: &Context<'a>, call: &'a Call) -> Option<Shape> {
         let name = call.function.text.as_str();
-        match look_up(&self.scopes, cx.scope, name).map(|(_, declared)| declared.entity) {
+        match look_up(&self.scopes, cx.names(), name).map(|(_, declared)| declared.entity) {
             Some(Entity::Function(function)) => {
                 let shapes =
                     call.arguments.iter().map(|argument| self.shape(cx, argument)).collect::<Option<Vec<_>>>()?;
@@ -70,7 +70,7 @@ impl<'a> Elaborator<'a> {
         }
         // A function that uses itself is told of when it is applied.
         self.function_shapes.insert(key.clone(), Some(Shape::NUMBER));
-        let mut inner = Context { locals: None, lexical: scope, ..cx.clone() };
+        let mut inner = self.home(cx, scope);
         let outside = inner.clone();
         let before = self.found.len();
         for ((parameter, shape), expr) in declared.parameters.iter().zip(&key.1).zip(&call.arguments) {

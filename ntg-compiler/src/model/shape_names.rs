@@ -38,7 +38,7 @@ impl<'a> Elaborator<'a> {
         if self.index_in_sight(cx, name).is_some() {
             return Some(Shape::NUMBER);
         }
-        match look_up(&self.scopes, cx.scope, name) {
+        match look_up(&self.scopes, cx.names(), name) {
             Some((_, declared)) => self.entity_shape(cx, declared.entity, segment),
             None => Some(Shape::NUMBER),
         }
@@ -117,7 +117,7 @@ impl<'a> Elaborator<'a> {
     pub(super) fn definition_axes(&mut self, cx: &Context<'a>, definition: usize) -> Option<Vec<Ends>> {
         let mut axes = Vec::new();
         let declared = self.definitions[definition].shape;
-        let outside = Context { locals: None, ..cx.clone() };
+        let outside = self.home(cx, self.definitions[definition].scope);
         let mut sized = false;
         for axis in declared.iter().flat_map(|shape| &shape.axes) {
             let first = match &axis.first {
@@ -146,7 +146,7 @@ impl<'a> Elaborator<'a> {
         self.member_shapes.insert(key, Some(Shape::NUMBER));
         self.warm_shapes(cx, definition);
         let lexical = self.definitions[definition].scope;
-        let mut inner = Context { locals: None, lexical, ..cx.clone() };
+        let mut inner = self.home(cx, lexical);
         for index in self.definitions[definition].indices() {
             let unknown = self.unknown_index();
             inner = inner.with(&index.text, Meaning::Index(unknown));

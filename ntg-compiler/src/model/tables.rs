@@ -60,7 +60,7 @@ impl<'a> Elaborator<'a> {
         };
         let numbers = match &table.data {
             TableData::Inline(rows) => self.inline_numbers(scope, table, rows, &units),
-            TableData::File { path, span } => self.file_numbers(table, path, *span, &units),
+            TableData::File { path, span } => self.file_numbers(table, &self.beside(scope, path), *span, &units),
         };
         let method = self.method(scope, table);
         let (Some(numbers), Some(method)) = (numbers, method) else { return };
@@ -79,7 +79,7 @@ impl<'a> Elaborator<'a> {
             },
         });
         let made = Table {
-            name: table.name.text.clone(),
+            name: self.shown_name(scope, &table.name.text),
             doc,
             axes: axes.collect(),
             unit: value.1.clone(),
@@ -184,6 +184,11 @@ impl<'a> Elaborator<'a> {
                 None
             }
         }
+    }
+
+    /// A path that a file names, from the folder of the spec.
+    fn beside(&self, scope: ScopeId, path: &str) -> String {
+        self.folders.get(&scope).map_or_else(|| path.to_owned(), |folder| super::library::joined(folder, path))
     }
 
     /// The numbers of a file, in SI units.

@@ -38,6 +38,10 @@ impl<'a> Elaborator<'a> {
     /// `t`.
     pub(super) fn mission_time(&mut self, cx: &Context<'a>, span: Span) -> Value {
         let dimension = self.time;
+        if cx.library.is_some() {
+            let finding = Diagnostic::new(Code::TimeOutOfPlace, span, "a library knows no time of its own");
+            return self.refuse(finding.help("make it an argument of the function"), span);
+        }
         let phase = self.scopes[cx.scope].phase.map(|phase| cx.phase_at(phase));
         let node = match (cx.allow, cx.point, phase) {
             (Allow::Guess, Point::Nowhere, None) => self.guessed_time(cx),

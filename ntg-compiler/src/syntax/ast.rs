@@ -23,11 +23,46 @@ pub use expression::*;
 pub use statement::*;
 pub use table::*;
 
-/// A whole spec: exactly one problem.
+/// A whole spec: exactly one problem, and the libraries that it uses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spec {
+    /// The libraries.
+    pub uses: Vec<Use>,
     /// The problem.
     pub problem: Problem,
+}
+
+/// A file of constants, functions and tables, without a problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Library {
+    /// The libraries that it uses itself.
+    pub uses: Vec<Use>,
+    /// `const`, `fn` and `table` alone, in the user's order.
+    pub items: Vec<Item>,
+}
+
+/// `use std::rotation::{about_x, about_z};`, `use "tables/air-3.ntg" as air;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Use {
+    /// What is used.
+    pub target: UseTarget,
+    /// Where that stands.
+    pub target_span: Span,
+    /// The names that are used without the library's own before them.
+    pub names: Vec<Ident>,
+    /// What the library is called here, if not like its file.
+    pub alias: Option<Ident>,
+    /// From `use` to before the `;`.
+    pub span: Span,
+}
+
+/// Where a library is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UseTarget {
+    /// `std::rotation`: of the language.
+    Module(Vec<Ident>),
+    /// `"shuttle.ntg"`: the path as written between the quotes.
+    File(String),
 }
 
 /// `/// doc` `problem Name { items }`.

@@ -51,6 +51,11 @@ pub(super) fn spec(text: &str) -> Result<Pair<'_>, Stuck> {
     front(Rule::spec, text)
 }
 
+/// A whole file without a problem.
+pub(super) fn library(text: &str) -> Result<Pair<'_>, Stuck> {
+    front(Rule::library, text)
+}
+
 /// An expression and nothing else.
 pub(super) fn expression(text: &str) -> Result<Pair<'_>, Stuck> {
     let whole = front(Rule::whole_expression, text)?;

@@ -22,7 +22,7 @@ mod words;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::source::Source;
-use ast::{Expr, Spec, Values};
+use ast::{Expr, Library, Spec, Values};
 use parse::Build;
 
 pub use format::{WIDTH, format};
@@ -54,6 +54,64 @@ pub fn parse(source: &Source) -> Result<Spec, Diagnostics> {
             Err(recover::failure(recover::join(&scan, found), source))
         }
     }
+}
+
+/// Whether a word can be a name.
+pub fn is_name(word: &str) -> bool {
+    let mut letters = word.chars();
+    letters.next().is_some_and(unicode_ident::is_xid_start)
+        && letters.all(unicode_ident::is_xid_continue)
+        && !words::is_reserved(word)
+        && !words::NEVER_NAMES.contains(&word)
+}
+
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// A problem.
+    Spec,
+    /// Constants, functions and tables alone.
+    Library,
+}
+
+/// What a file holds, by the first word that is no `use`.
+pub fn file_kind(source: &Source) -> FileKind {
+    recover::file_kind(&scan::scan(source))
+}
+
+/// Reads a library. Its places are counted from byte `base`, so that those of several files can be told apart.
+///
+/// # Errors
+/// Everything that is wrong with the text as a library, in places counted from `base` too.
+pub fn parse_library(source: &Source, base: usize) -> Result<Library, Diagnostics> {
+    check_size(source)?;
+    let scan = scan::scan(source);
+    let found = if scan.hopeless {
+        scan.found
+    } else {
+        match grammar::library(&scan.clean) {
+            Ok(pair) => {
+                let mut build = Build::new(0);
+                let library = build.library(pair);
+                let found = recover::join(&scan, build.found);
+                if found.is_empty() {
+                    let mut build = Build::new(base);
+                    let pair = grammar::library(&scan.clean).ok();
+                    return Ok(pair.map_or(library, |pair| build.library(pair)));
+                }
+                found
+            }
+            Err(stuck) => {
+                let mut found = recover::recover_library(&scan);
+                if found.is_empty() && scan.found.is_empty() {
+                    found.push(explain::explain(&scan, &stuck, 0));
+                }
+                recover::join(&scan, found)
+            }
+        }
+    };
+    let shifted = recover::failure(found, source).into_iter().map(|finding| finding.shifted(base)).collect();
+    Err(Diagnostics::or(shifted).expect_err("a failure has findings"))
 }
 
 /// Reads one expression, such as an objective given on the command line.

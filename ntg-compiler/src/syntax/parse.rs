@@ -19,11 +19,12 @@ mod shapes;
 mod tables;
 mod time;
 mod units;
+mod uses;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 
-use super::ast::{Doc, Ident, Spec};
+use super::ast::{Doc, Ident, Library, Spec};
 use super::grammar::{Pair, Rule};
 use super::scan::MAX_FINDINGS;
 use parts::Parts;
@@ -34,6 +35,8 @@ pub(super) enum Scope {
     Problem,
     Agent,
     Phase,
+    /// A file without a problem.
+    Library,
 }
 
 /// The working state: where the parsed text begins in the source, and what was found.
@@ -56,7 +59,14 @@ impl Build {
 
     pub(super) fn spec(&mut self, pair: Pair<'_>) -> Spec {
         let mut parts = Parts::of(pair);
-        Spec { problem: self.problem(parts.required(Rule::problem)) }
+        let uses = self.uses(&mut parts);
+        Spec { uses, problem: self.problem(parts.required(Rule::problem)) }
+    }
+
+    pub(super) fn library(&mut self, pair: Pair<'_>) -> Library {
+        let mut parts = Parts::of(pair);
+        let uses = self.uses(&mut parts);
+        Library { uses, items: self.items(Scope::Library, parts) }
     }
 
     fn doc(&mut self, pair: Pair<'_>) -> Doc {

@@ -5,6 +5,7 @@
 //! less than one problem. A statement that the scan has found fault with already is not blamed again.
 //! Afterwards: there is at least one finding if the grammar was right to give up.
 
+use super::FileKind;
 use super::explain::{self, explain};
 use super::grammar::{self, Rule, Stuck};
 use super::parse::{Build, Scope};
@@ -18,6 +19,31 @@ pub(super) fn recover(scan: &Scan) -> Vec<Diagnostic> {
     let mut walk = Walk { scan, closers: closers(scan), found: vec![] };
     walk.spec();
     walk.found
+}
+
+/// Everything that is wrong with the statements of a library.
+pub(super) fn recover_library(scan: &Scan) -> Vec<Diagnostic> {
+    let mut walk = Walk { scan, closers: closers(scan), found: vec![] };
+    let first = walk.uses();
+    if let Some(problem) = first.filter(|at| walk.text(*at) == "problem") {
+        let span = scan.tokens[problem].span;
+        let finding = Diagnostic::new(Code::WrongLibrary, span, "a library holds no problem");
+        walk.found.push(finding.help("it has only `use`, `const`, `fn` and `table`; a spec uses it and is not used"));
+        return walk.found;
+    }
+    let begin = walk.after_uses();
+    walk.body(Body::Items(Scope::Library), begin, scan.tokens.len());
+    walk.found
+}
+
+/// What a text holds, by its first word that is no `use`.
+pub(super) fn file_kind(scan: &Scan) -> FileKind {
+    let mut walk = Walk { scan, closers: closers(scan), found: vec![] };
+    let begins = |walk: &Walk<'_>, word: &str| (0..scan.tokens.len()).any(|at| walk.text(at) == word);
+    match walk.uses().map(|at| walk.text(at)) {
+        Some("const" | "fn" | "table" | "param" | "let") if !begins(&walk, "problem") => FileKind::Library,
+        _ => FileKind::Spec,
+    }
 }
 
 /// Adds the scan's findings to the later ones, and drops later ones that stand in a statement in
@@ -76,21 +102,69 @@ struct Walk<'a> {
 impl Walk<'_> {
     fn spec(&mut self) {
         let tokens = &self.scan.tokens;
-        let Some(first) = tokens.iter().position(|token| token.kind != TokenKind::Doc) else {
+        let begin = self.after_uses();
+        let Some(first) = self.uses() else {
             let at = tokens.first().map_or(Span::new(0, 0), |token| token.span);
             return self.one_problem(at, "there is no problem here");
         };
+        if self.text(first) == "import" {
+            let finding = Diagnostic::new(Code::Unexpected, tokens[first].span, "`import` begins no statement");
+            return self.found.push(finding.help("libraries are used: `use std::rotation;`, `use \"shuttle.ntg\";`"));
+        }
+        if matches!(self.text(first), "const" | "fn" | "table") {
+            let finding = Diagnostic::new(Code::OneProblem, tokens[first].span, "this is a library: it has no problem");
+            return self
+                .found
+                .push(finding.help("a spec is exactly one `problem Name { ... }`, and may `use` this file"));
+        }
         if self.text(first) != "problem" {
             return self.one_problem(tokens[first].span, "a spec begins with `problem`");
         }
         let Some(brace) = self.next_brace(first, tokens.len()) else {
-            return self.head(Rule::whole_problem_head, 0, tokens.len());
+            return self.head(Rule::whole_problem_head, begin, tokens.len());
         };
-        self.head(Rule::whole_problem_head, 0, brace);
+        self.head(Rule::whole_problem_head, begin, brace);
         let closer = self.closers[brace];
         self.body(Body::Items(Scope::Problem), brace + 1, closer);
         if let Some(more) = tokens.get(closer + 1) {
             self.one_problem(more.span, "the problem ends before this");
+        }
+    }
+
+    /// Looks at the `use`s at the head of a file; gives the first word behind them.
+    fn uses(&mut self) -> Option<usize> {
+        self.found.clear();
+        let end = self.scan.tokens.len();
+        let mut at = 0;
+        loop {
+            let first = (at..end).find(|index| self.scan.tokens[*index].kind != TokenKind::Doc)?;
+            if self.text(first) != "use" {
+                return Some(first);
+            }
+            let stop = (first..end).find(|index| self.text(*index) == ";").map_or(end, |semicolon| semicolon + 1);
+            let (from, to) = (self.start(at), self.start(stop));
+            match grammar::front(Rule::use_item, &self.scan.clean[from..to]) {
+                Ok(_) => at = stop,
+                Err(stuck) => {
+                    let finding = explain(self.scan, &stuck, from);
+                    // Without its `;` the next statement is not lost.
+                    let next = (first + 1..stop).find(|index| matches!(self.text(*index), "use" | "problem"));
+                    self.found.push(finding);
+                    at = next.unwrap_or(stop);
+                }
+            }
+        }
+    }
+
+    /// The first token behind the `use`s, documentation included.
+    fn after_uses(&self) -> usize {
+        let end = self.scan.tokens.len();
+        let mut at = 0;
+        loop {
+            let first = (at..end).find(|index| self.scan.tokens[*index].kind != TokenKind::Doc);
+            let Some(first) = first.filter(|first| self.text(*first) == "use") else { return at };
+            let stop = (first..end).find(|index| self.text(*index) == ";").map_or(end, |semicolon| semicolon + 1);
+            at = (first + 1..stop).find(|index| matches!(self.text(*index), "use" | "problem")).unwrap_or(stop);
         }
     }
 

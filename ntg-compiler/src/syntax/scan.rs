@@ -142,7 +142,7 @@ impl<'a> Scanner<'a> {
 
     fn punctuation(&mut self, first: char) {
         // What the author joined is one token; the longest first.
-        const JOINED: [&str; 10] = ["...", "..=", "..", "==", "<=", ">=", "!=", "=<", "=>", "**"];
+        const JOINED: [&str; 11] = ["...", "..=", "..", "::", "==", "<=", ">=", "!=", "=<", "=>", "**"];
         if let Some(joined) = JOINED.iter().find(|joined| self.rest().starts_with(**joined)) {
             if joined.len() == 3 {
                 self.range_operator(joined);

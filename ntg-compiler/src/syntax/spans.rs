@@ -13,8 +13,20 @@ impl Spec {
     #[must_use]
     pub fn without_spans(&self) -> Self {
         let mut spec = self.clone();
+        spec.uses.erase();
         spec.problem.erase();
         spec
+    }
+}
+
+impl Library {
+    /// The same library with every span empty at 0.
+    #[must_use]
+    pub fn without_spans(&self) -> Self {
+        let mut library = self.clone();
+        library.uses.erase();
+        library.items.erase();
+        library
     }
 }
 
@@ -89,6 +101,7 @@ macro_rules! structures {
 }
 
 structures! {
+    Use { target, target_span, names, alias, span }
     Problem { doc, name, items, span }
     Doc { text, span }
     Item { doc, kind, span }
@@ -171,6 +184,7 @@ choices! {
         Const(x), Param(x), Variable(x), Output(x), Function(x), Let(x), Table(x), Continuation(x), Duration(x),
         Start(x), Phase(x), Agent(x), Jump(x), Continuous(x), Collocation(x), Objective(x), Block(x), Guess(x);;
     }
+    UseTarget { Module(x), File(x);; }
     TableData { Inline(x); File { path, span }; }
     Extent { Fixed(x), Free(x);; }
     Course { Spline(x);; Held, Continuous, Collocated }

@@ -31,7 +31,7 @@ pub const EXPRESSION_WORDS: &[&str] = &[
 ];
 
 /// Words kept free for later versions of the language.
-pub const LATER_WORDS: &[&str] = &["at", "import", "scale", "soft", "unit", "use"];
+pub const LATER_WORDS: &[&str] = &["at", "soft"];
 
 /// Words that Rust refuses as names even in their raw form.
 pub(crate) const NEVER_NAMES: &[&str] = &["Self", "crate", "self", "super"];

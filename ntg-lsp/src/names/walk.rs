@@ -21,6 +21,16 @@ pub(super) fn names(spec: &Spec) -> Names {
     walk.names
 }
 
+/// The names of a library, mentions in no particular order.
+pub(super) fn library(library: &Library, all: Span) -> Names {
+    let mut walk =
+        Walk { names: Names::default(), locals: vec![], indices: vec![], in_function: false, opened: HashMap::new() };
+    let root = walk.open(None, all);
+    walk.declarations(root, &library.items);
+    walk.items(root, &library.items);
+    walk.names
+}
+
 /// The working state.
 struct Walk {
     names: Names,

@@ -189,6 +189,8 @@ fn kind(rule: Rule) -> Kind {
         | R::event
         | R::event_word => Kind::Expression,
         R::name
+        | R::qualifier
+        | R::module
         | R::argument
         | R::segment
         | R::axis
@@ -228,6 +230,10 @@ fn mark(rule: Rule) -> Kind {
         R::semicolon => Kind::Mark(";"),
         R::colon => Kind::Mark(":"),
         R::comma => Kind::Mark(","),
+        R::double_colon | R::use_names => Kind::Minor("::"),
+        R::use_item => Kind::Keyword("use".into()),
+        R::library => Kind::Statement,
+        R::alias => Kind::Keyword("as".into()),
         R::trailing_comma => Kind::Mark(","),
         R::caret => Kind::Minor("^"),
         R::dot => Kind::Minor("."),

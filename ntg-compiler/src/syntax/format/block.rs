@@ -105,6 +105,9 @@ impl Writer<'_> {
     }
 
     fn opening_brace(&self, range: &Range<usize>) -> Option<usize> {
+        if is_use(self.pieces, range) {
+            return None;
+        }
         self.pieces.outer(range.clone()).find(|at| self.pieces[*at].kind == Kind::Open && self.pieces[*at].text == "{")
     }
 
@@ -304,9 +307,15 @@ fn statement_end(pieces: &Pieces, range: Range<usize>) -> usize {
         if piece.is_mark(";") {
             return at + 1;
         }
-        if piece.kind == Kind::Open && piece.text == "{" {
+        if piece.kind == Kind::Open && piece.text == "{" && !is_use(pieces, &range) {
             return piece.partner + 1;
         }
     }
     range.end
+}
+
+/// Whether a statement is a `use`, whose braces hold a list.
+fn is_use(pieces: &Pieces, range: &Range<usize>) -> bool {
+    let mut words = range.clone().map(|at| &pieces[at]).filter(|piece| !piece.is_comment() && piece.kind != Kind::Doc);
+    words.next().is_some_and(|first| first.is_word("use"))
 }

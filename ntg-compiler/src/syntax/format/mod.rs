@@ -20,7 +20,7 @@ mod pieces;
 mod statement;
 mod table;
 
-use super::{grammar, parse, scan};
+use super::{FileKind, file_kind, grammar, parse, parse_library, scan};
 use crate::diagnostic::Diagnostics;
 use crate::source::Source;
 use align::Line;
@@ -39,11 +39,19 @@ const INDENT: usize = 4;
 /// # Errors
 /// What is wrong with the text as text: a spec that does not parse has no layout.
 pub fn format(source: &Source) -> Result<String, Diagnostics> {
-    parse(source)?;
+    let kind = file_kind(source);
+    match kind {
+        FileKind::Spec => _ = parse(source)?,
+        FileKind::Library => _ = parse_library(source, 0)?,
+    }
     let crlf = source.text.find('\n').is_some_and(|at| source.text[..at].ends_with('\r'));
     let text = source.text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let scan = scan::scan(&Source::new(source.name.as_str(), text.as_str()));
-    let Ok(pair) = grammar::spec(&scan.clean) else {
+    let pair = match kind {
+        FileKind::Spec => grammar::spec(&scan.clean),
+        FileKind::Library => grammar::library(&scan.clean),
+    };
+    let Ok(pair) = pair else {
         // The same tokens parsed a moment ago; should they ever not, the text stays as it is.
         return Ok(source.text.clone());
     };

@@ -176,8 +176,8 @@ impl Stream<'_> {
             return true;
         }
         match b.kind {
-            _ if a.kind == Kind::Sign || is_tight("^") || is_tight(".") => false,
-            Kind::Open => b.is_parenthesis,
+            _ if a.kind == Kind::Sign || is_tight("^") || is_tight(".") || is_tight("::") => false,
+            Kind::Open => b.is_parenthesis || (a.text == "(" && b.text == "["),
             _ => true,
         }
     }

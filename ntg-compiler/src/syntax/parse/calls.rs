@@ -47,10 +47,17 @@ impl Build {
     fn raw_call(&mut self, pair: Pair<'_>) -> Raw {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let callee = self.name(&parts.required(Rule::callee));
+        let callee = self.callee(parts.required(Rule::callee));
         let over = parts.optional(Rule::index_range).map(|pair| self.index_range(pair));
         let arguments = parts.map(|pair| self.expression(pair)).collect();
         Raw { callee, over, arguments, span }
+    }
+
+    fn callee(&mut self, pair: Pair<'_>) -> Ident {
+        let mut parts = Parts::of(pair);
+        let qualifier = parts.optional(Rule::qualifier);
+        let name = parts.any();
+        self.qualified(qualifier, &name)
     }
 
     fn reduction(&mut self, op: ReduceOp, raw: Raw) -> ExprKind {

@@ -75,7 +75,16 @@ impl Build {
 
     pub(super) fn path(&mut self, pair: Pair<'_>) -> Path {
         let span = self.span(&pair);
-        Path { segments: Parts::of(pair).map(|pair| self.segment(pair)).collect(), span }
+        let mut parts = Parts::of(pair);
+        let qualifier = parts.optional(Rule::qualifier);
+        let mut segments: Vec<Segment> = parts.map(|pair| self.segment(pair)).collect();
+        if let (Some(qualifier), Some(first)) = (qualifier, segments.first_mut()) {
+            let start = self.span(&qualifier).start;
+            let library: String = Parts::of(qualifier).map(|part| self.name(&part).text + "::").collect();
+            first.name = Ident { text: library + &first.name.text, span: Span { start, end: first.name.span.end } };
+            first.span.start = start;
+        }
+        Path { segments, span }
     }
 
     pub(super) fn segment(&mut self, pair: Pair<'_>) -> Segment {

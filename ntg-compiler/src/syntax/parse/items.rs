@@ -65,6 +65,7 @@ impl Build {
     /// Phases and agents do not nest; some statements make sense in a phase only, or nowhere in one.
     fn check_scope(&mut self, declaration: &Pair<'_>) {
         let (word, where_to) = match (declaration.as_rule(), self.scope) {
+            (rule, Scope::Library) => return self.check_library_item(declaration, rule),
             (Rule::phase, Scope::Phase) => ("phase", "write it after the phase, with `after`"),
             (Rule::agent, Scope::Phase | Scope::Agent) => ("agent", "write it directly in the problem"),
             (Rule::start, Scope::Phase) => {
@@ -79,11 +80,31 @@ impl Build {
         self.misplaced_item(declaration, word, where_to);
     }
 
+    /// A library has no values of its own to be found or changed.
+    fn check_library_item(&mut self, declaration: &Pair<'_>, rule: Rule) {
+        let text = declaration.as_str();
+        let is_param = rule == Rule::param || (rule == Rule::table && text.starts_with("param"));
+        if matches!(rule, Rule::constant | Rule::function | Rule::table) && !is_param {
+            return;
+        }
+        let word: String = text.chars().take_while(|c| c.is_alphanumeric()).collect();
+        let help = match rule {
+            _ if is_param => "what a program may change is an argument of a function",
+            Rule::named => "write `const`, or `fn` with what it depends on as arguments",
+            _ => "write it in the problem that uses the library",
+        };
+        let start = self.span(declaration).start;
+        let span = Span { start, end: start + word.len() as u32 };
+        let message = format!("`{word}` may not stand in a library, which has only `use`, `const`, `fn` and `table`");
+        self.report(Code::WrongLibrary, span, message, help);
+    }
+
     fn misplaced_item(&mut self, declaration: &Pair<'_>, word: &str, where_to: &str) {
         let place = match self.scope {
             Scope::Problem => "directly in the problem",
             Scope::Agent => "in an agent",
             Scope::Phase => "in a phase",
+            Scope::Library => "in a library",
         };
         let start = self.span(declaration).start;
         let span = Span { start, end: start + word.len() as u32 };

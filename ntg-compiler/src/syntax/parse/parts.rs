@@ -62,6 +62,7 @@ fn is_punctuation(rule: Rule) -> bool {
             | R::right_bracket
             | R::semicolon
             | R::colon
+            | R::double_colon
             | R::comma
             | R::caret
             | R::dot
@@ -78,6 +79,7 @@ fn is_keyword(rule: Rule) -> bool {
         rule,
         R::kw_after
             | R::kw_agent
+            | R::kw_as
             | R::kw_collocation
             | R::kw_const
             | R::kw_continuation
@@ -105,6 +107,7 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_through
             | R::kw_to
             | R::kw_up
+            | R::kw_use
             | R::kw_variable
     )
 }
