@@ -144,7 +144,7 @@ fn no_floor_of_the_solver_knows_a_floor_above_it() {
         &["check", "scaling"],
         &["kkt", "residuals"],
         &["outcome"],
-        &["stopping"],
+        &["sensitivity", "stopping"],
         &["ipm", "sqp"],
         &["method"],
     ];
@@ -158,7 +158,7 @@ fn no_floor_of_the_runtime_knows_a_floor_above_it() {
         &["lanes", "transcribe"],
         &["error", "solution"],
         &["guess", "report"],
-        &["explain", "strategy"],
+        &["explain", "sensitivity", "strategy"],
         &["refine"],
         &["solve"],
         &["multistart"],

@@ -1,6 +1,7 @@
 //! `ntg solve`: from a spec to a printed solution.
 
 mod json;
+mod sensitivity;
 mod starts;
 mod text;
 
@@ -16,6 +17,7 @@ use ntg_runtime::multistart::MultiReport;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::refine::{Refined, Refinement};
 use ntg_runtime::report::Report;
+use ntg_runtime::sensitivity::{Sensitivity, SensitivityError};
 use ntg_runtime::settings::{Between, Method, Settings};
 use ntg_runtime::{Error, solve_from, status::Status};
 
@@ -35,6 +37,8 @@ struct Solved<'a> {
     explanation: Option<&'a Explanation>,
     /// What is proved for all times, and what the guarantee did, where one was asked for.
     proved: Option<(&'a Summary, &'a Guaranteed<'a>)>,
+    /// Derivatives by parameters, or why there are none, where they were asked for.
+    sensitivity: Option<&'a Result<Sensitivity, SensitivityError>>,
     samples: usize,
     compile_seconds: f64,
 }
@@ -91,11 +95,17 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let summary = mended.as_ref().map(|mended| mended.certificate.summary(&compiled.program.structure));
     let explanation = explained(report, &problem, &settings, &interrupt);
 
+    let sensitivity = sensitivity::differentiated(arguments.sensitivity.as_deref(), report, &problem);
+    if let Some(Err(error @ SensitivityError::UnknownParameter(..))) = &sensitivity {
+        return Err(error.to_string());
+    }
+
     let samples = arguments.samples as usize;
     let explanation = explanation.as_ref();
     let proved = summary.as_ref().zip(mended.as_ref());
     let problem: &dyn Problem = mended.as_ref().map_or(&problem as &dyn Problem, |mended| &mended.problem);
-    let solved = Solved { problem, report, starts, explanation, proved, samples, compile_seconds };
+    let sensitivity = sensitivity.as_ref();
+    let solved = Solved { problem, report, starts, explanation, proved, sensitivity, samples, compile_seconds };
     match arguments.format {
         Format::Text => files::print(&text::document(&solved)),
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),

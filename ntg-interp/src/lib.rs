@@ -16,10 +16,10 @@ pub use finding::finding;
 pub use parameters::{Place, SetError};
 pub use text::{quantity, target};
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
-use ntg_compiler::program::Program;
-use ntg_runtime::problem::{Derivatives, Lanes, Problem};
+use ntg_compiler::program::{KernelBody, Program, parametric};
+use ntg_runtime::problem::{Derivatives, Lanes, Parametric, Problem};
 use ntg_splines::Table;
 use ntg_structure::Structure;
 
@@ -32,8 +32,16 @@ use tape::Tape;
 pub struct Interpreted {
     structure: Structure,
     kernels: Arc<[Tapes]>,
+    /// The formulas, and the form in which parameters are variables, which is made where it is asked for.
+    formulas: Arc<Formulas>,
     /// Registers that a finished call has left for the next: one set for each thread at work.
     spare: Mutex<Vec<Vec<f64>>>,
+}
+
+/// What tapes were made of.
+struct Formulas {
+    kernels: Vec<KernelBody>,
+    parametric: OnceLock<Interpreted>,
 }
 
 /// The three functions of one kernel.
@@ -56,7 +64,8 @@ impl Interpreted {
                 }
             })
             .collect();
-        Self { structure: program.structure.clone(), kernels, spare: Mutex::new(Vec::new()) }
+        let formulas = Arc::new(Formulas { kernels: program.kernels.clone(), parametric: OnceLock::new() });
+        Self { structure: program.structure.clone(), kernels, formulas, spare: Mutex::new(Vec::new()) }
     }
 
     fn with_registers(&self, work: impl FnOnce(&mut Vec<f64>)) {
@@ -69,7 +78,21 @@ impl Interpreted {
 
 impl Clone for Interpreted {
     fn clone(&self) -> Self {
-        Self { structure: self.structure.clone(), kernels: Arc::clone(&self.kernels), spare: Mutex::default() }
+        let (kernels, formulas) = (Arc::clone(&self.kernels), Arc::clone(&self.formulas));
+        Self { structure: self.structure.clone(), kernels, formulas, spare: Mutex::default() }
+    }
+}
+
+impl Parametric for Interpreted {
+    fn parametric(&self) -> Arc<dyn Problem + Send + Sync> {
+        let made = self.formulas.parametric.get_or_init(|| {
+            let (structure, kernels) = (self.structure.clone(), self.formulas.kernels.clone());
+            Interpreted::new(&parametric(&Program { structure, kernels }))
+        });
+        let mut form = made.clone();
+        form.structure.parameters.clone_from(&self.structure.parameters);
+        form.structure.tables.clone_from(&self.structure.tables);
+        Arc::new(form)
     }
 }
 

@@ -56,6 +56,7 @@ pub mod outcome;
 mod reductions;
 pub mod residuals;
 pub mod scaling;
+pub mod sensitivity;
 pub mod sparse;
 #[cfg(feature = "sqp")]
 pub mod sqp;

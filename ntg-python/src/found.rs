@@ -9,13 +9,14 @@ use ntg_report::run::Recording;
 use ntg_runtime::report::{ConstraintReport, Report, Worst};
 use ntg_runtime::settings::{Progress, Settings};
 use ntg_runtime::status::Status;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyKeyError;
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::curves::{self, CurveData};
 use crate::errors;
 use crate::problem::{Compiled, Spec};
+use crate::sensitivity::Derivatives;
 use crate::watch::Watch;
 
 /// A report with its problem.
@@ -27,8 +28,6 @@ pub(crate) struct Found {
     iterations: Vec<Progress>,
 }
 
-/// Name, unit, documentation, start and end in seconds of a function of time.
-type CurveData = (String, String, String, f64, f64);
 /// Name, value and unit.
 type NumberData = (String, f64, String);
 
@@ -174,17 +173,7 @@ impl Found {
     /// The flat outputs.
     #[getter]
     fn outputs(&self) -> Vec<CurveData> {
-        let structure = self.report.solution.structure();
-        let doc = |name: &str| {
-            let last = name.rsplit('.').next().unwrap_or(name);
-            let base = last.split('[').next().unwrap_or(last);
-            let mut outputs = structure.phases.iter().flat_map(|phase| &phase.outputs);
-            outputs.find(|output| output.name == base).map(|output| output.doc.clone()).unwrap_or_default()
-        };
-        let trajectories = self.report.solution.trajectories().into_iter();
-        let data =
-            trajectories.map(|t| (t.name().to_owned(), t.unit().symbol.clone(), doc(t.name()), t.start(), t.end()));
-        data.collect()
+        curves::outputs(&self.report.solution)
     }
 
     /// The named expressions that are functions of time, and those that are numbers.
@@ -203,15 +192,7 @@ impl Found {
 
     /// The function of time of any name, also in one phase alone: unit, documentation, start and end.
     fn curve(&self, name: &str) -> Option<CurveData> {
-        let solution = &self.report.solution;
-        if let Some(output) = solution.output(name) {
-            let doc = self.outputs().into_iter().find(|known| known.0 == name).map(|known| known.2);
-            let (unit, doc) = (output.unit().symbol.clone(), doc.unwrap_or_default());
-            return Some((name.to_owned(), unit, doc, output.start(), output.end()));
-        }
-        let signal = solution.signal(&*self.problem, name)?;
-        let (start, end) = signal.span()?;
-        Some((name.to_owned(), signal.unit().symbol.clone(), signal.doc().to_owned(), start, end))
+        curves::curve(&self.report.solution, &self.problem, name)
     }
 
     /// Values of an output or named expression at mission times in seconds; of an output also a derivative with
@@ -223,19 +204,12 @@ impl Found {
         times: PyReadonlyArray1<'py, f64>,
         order: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let times = times.as_slice()?;
-        let solution = &self.report.solution;
-        let values: Option<Vec<f64>> = match (solution.output(name), order) {
-            (Some(output), _) => Some(times.iter().map(|t| output.derivative(*t, order)).collect()),
-            (None, 0) => solution.signal(&*self.problem, name).map(|signal| signal.values(times)),
-            (None, _) => {
-                let words =
-                    format!("`{name}` is no output: only outputs have derivatives; name it by a `let` of the spec");
-                return Err(errors::plain(py, "Error", &words));
-            }
-        };
-        let values = values.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
-        Ok(values.into_pyarray(py))
+        curves::values(py, (&self.report.solution, &self.problem), name, times.as_slice()?, order)
+    }
+
+    /// Derivatives by parameters: by those of these names, or by all.
+    fn sensitivity(&self, py: Python<'_>, names: Option<Vec<String>>) -> PyResult<Derivatives> {
+        Derivatives::new(py, (&self.spec, &self.problem), &self.report, names)
     }
 
     /// Everything about every constraint.

@@ -3,9 +3,11 @@
 //! One file a class. Values go in and out as plain Python objects and NumPy arrays; names, units and errors are those
 //! of the spec. Everything a person sees (documentation, types, tables, plots) is in `python/ntg/`.
 
+mod curves;
 mod errors;
 mod found;
 mod problem;
+mod sensitivity;
 mod settings;
 mod solver;
 mod study;
@@ -30,6 +32,8 @@ mod _ntg {
     use super::found::Found;
     #[pymodule_export]
     use super::problem::{Compiled, compile};
+    #[pymodule_export]
+    use super::sensitivity::{Derivatives, Predicted};
     #[pymodule_export]
     use super::solver::KeptSolver;
     #[pymodule_export]

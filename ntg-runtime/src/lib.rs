@@ -17,6 +17,7 @@ pub mod multistart;
 pub mod problem;
 pub mod refine;
 pub mod report;
+pub mod sensitivity;
 pub mod settings;
 pub mod solution;
 mod solve;

@@ -2,6 +2,7 @@
 
 use ntg_splines::Table;
 use ntg_structure::Structure;
+use std::sync::Arc;
 
 /// A problem that can be solved: a [`Structure`] and the kernels that it names.
 ///
@@ -33,6 +34,18 @@ pub trait Problem: Sync {
 
     /// Writes the values of the subexpressions that may fail to be finite.
     fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]);
+}
+
+/// A problem that has a form in which its parameters are variables, by which solutions are differentiated
+/// ([`Report::sensitivity`](crate::report::Report::sensitivity)).
+pub trait Parametric: Problem {
+    /// The same functions, in which everything that parameters decide is a variable (docs/maths.md, section 16.1).
+    ///
+    /// Behind the declared variables of its structure stand one for each parameter, of the same name and with the same
+    /// members, and one for the scaled time at which a named expression is evaluated. Durations and starts that
+    /// parameters fix are free between two bounds that are the same. Phases, outputs, groups and rows are those of the
+    /// problem; bounds and named expressions have first derivatives.
+    fn parametric(&self) -> Arc<dyn Problem + Send + Sync>;
 }
 
 /// Where derivatives are wanted.

@@ -48,6 +48,9 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         document["certificate"] = crate::certify::document(summary);
         document["guarantee"] = crate::certify::cost(found);
     }
+    if let Some(sensitivity) = solved.sensitivity {
+        document["sensitivity"] = super::sensitivity::document(sensitivity, solved.samples);
+    }
     if let Some(refined) = &report.refined {
         document["refinement"] = json!(ntg_report::run::Refinement::from(refined));
     }

@@ -17,6 +17,7 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
     lines.extend(
         solved.proved.map(|(summary, found)| format!("\n{summary}{}", crate::certify::words(found).trim_end())),
     );
+    lines.extend(solved.sensitivity.map(super::sensitivity::text));
     lines.push(String::new());
     let problem: &dyn Problem = solved.problem;
     let solution = &solved.report.solution;
@@ -56,7 +57,7 @@ fn spaced(unit: &Unit) -> String {
 }
 
 /// Six significant digits, without an exponent where that is readable.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
         let digits = if value == 0.0 { 1.0 } else { value.abs().log10().floor() + 1.0 };
         let decimals = (6.0 - digits).clamp(0.0, 9.0) as usize;

@@ -35,7 +35,7 @@ pub(super) fn derive(formulas: Formulas, slots: usize, data: usize, mode: Mode) 
     let degrees: Vec<OutDegree> = values.iter().map(|v| out_degree(degree(&dag, *v, is_slot))).collect();
     let (mut pattern, mut jacobian) = (Vec::new(), Vec::new());
     let (mut hessian_pattern, mut second) = (Vec::new(), Vec::new());
-    if mode == Mode::Solve {
+    if matches!(mode, Mode::Solve | Mode::Slopes) {
         for (row, value) in values.iter().enumerate() {
             let entries = gradient(&mut dag, *value, &variables).expect(NO_REDUCTIONS);
             for (slot, entry) in entries.into_iter().enumerate() {
@@ -45,6 +45,8 @@ pub(super) fn derive(formulas: Formulas, slots: usize, data: usize, mode: Mode) 
                 }
             }
         }
+    }
+    if mode == Mode::Solve {
         let weights: Vec<NodeId> = ids(inputs, rows).into_iter().map(|weight| dag.input(weight)).collect();
         let terms: Vec<(NodeId, NodeId)> = weights.into_iter().zip(values.iter().copied()).collect();
         let mut entries = hessian(&mut dag, &terms, &variables).expect(NO_REDUCTIONS);

@@ -24,6 +24,8 @@ use crate::source::Span;
 pub(super) enum Mode {
     /// A function that is solved for.
     Solve,
+    /// A function of which first derivatives are wanted.
+    Slopes,
     /// A function that is only shown: no derivatives.
     Show,
     /// A function of parameters alone: bounds, durations, guesses. Durations are data there.

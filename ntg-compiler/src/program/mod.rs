@@ -12,11 +12,13 @@ mod kernel;
 mod lower;
 mod mission;
 mod names;
+mod parametric;
 mod pieces;
 mod points;
 mod probes;
 
 pub use lower::lower;
+pub use parametric::parametric;
 
 use ntg_structure::Structure;
 

@@ -18,16 +18,19 @@ from ._errors import (
     Error,
     Finding,
     ParameterError,
+    SensitivityError,
     SettingsError,
     SetupError,
     SpecError,
     TableError,
     UnsolvedError,
 )
+from ._curve import Curve
 from ._ntg import __version__
 from ._problem import Parameter, Problem, load, loads
+from ._sensitivity import Prediction, Sensitivity, Weak
 from ._settings import Progress, Settings
-from ._solution import Constraint, Curve, Phase, Solution, Worst
+from ._solution import Constraint, Phase, Solution, Worst
 from ._solver import Solver
 
 __all__ = [
@@ -39,8 +42,11 @@ __all__ = [
     "Parameter",
     "ParameterError",
     "Phase",
+    "Prediction",
     "Problem",
     "Progress",
+    "Sensitivity",
+    "SensitivityError",
     "Settings",
     "SettingsError",
     "SetupError",
@@ -49,6 +55,7 @@ __all__ = [
     "SpecError",
     "TableError",
     "UnsolvedError",
+    "Weak",
     "Worst",
     "__version__",
     "load",

@@ -69,6 +69,10 @@ class TableError(Error, ValueError):
     """A table of parameter sets that cannot be used."""
 
 
+class SensitivityError(Error, RuntimeError):
+    """A solution that cannot be differentiated."""
+
+
 class BusyError(Error, RuntimeError):
     """A solver is used by two threads at once."""
 

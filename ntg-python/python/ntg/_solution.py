@@ -5,9 +5,11 @@ from __future__ import annotations
 import html
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Iterator, NamedTuple, Optional, Sequence, Union, overload
+from typing import TYPE_CHECKING, Any, Iterator, NamedTuple, Optional, Sequence, Union
 
+from ._curve import POINTS, Curve
 from ._errors import UnsolvedError
+from ._sensitivity import Sensitivity
 from ._settings import Progress
 
 if TYPE_CHECKING:
@@ -16,58 +18,6 @@ if TYPE_CHECKING:
 
     from . import _ntg
     from ._problem import Problem
-
-POINTS = 401
-"""Times of a table where none are said."""
-
-
-class Curve:
-    """An output or a named expression as a function of mission time: `curve(t)`.
-
-    Times are in seconds, clamped to its own start and end; values are in `unit`.
-    """
-
-    def __init__(self, core: "_ntg.Found", data: tuple[str, str, str, float, float]) -> None:
-        self._core = core
-        self.name: str
-        """Its path: `x`, `uav[2].x`, `covert.speed`."""
-        self.unit: str
-        """The unit of its values; empty for pure numbers."""
-        self.doc: str
-        """Its documentation in the spec."""
-        self.start: float
-        """Its start in seconds."""
-        self.end: float
-        """Its end in seconds."""
-        self.name, self.unit, self.doc, self.start, self.end = data
-
-    @overload
-    def __call__(self, t: float) -> float: ...
-    @overload
-    def __call__(self, t: "ArrayLike") -> "NDArray[np.float64]": ...
-    def __call__(self, t: Any) -> Any:
-        """The values at mission times in seconds, of the same shape."""
-        return self.derivative(t, 0)
-
-    def derivative(self, t: Any, order: int = 1) -> Any:
-        """A derivative with respect to time, in `unit` per second to the power of `order`. Of outputs only."""
-        import numpy as np
-
-        times = np.asarray(t, dtype=np.float64)
-        values = self._core.values(self.name, np.ascontiguousarray(times.reshape(-1)), order)
-        return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
-
-    def sample(self, count: int = POINTS) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
-        """Equally spaced times from start to end in seconds, and the values there."""
-        import numpy as np
-
-        times = np.linspace(self.start, self.end, count)
-        return times, self(times)
-
-    def __repr__(self) -> str:
-        unit = f" [{self.unit}]" if self.unit else ""
-        return f"<ntg.Curve {self.name}{unit}, {self.start:g} .. {self.end:g} s>"
-
 
 class Phase(NamedTuple):
     """A phase and its times."""
@@ -296,6 +246,16 @@ class Solution:
     def keys(self) -> list[str]:
         """All names that `solution[name]` takes."""
         return list(self)
+
+    # Derivatives.
+
+    def sensitivity(self, *parameters: str) -> Sensitivity:
+        """Derivatives by these parameters (`"v_max"`, an array `"start"` or a member `"start[2]"`), or by all.
+
+        Raises `ParameterError` for unknown names, and `SensitivityError` where there is no solution, or where the
+        conditions under which one can be differentiated do not hold.
+        """
+        return Sensitivity(self._core.sensitivity(list(parameters) or None))
 
     # Tables.
 

@@ -124,6 +124,17 @@ impl Signal<'_> {
         values
     }
 
+    /// The phase at a mission time and the scaled time in it (none for a number), which of `Structure::named` it is there,
+    /// and for which indices.
+    pub(crate) fn place(&self, t: f64) -> Option<(Option<(usize, f64)>, usize, Vec<i64>)> {
+        let (phase, point) = self.point(t);
+        let piece = self.pieces.iter().find(|piece| piece.phase == phase)?;
+        if phase.is_some() && point.tau.is_nan() {
+            return None;
+        }
+        Some((phase.map(|phase| (phase, point.tau)), piece.named, piece.indices.clone()))
+    }
+
     /// The phase and the point of a mission time; a point whose scaled time is NaN where there is none.
     fn point(&self, t: f64) -> (Option<usize>, Point) {
         let Some(phases) = &self.phases else { return (None, Point::NONE) };

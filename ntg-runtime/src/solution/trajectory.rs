@@ -88,6 +88,12 @@ impl Trajectory {
         scaled / crate::math::powi(layout.duration(phase, x), i32::try_from(order).unwrap_or(i32::MAX))
     }
 
+    /// The phase at a mission time, the scaled time in it, and the member of its outputs.
+    pub(crate) fn place(&self, t: f64) -> Option<(usize, f64, usize)> {
+        let (phase, tau) = self.inner.locate(&self.phases, t).filter(|(_, tau)| !tau.is_nan())?;
+        Some((phase, tau, self.outputs[phase - self.phases.start]?))
+    }
+
     /// When it starts, in seconds of mission time.
     pub fn start(&self) -> f64 {
         self.inner.model.layout.start(self.phases.start, &self.inner.x)

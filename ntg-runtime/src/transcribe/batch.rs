@@ -130,6 +130,11 @@ impl Batch {
         Ok(())
     }
 
+    /// What the slots of the first element stand for.
+    pub(crate) fn sources(&self) -> &[Source] {
+        &self.sources
+    }
+
     /// Patterns of the elements' first and second derivatives.
     pub(crate) fn patterns(&self, kernels: &[Kernel]) -> [Vec<(usize, usize)>; 2] {
         match &self.composition {

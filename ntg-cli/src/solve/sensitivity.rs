@@ -1,0 +1,123 @@
+//! `--sensitivity`: derivatives by parameters, for people and for programs.
+
+use ntg_interp::Interpreted;
+use ntg_runtime::report::Report;
+use ntg_runtime::sensitivity::{Gradient, Sensitivity, SensitivityError, Weak};
+use serde_json::{Map, Value, json};
+
+use super::text::number;
+
+/// How wide a column is at least.
+const LEAST_WIDTH: usize = 12;
+
+/// Derivatives by the wanted parameters, or why there are none.
+pub(super) fn differentiated(
+    wanted: Option<&[String]>,
+    report: &Report,
+    problem: &Interpreted,
+) -> Option<Result<Sensitivity, SensitivityError>> {
+    let names: Vec<&str> = wanted?.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+    Some(match names.is_empty() || !report.has_solution() {
+        true => report.sensitivity(problem),
+        false => report.solution.sensitivity_by(problem, &names),
+    })
+}
+
+/// What is differentiated, with its derivatives: the objective, durations, variables, named numbers, and outputs at
+/// their ends.
+fn numbers(sensitivity: &Sensitivity) -> Vec<(String, Gradient)> {
+    let solution = sensitivity.solution();
+    let mut names: Vec<String> = solution.event_times().into_iter().map(|(name, _)| name).collect();
+    names.extend(solution.variables().into_iter().map(|variable| variable.name));
+    names.extend(
+        solution.signals(sensitivity.problem()).iter().filter(|s| s.is_constant()).map(|s| s.name().to_owned()),
+    );
+    let mut found = vec![("objective".to_owned(), sensitivity.objective().clone())];
+    found.extend(names.into_iter().filter_map(|name| sensitivity.of(&name).map(|gradient| (name, gradient))));
+    for output in solution.trajectories() {
+        let end = sensitivity.at(output.name(), output.end());
+        found.extend(end.map(|gradient| (format!("final({})", output.name()), gradient)));
+    }
+    found
+}
+
+/// A table: one line for everything that is differentiated, one column a parameter.
+pub(super) fn text(sensitivity: &Result<Sensitivity, SensitivityError>) -> String {
+    let sensitivity = match sensitivity {
+        Ok(found) => found,
+        Err(error) => return format!("\nno derivatives by parameters: {error}"),
+    };
+    if sensitivity.parameters().is_empty() {
+        return "\nno derivatives by parameters: the problem has none".to_owned();
+    }
+    let named = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
+    let heads: Vec<String> = sensitivity.parameters().iter().map(|p| named(&p.name, &p.unit.symbol)).collect();
+    let rows: Vec<(String, Gradient)> =
+        numbers(sensitivity).into_iter().map(|(name, g)| (named(&name, &g.unit.symbol), g)).collect();
+    let first = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    let width = |head: &str| head.chars().count().max(LEAST_WIDTH);
+    let line = |name: &str, cells: Vec<String>| {
+        let cells = cells.iter().zip(&heads).map(|(cell, head)| format!("{cell:>w$}", w = width(head)));
+        format!("  {name:first$} {}", cells.collect::<Vec<_>>().join(" "))
+    };
+    let mut lines =
+        vec![String::new(), "derivatives by parameters, in these units for one unit of the parameter:".to_owned()];
+    lines.push(line("", heads.clone()));
+    for (name, gradient) in &rows {
+        lines.push(line(name, gradient.values.iter().map(|value| number(*value)).collect()));
+    }
+    if !sensitivity.is_strict() {
+        lines.push(
+            "  the minimum is not strict: derivatives but the objective's are of the solution that moves least".into(),
+        );
+    }
+    lines.extend(sensitivity.weak().iter().map(|weak| format!("  {}", words(weak))));
+    lines.join("\n")
+}
+
+fn words(weak: &Weak) -> String {
+    let point = match (weak.points, weak.point.as_str()) {
+        (_, "") => String::new(),
+        (1, point) => format!(" ({point})"),
+        (points, point) => format!(" ({points} points, first {point})"),
+    };
+    format!("{} is only just active or inactive{point}: derivatives may be one-sided", weak.name)
+}
+
+pub(super) fn document(sensitivity: &Result<Sensitivity, SensitivityError>, samples: usize) -> Value {
+    let sensitivity = match sensitivity {
+        Ok(found) => found,
+        Err(error) => return json!({ "error": error.to_string() }),
+    };
+    let number = |(name, gradient): (String, Gradient)| {
+        (name, json!({ "unit": gradient.unit.symbol, "values": gradient.values }))
+    };
+    let solution = sensitivity.solution();
+    let curve = |name: &str, unit: &str, times: Vec<f64>| {
+        let values: Vec<Vec<f64>> =
+            times.iter().filter_map(|t| sensitivity.at(name, *t)).map(|gradient| gradient.values).collect();
+        json!({ "unit": unit, "t": times, "values": values })
+    };
+    let outputs = solution.trajectories().into_iter().map(|output| {
+        let times = output.sample(samples).into_iter().map(|(t, _)| t).collect();
+        (output.name().to_owned(), curve(output.name(), &output.unit().symbol, times))
+    });
+    let signals = solution.signals(sensitivity.problem()).into_iter().filter_map(|signal| {
+        let (start, end) = signal.span()?;
+        let last = samples.saturating_sub(1).max(1);
+        let times = (0..samples).map(|i| start + (end - start) * i as f64 / last as f64).collect();
+        Some((signal.name().to_owned(), curve(signal.name(), &signal.unit().symbol, times)))
+    });
+    json!({
+        "parameters": sensitivity.parameters().iter().map(|p| json!({
+            "name": p.name, "unit": p.unit.symbol, "value": p.value,
+        })).collect::<Vec<_>>(),
+        "strict": sensitivity.is_strict(),
+        "weak": sensitivity.weak().iter().map(|weak| json!({
+            "name": weak.name, "point": weak.point, "points": weak.points, "words": words(weak),
+        })).collect::<Vec<_>>(),
+        "numbers": numbers(sensitivity).into_iter().map(number).collect::<Map<_, _>>(),
+        "outputs": outputs.collect::<Map<_, _>>(),
+        "lets": signals.collect::<Map<_, _>>(),
+    })
+}
