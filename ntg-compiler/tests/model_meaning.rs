@@ -406,3 +406,17 @@ fn a_value_on_its_bound_is_no_contradiction() {
     }",
     );
 }
+
+#[test]
+fn a_bound_of_zero_that_is_missed_by_rounding_alone_is_no_contradiction() {
+    good(
+        "problem P {
+        duration T = 1;
+        output x: spline(order = 4, intervals = 4);
+        minimize integral(der(x, 2)^2);
+        initial { x == 0;  der(x) == 0; }
+        trajectory { logistic(500 * (1 - x)) * (2 - x) - logistic(500 * (x - 3)) >= 0;  sin(pi * x) <= 0; }
+        final { x == 2;  der(x) == 0; }
+    }",
+    );
+}

@@ -22,6 +22,9 @@ type Fixed = HashMap<InputId, (f64, Span)>; // Looked up, never iterated.
 /// How far beyond a bound a fixed value must be, relative to both, to contradict it. A value exactly
 /// on its bound is no contradiction, and unit conversions round.
 const SLACK: f64 = 1e-9;
+/// A miss below this part of the constraint's unit is no contradiction. A law: as much as the runtime leaves to the
+/// solver.
+const LEAST_MISS: f64 = 1e-7;
 
 impl Elaborator<'_> {
     /// The last step of the pass.
@@ -138,8 +141,11 @@ impl Elaborator<'_> {
         let known = |node: Option<NodeId>| node.and_then(|node| self.problem.dag.is_constant(node));
         let Some(value) = known(Some(body)) else { return false };
         let (lower, upper) = (known(constraint.bounds.lower), known(constraint.bounds.upper));
-        let below = lower.is_some_and(|lower| value < lower && !close(value, lower, scale));
-        let above = upper.is_some_and(|upper| value > upper && !close(value, upper, scale));
+        // Where a bound is 0 rounding has no size of its own; a smaller miss is left to the solver.
+        let smallest = LEAST_MISS * constraint.unit.factor;
+        let misses = |value: f64, bound: f64| (value - bound).abs() > smallest && !close(value, bound, scale);
+        let below = lower.is_some_and(|lower| value < lower && misses(value, lower));
+        let above = upper.is_some_and(|upper| value > upper && misses(value, upper));
         if !below && !above {
             return false;
         }
