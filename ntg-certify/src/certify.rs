@@ -101,7 +101,7 @@ impl Certificate {
 
     /// The mission time of a witness.
     pub fn witness_time(&self, subject: &Subject, witness: &Witness) -> Option<f64> {
-        let Quantity::Path(_, phase) = subject.quantity else { return None };
+        let Quantity::Path(_, phase, _) = subject.quantity else { return None };
         Some(self.time(phase, witness.cell, (witness.part as f64 + 0.5) * 0.5_f64.powi(witness.halvings as i32)))
     }
 }
@@ -131,12 +131,12 @@ fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Findi
         high: above.map_or(f64::INFINITY, Interval::low),
     });
     match &subject.quantity {
-        Quantity::Path(function, phase) => {
+        Quantity::Path(function, phase, cells) => {
             let goal = match required {
                 Some(required) if !equality => Goal::Bounds(required),
                 _ => Goal::Range,
             };
-            let found = search(machine, (*function, *phase), &goal, options);
+            let found = search(machine, (*function, *phase, cells.clone()), &goal, options);
             path(found, (required, equality), below)
         }
         Quantity::Sum(summands) => {

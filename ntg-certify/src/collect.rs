@@ -4,13 +4,14 @@
 //! phase that the transcription holds at several sets of points is one subject: it is to hold at all times.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ops::Range;
 
 use ntg_compiler::expr::Node as ExprNode;
 use ntg_compiler::program::{KernelBody, Program};
 use ntg_runtime::solution::{Meaning, Solution};
 use ntg_runtime::transcribe::SetupError;
 use ntg_splines::Extrapolation;
-use ntg_structure::{At, Call, Domain, Group, ReduceOp, Row, Structure};
+use ntg_structure::{At, Call, Domain, Group, Instant, ReduceOp, Row, Slot, Structure};
 
 use crate::statement::{
     Flat, Function, Graph, Input, Join, Kind, Node, Number, Over, Phase, Quantity, Spline, Statement, Subject, Summand,
@@ -80,10 +81,14 @@ impl<'a> Collector<'a> {
             out.phases[phase].cuts.extend(view.knots.breakpoints());
             out.splines.push(Spline { name, phase, order, knots, coefficients: view.coefficients });
         }
+        let places = places(structure);
         for (phase, duration) in out.phases.iter_mut().zip(solution.durations()) {
             phase.cuts.extend([0.0, 1.0]);
             phase.cuts.sort_by(f64::total_cmp);
             phase.cuts.dedup();
+            for instant in &places {
+                add_cut(&mut phase.cuts, instant.tau());
+            }
             out.numbers[phase.duration].value = duration;
         }
         out.tables = structure
@@ -115,6 +120,18 @@ impl<'a> Collector<'a> {
             Domain::End(phase) => Over::End(self.solution.phase_index(phase, indices)?),
             Domain::Path { phase, .. } => Over::Phase(self.solution.phase_index(phase, indices)?),
         })
+    }
+
+    /// The cells of a phase that a domain covers.
+    fn cells(&self, phase: usize, domain: &Domain) -> Range<usize> {
+        let phase = &self.out.phases[phase];
+        match domain {
+            Domain::Path { part, .. } => {
+                let last = if part.to == Instant::END { phase.cells().end } else { cell_from(&phase.cuts, part.to) };
+                cell_from(&phase.cuts, part.from)..last
+            }
+            _ => phase.cells(),
+        }
     }
 
     /// Calls `add` with every row of every member of every group.
@@ -162,7 +179,7 @@ impl<'a> Collector<'a> {
             parts.entry((*constraint, index)).or_default().push(Summand { function, over });
             Ok(())
         })?;
-        let mut known: BTreeSet<(usize, Vec<i64>, Option<usize>)> = BTreeSet::new();
+        let mut known: BTreeSet<(usize, Vec<i64>, Option<usize>)> = BTreeSet::new(); // A constraint has one part.
         self.rows(|this, group, row, (indices, over)| {
             let Row::Constraint { constraint, lower, upper } = &group.rows[row] else { return Ok(()) };
             let along = if let Over::Phase(phase) = over { Some(phase) } else { None };
@@ -171,7 +188,7 @@ impl<'a> Collector<'a> {
             }
             let function = this.function(&group.call, row, indices)?;
             let quantity = match over {
-                Over::Phase(phase) => Quantity::Path(function, phase),
+                Over::Phase(phase) => Quantity::Path(function, phase, this.cells(phase, &group.domain)),
                 over => {
                     let own = [Summand { function, over }];
                     let elsewhere = parts.get(&(*constraint, indices.to_vec())).filter(|_| over == Over::Nowhere);
@@ -228,7 +245,9 @@ impl<'a> Collector<'a> {
                 let over = self.over(&named.domain, &indices)?;
                 let function = self.function(&named.call, 0, &indices)?;
                 let (quantity, along) = match over {
-                    Over::Phase(phase) => (Quantity::Path(function, phase), Some(phase)),
+                    Over::Phase(phase) => {
+                        (Quantity::Path(function, phase, self.cells(phase, &named.domain)), Some(phase))
+                    }
                     over => (Quantity::Sum(vec![Summand { function, over }]), None),
                 };
                 let name = self.named_member(&named.name, &indices, along);
@@ -284,6 +303,10 @@ impl<'a> Collector<'a> {
                     At::Here => Input::Flat(flat),
                     At::Start => Input::Start(flat),
                     At::End => Input::End(flat),
+                    At::Inside(instant) => {
+                        let phase = self.out.splines[spline].phase;
+                        Input::Inside(flat, cell_from(&self.out.phases[phase].cuts, instant))
+                    }
                 }
             }
             Meaning::Start(phase) => Input::Number(self.durations + 2 * phase),
@@ -310,10 +333,46 @@ impl<'a> Collector<'a> {
     }
 }
 
+/// A place nearer to a cut than this is that cut.
+const SAME: f64 = 1e-12;
+
+fn add_cut(cuts: &mut Vec<f64>, tau: f64) {
+    let at = cuts.partition_point(|cut| *cut < tau - SAME);
+    if cuts.get(at).is_none_or(|cut| (cut - tau).abs() > SAME) {
+        cuts.insert(at, tau);
+    }
+}
+
+/// The cell that begins at a place, which is one of the cuts.
+fn cell_from(cuts: &[f64], instant: Instant) -> usize {
+    cuts.partition_point(|cut| *cut < instant.tau() - SAME).min(cuts.len().saturating_sub(2))
+}
+
+/// All places inside phases that a structure names.
+fn places(structure: &Structure) -> BTreeSet<Instant> {
+    let mut found = BTreeSet::new();
+    let named = structure.named.iter().map(|named| (&named.domain, &named.call, None));
+    let groups = structure.groups.iter().map(|group| (&group.domain, &group.call, group.bounds.as_ref()));
+    for (domain, call, bounds) in named.chain(groups) {
+        if let Domain::Path { part, .. } = domain {
+            found.extend([part.from, part.to]);
+        }
+        let mut open: Vec<&Call> = bounds.into_iter().chain([call]).collect();
+        while let Some(call) = open.pop() {
+            open.extend(call.reductions.iter().map(|reduction| &reduction.body));
+            found.extend(call.slots.iter().filter_map(|slot| match slot {
+                Slot::Flat { at: At::Inside(instant), .. } => Some(*instant),
+                _ => None,
+            }));
+        }
+    }
+    found
+}
+
 /// Which member of an integral a slot means.
-fn slot_member(slot: &ntg_structure::Slot, indices: &[i64]) -> Vec<i64> {
+fn slot_member(slot: &Slot, indices: &[i64]) -> Vec<i64> {
     match slot {
-        ntg_structure::Slot::Integral { index, .. } => index.iter().map(|affine| affine.at(indices)).collect(),
+        Slot::Integral { index, .. } => index.iter().map(|affine| affine.at(indices)).collect(),
         _ => vec![],
     }
 }

@@ -98,6 +98,9 @@ impl<'a> Machine<'a> {
             Input::Flat(flat) => here.flats[*flat].unwrap_or(Jet::rough(Interval::ENTIRE, false)),
             Input::Start(flat) => Jet::constant(self.ends[*flat].0),
             Input::End(flat) => Jet::constant(self.ends[*flat].1),
+            Input::Inside(flat, number) => {
+                Jet::constant(cell(self.statement, self.statement.flats[*flat], *number).first())
+            }
             Input::Number(number) => Jet::constant(Interval::point(self.statement.numbers[*number].value)),
             Input::Value(value) => Jet::constant(Interval::point(*value)),
             Input::Tau => here.tau,

@@ -5,6 +5,8 @@
 //! witness of a violation is found where the violation is large. A box is done when it is proved, when it cannot add to
 //! what is known, or when it is as small as the tolerance allows.
 
+use std::ops::Range;
+
 use crate::evaluate::{Here, Machine, cell};
 use crate::interval::Interval;
 use crate::jet::Jet;
@@ -129,17 +131,17 @@ struct Open {
     tau: Piece,
 }
 
-/// Looks at a function over a phase.
+/// Looks at a function over some cells of a phase.
 pub(crate) fn search(
     machine: &Machine<'_>,
-    (function, phase): (usize, usize),
+    (function, phase, stretch): (usize, usize, Range<usize>),
     goal: &Goal,
     options: &Options,
 ) -> Search {
     let cuts = &machine.statement.phases[phase].cuts;
     let needs = machine.needs(function);
-    let cells = cuts.len() - 1;
-    let mut open: Vec<Open> = (0..cells)
+    let cells = stretch.len();
+    let mut open: Vec<Open> = stretch
         .map(|number| Open {
             cell: number,
             halvings: 0,
@@ -286,8 +288,9 @@ impl Judge<'_> {
 
 /// The integral of a function over the scaled time of a phase.
 pub(crate) fn integral(machine: &Machine<'_>, of: (usize, usize), options: &Options) -> (Interval, Search) {
-    let found = search(machine, of, &Goal::Integral(options.integral), options);
-    let cuts = &machine.statement.phases[of.1].cuts;
+    let phase = &machine.statement.phases[of.1];
+    let found = search(machine, (of.0, of.1, phase.cells()), &Goal::Integral(options.integral), options);
+    let cuts = &phase.cuts;
     let sum = found.leaves.iter().fold(Interval::ZERO, |sum, leaf| {
         let length = Interval::point(cuts[leaf.cell + 1]) - Interval::point(cuts[leaf.cell]);
         let mean = if leaf.total { leaf.mean } else { Interval::ENTIRE };

@@ -3,6 +3,8 @@
 //! Everything is spelled out: families are expanded, index forms are resolved, and every number is a double that
 //! stands for itself. A [`Statement`] is what `ntg-check` reads back from the file.
 
+use std::ops::Range;
+
 use ntg_compiler::expr::{Binary, Unary};
 use ntg_splines::AxisParts;
 use ntg_structure::Unit;
@@ -57,6 +59,8 @@ pub enum Input {
     Start(usize),
     /// A [`Flat`] at the end of its phase.
     End(usize),
+    /// A [`Flat`] where a cell of its phase begins, from the right.
+    Inside(usize, usize),
     /// One of the [`Statement::numbers`].
     Number(usize),
     /// An index.
@@ -113,8 +117,16 @@ pub struct Phase {
     pub start: usize,
     /// Its duration in seconds, as one of the numbers.
     pub duration: usize,
-    /// Scaled times between which every spline of the phase is one polynomial, from 0 to 1.
+    /// Scaled times between which every spline of the phase is one polynomial, from 0 to 1; places that functions are
+    /// taken at, or between, are among them. What lies between two is a cell.
     pub cuts: Vec<f64>,
+}
+
+impl Phase {
+    /// All of its cells.
+    pub fn cells(&self) -> Range<usize> {
+        0..self.cuts.len().saturating_sub(1)
+    }
 }
 
 /// A number with its name: a parameter, a duration, a start, a variable. SI.
@@ -164,8 +176,8 @@ pub struct Summand {
 /// What is bounded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Quantity {
-    /// A function at every time of a phase.
-    Path(usize, usize),
+    /// A function at every time of some cells of a phase.
+    Path(usize, usize, Range<usize>),
     /// A sum of integrals and numbers.
     Sum(Vec<Summand>),
 }

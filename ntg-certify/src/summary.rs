@@ -120,7 +120,7 @@ impl Certificate {
             (low.min(high), low.max(high))
         };
         let mut bands = vec![];
-        if let Quantity::Path(_, phase) = subject.quantity {
+        if let Quantity::Path(_, phase, _) = subject.quantity {
             for leaf in finding.covers.iter().flatten() {
                 let (low, high) = of(leaf.values.low(), leaf.values.high());
                 let from = self.time(phase, leaf.cell, leaf.start());

@@ -103,7 +103,7 @@ impl<'p> Tightened<'p> {
         let mut held: Vec<(usize, usize)> = vec![]; // Constraints with more points, in phases.
         for number in 0..self.structure.groups.len() {
             let group = self.structure.groups[number].clone();
-            let Domain::Path { phase, points } = &group.domain else { continue };
+            let Domain::Path { phase, points, part } = &group.domain else { continue };
             let own = &self.structure.phases[phase.phase];
             let intervals = most_intervals(own);
             // Sets that accompany Gauss points hold the same constraints again.
@@ -127,7 +127,7 @@ impl<'p> Tightened<'p> {
                 let more = Points::Uniform { points: stretches * factor + 1 };
                 let set = self.structure.phases[phase.phase].points.len();
                 self.structure.phases[phase.phase].points.push(more);
-                let domain = Domain::Path { phase: phase.clone(), points: set };
+                let domain = Domain::Path { phase: phase.clone(), points: set, part: *part };
                 let copy = self.selection(&group, &rows);
                 self.structure.groups.push(Group { domain, ..copy });
             }

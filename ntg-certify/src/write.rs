@@ -1,6 +1,7 @@
 //! The file of a certificate (docs/certificate-format.md): lines of words, numbers in hexadecimal, a digest at the end.
 
 use std::fmt::Write;
+use std::ops::Range;
 
 use ntg_splines::Symmetry;
 use sha2::{Digest, Sha256};
@@ -45,7 +46,10 @@ pub fn body(certificate: &Certificate) -> String {
         let [below, above] =
             [subject.bounds.0, subject.bounds.1].map(|bound| bound.map_or("-".to_owned(), |f| f.to_string()));
         let quantity = match &subject.quantity {
-            Quantity::Path(function, phase) => format!("path {function} {phase}"),
+            Quantity::Path(function, phase, cells) if *cells == statement.phases[*phase].cells() => {
+                format!("path {function} {phase}")
+            }
+            Quantity::Path(function, phase, cells) => format!("part {function} {phase} {} {}", cells.start, cells.end),
             Quantity::Sum(summands) => format!("sum {}", sum(summands)),
         };
         line(&mut out, format_args!("subject {kind} {below} {above} {quantity} {}", one_line(&subject.name)));
@@ -144,6 +148,7 @@ fn input(input: &Input) -> String {
         Input::Flat(flat) => format!("flat {flat}"),
         Input::Start(flat) => format!("start {flat}"),
         Input::End(flat) => format!("end {flat}"),
+        Input::Inside(flat, cell) => format!("inside {flat} {cell}"),
         Input::Number(number) => format!("number {number}"),
         Input::Value(value) => format!("value {}", hex(*value)),
         Input::Tau => "tau".to_owned(),
@@ -180,17 +185,18 @@ fn sum(summands: &[Summand]) -> String {
 }
 
 fn cover_lines(out: &mut String, statement: &Statement, quantity: &Quantity, covers: &[Vec<Leaf>]) {
-    let phases: Vec<usize> = match quantity {
-        Quantity::Path(_, phase) => vec![*phase],
+    let all = |phase: usize| statement.phases[phase].cells();
+    let stretches: Vec<Range<usize>> = match quantity {
+        Quantity::Path(_, _, cells) => vec![cells.clone()],
         Quantity::Sum(summands) => summands
             .iter()
-            .filter_map(|summand| if let Over::Phase(phase) = summand.over { Some(phase) } else { None })
+            .filter_map(|summand| if let Over::Phase(phase) = summand.over { Some(all(phase)) } else { None })
             .collect(),
     };
-    for (phase, leaves) in phases.into_iter().zip(covers) {
+    for (cells, leaves) in stretches.into_iter().zip(covers) {
         let mut words = vec!["cover".to_owned()];
         let mut rest = &leaves[..];
-        for cell in 0..statement.phases[phase].cuts.len() - 1 {
+        for cell in cells {
             let count = rest.iter().take_while(|leaf| leaf.cell == cell).count();
             let (own, others) = rest.split_at(count);
             words.push(tree(own));

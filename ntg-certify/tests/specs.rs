@@ -45,7 +45,9 @@ fn certified(of: &Solved) -> Certificate {
 
 #[test]
 fn bounds_enclose_what_the_runtime_computes_and_the_checker_agrees() {
-    for spec in ["missile_intercept.ntg", "multi_vehicle_separated.ntg", "radar_net.ntg", "launch.ntg"] {
+    for spec in
+        ["missile_intercept.ntg", "multi_vehicle_separated.ntg", "radar_net.ntg", "launch.ntg", "round_the_mast.ntg"]
+    {
         let of = solved(spec);
         let certificate = certified(&of);
         let summary = certificate.summary(&of.program.structure);

@@ -3,7 +3,7 @@
 use crate::evaluate::{Here, Piece, end_of, evaluate, halves, jets, piece};
 use crate::interval::Interval;
 use crate::jet::{Jet, mean, range};
-use crate::read::{Certificate, Claim, Function, Input, Over, Quantity};
+use crate::read::{Certificate, Claim, Function, Input, Over, Quantity, end_cell};
 use crate::real::Real;
 
 /// How often a box is halved beyond what the certificate says, should it not do as it is.
@@ -29,8 +29,7 @@ pub(crate) fn check(certificate: &Certificate) -> Result<Checked, String> {
     sound(certificate)?;
     let mut integrals = vec![];
     for claim in &certificate.integrals {
-        let value = quantity(certificate, claim, &integrals).map_err(|error| format!("{}: {error}", claim.name))?;
-        integrals.push(value);
+        integrals.push(quantity(certificate, claim, &integrals).map_err(|error| format!("{}: {error}", claim.name))?);
     }
     let mut checked = Checked::default();
     for claim in &certificate.claims {
@@ -82,10 +81,10 @@ fn sound(certificate: &Certificate) -> Result<(), String> {
 /// Checks that a claim's values enclose the quantity, and gives them.
 fn quantity(certificate: &Certificate, claim: &Claim, integrals: &[Interval]) -> Result<Interval, String> {
     match &claim.quantity {
-        Quantity::Path(function, phase) => {
+        Quantity::Path(function, phase, cells) => {
             let [cover] = &claim.covers[..] else { return Err("it needs one cover".to_owned()) };
             let partial = claim.verdict == "bounded" || claim.verdict == "undecided" || claim.verdict == "refuted";
-            let walk = Walk { certificate, function: *function, phase: *phase, integrals };
+            let walk = Walk { certificate, function: *function, phase: *phase, cells: *cells, integrals };
             walk.along((cover, 0), &mut |middle, all, _| {
                 Ok((all.total || partial) && claim.values.encloses(range(middle, all)))
             })?;
@@ -115,7 +114,8 @@ fn sum(
     for (function, over) in summands {
         match over {
             Over::Phase(phase) => {
-                let walk = Walk { certificate, function: *function, phase: *phase, integrals };
+                let cells = (0, certificate.phases[*phase].len() - 1);
+                let walk = Walk { certificate, function: *function, phase: *phase, cells, integrals };
                 let cover = covers.next().ok_or("a cover is missing")?;
                 walk.along((cover, more), &mut |middle, all, length| {
                     sum = sum + if all.total { mean(middle, all) * length } else { Interval::ENTIRE };
@@ -132,7 +132,7 @@ fn sum(
 /// A function that depends on no time, or at an end of a phase.
 fn number(certificate: &Certificate, function: usize, end: Option<(usize, bool)>, integrals: &[Interval]) -> Interval {
     let flats = |flat: usize| match end {
-        Some((_, last)) => end_of(certificate, flat, last),
+        Some((phase, last)) => end_of(certificate, flat, (end_cell(&certificate.phases[phase], last), last)),
         None => Jet::rough((Interval::ENTIRE, false)),
     };
     let tau = end.map_or(Interval::ENTIRE, |(_, last)| Interval::whole(i64::from(last)));
@@ -169,8 +169,8 @@ fn verdict(
         "refuted" => {
             let value = match (&claim.quantity, &claim.witness) {
                 (Quantity::Sum(_), _) => values,
-                (Quantity::Path(function, phase), Some((cell, halvings, part, value))) => {
-                    let walk = Walk { certificate, function: *function, phase: *phase, integrals };
+                (Quantity::Path(function, phase, cells), Some((cell, halvings, part, value))) => {
+                    let walk = Walk { certificate, function: *function, phase: *phase, cells: *cells, integrals };
                     let found = walk.middle(*cell, *halvings, *part)?;
                     if !found.total || !value.encloses(found.c[0]) {
                         return Err("the value at its witness is another".to_owned());
@@ -192,11 +192,13 @@ fn verdict(
     Ok(())
 }
 
-/// A function over a phase.
+/// A function over some cells of a phase.
 struct Walk<'a> {
     certificate: &'a Certificate,
     function: usize,
     phase: usize,
+    /// The first of its cells, and the one behind the last.
+    cells: (usize, usize),
     integrals: &'a [Interval],
 }
 
@@ -260,7 +262,7 @@ impl Walk<'_> {
 
     /// The function in the middle of a box.
     fn middle(&self, cell: usize, halvings: u32, number: u64) -> Result<Jet, String> {
-        if cell + 1 >= self.certificate.phases[self.phase].len() || halvings > 63 || number >> halvings != 0 {
+        if !(self.cells.0..self.cells.1).contains(&cell) || halvings > 63 || number >> halvings != 0 {
             return Err("its witness is at no time".to_owned());
         }
         let mut part = self.cell(cell)?;
@@ -274,10 +276,10 @@ impl Walk<'_> {
     /// Goes through the boxes of a cover: for each cell a tree, `/` for a box that is halved (the first half first), `.`
     /// for one that is not.
     fn along(&self, (cover, more): (&[String], u32), judge: &mut Judge<'_>) -> Result<(), String> {
-        if cover.len() + 1 != self.certificate.phases[self.phase].len() {
+        if cover.is_empty() || self.cells.0 + cover.len() != self.cells.1 {
             return Err("its cover does not cover all times".to_owned());
         }
-        for (cell, tree) in cover.iter().enumerate() {
+        for (cell, tree) in (self.cells.0..).zip(cover) {
             let mut open = vec![self.cell(cell)?];
             for letter in tree.chars() {
                 let part = open.pop().ok_or("a cover has too many boxes")?;

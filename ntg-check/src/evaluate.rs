@@ -127,7 +127,7 @@ fn operands(node: &Node) -> Vec<usize> {
 fn input(certificate: &Certificate, input: &Input, integrals: &[Interval], here: &Here<'_>) -> Jet {
     match input {
         Input::Flat(flat, None) => (here.flats)(*flat),
-        Input::Flat(flat, Some(last)) => end_of(certificate, *flat, *last),
+        Input::Flat(flat, Some(place)) => end_of(certificate, *flat, *place),
         Input::Value(value) => Jet::constant(*value),
         Input::Tau => here.tau,
         Input::Integral(number) => Jet::constant(integrals.get(*number).copied().unwrap_or(Interval::ENTIRE)),
@@ -148,14 +148,11 @@ fn input(certificate: &Certificate, input: &Input, integrals: &[Interval], here:
     }
 }
 
-/// A flat at the start or the end of its phase.
-pub(crate) fn end_of(certificate: &Certificate, flat: usize, last: bool) -> Jet {
-    let flat = certificate.flats[flat];
-    let cells = certificate.phases[certificate.splines[flat.0].phase].len() - 1;
-    match piece(certificate, flat, if last { cells - 1 } else { 0 }) {
-        Ok(piece) => Jet::constant(if last { piece[piece.len() - 1] } else { piece[0] }),
-        Err(_) => Jet::rough((Interval::ENTIRE, false)),
-    }
+/// A flat where a cell of its phase begins, or where it ends.
+pub(crate) fn end_of(certificate: &Certificate, flat: usize, (cell, last): (usize, bool)) -> Jet {
+    piece(certificate, certificate.flats[flat], cell).map_or(Jet::rough((Interval::ENTIRE, false)), |piece| {
+        Jet::constant(if last { piece[piece.len() - 1] } else { piece[0] })
+    })
 }
 
 fn one(name: &str, x: &Jet) -> Jet {

@@ -21,8 +21,8 @@ pub(crate) enum Node {
 
 /// What an input of a function is.
 pub(crate) enum Input {
-    /// A derivative of a spline at the time of evaluation, at the start (`Some(false)`) or at the end of its phase.
-    Flat(usize, Option<bool>),
+    /// A derivative of a spline at the time of evaluation, or at the first (`false`) or last point of a cell.
+    Flat(usize, Option<(usize, bool)>),
     /// A number.
     Value(Interval),
     /// Scaled time.
@@ -81,9 +81,9 @@ pub(crate) enum Over {
     Nowhere,
 }
 
-/// A function at all times of a phase, or a sum.
+/// A function at all times of some cells of a phase, or a sum.
 pub(crate) enum Quantity {
-    Path(usize, usize),
+    Path(usize, usize, (usize, usize)),
     Sum(Vec<(usize, Over)>),
 }
 
@@ -104,7 +104,6 @@ pub(crate) struct Claim {
 /// Everything that a certificate says.
 #[derive(Default)]
 pub(crate) struct Certificate {
-    pub(crate) problem: String,
     pub(crate) numbers: Vec<Interval>,
     pub(crate) phases: Vec<Vec<Real>>,
     pub(crate) splines: Vec<Spline>,
@@ -192,25 +191,22 @@ const MOST: usize = 1 << 24;
 pub(crate) fn read(text: &str) -> Read<Certificate> {
     let mut out = Certificate::default();
     let mut lines = text.lines().enumerate();
-    match lines.next() {
-        Some((_, "ntg-certificate 1")) => {}
-        _ => return Err("this is no certificate of version 1".to_owned()),
+    if lines.next().is_none_or(|(_, line)| line != "ntg-certificate 1") {
+        return Err("this is no certificate of version 1".to_owned());
     }
     for (number, line) in lines.filter(|(_, line)| !line.starts_with("| ")) {
         let mut words = Words(line.split_ascii_whitespace());
         statement(&mut out, &mut words).map_err(|error| format!("line {}: {error}", number + 1))?;
     }
-    for claim in out.integrals.iter().chain(&out.claims) {
-        if claim.verdict.is_empty() {
-            return Err(format!("nothing is claimed of `{}`", claim.name));
-        }
+    if let Some(claim) = out.integrals.iter().chain(&out.claims).find(|claim| claim.verdict.is_empty()) {
+        return Err(format!("nothing is claimed of `{}`", claim.name));
     }
     Ok(out)
 }
 
 fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
     match words.next()? {
-        "problem" => out.problem = words.rest(),
+        "problem" => drop(words.rest()),
         "number" => {
             out.numbers.push(Interval::point(words.real()?));
             words.rest();
@@ -229,9 +225,8 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
         }
         "flat" => out.flats.push((words.below(out.splines.len())?, words.number()?)),
         "table" => {
-            let linear = words.next()? == "linear";
+            out.tables.push(Table { linear: words.next()? == "linear", axes: vec![], coefficients: vec![] });
             words.rest();
-            out.tables.push(Table { linear, axes: vec![], coefficients: vec![] });
         }
         "axis" => {
             let axis = Axis {
@@ -265,15 +260,20 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
         }
         "subject" => {
             words.next()?;
+            let functions = out.functions.len();
             let bound = |words: &mut Words<'_>| match words.next()? {
                 "-" => Ok(None),
-                word => {
-                    word.parse().ok().filter(|f| *f < out.functions.len()).map(Some).ok_or("no such bound".to_owned())
-                }
+                word => word.parse().ok().filter(|f| *f < functions).map(Some).ok_or("no such bound".to_owned()),
             };
             let bounds = (bound(words)?, bound(words)?);
             let quantity = match words.next()? {
-                "path" => Quantity::Path(words.below(out.functions.len())?, words.below(out.phases.len())?),
+                word @ ("path" | "part") => {
+                    let is_part = word == "part";
+                    let (function, phase) = (words.below(out.functions.len())?, words.below(out.phases.len())?);
+                    let all = out.phases[phase].len().saturating_sub(1);
+                    let cells = if is_part { (words.below(all)?, words.below(all + 1)?) } else { (0, all) };
+                    Quantity::Path(function, phase, cells)
+                }
                 _ => sum(out, words)?,
             };
             out.claims.push(claim(words.rest(), quantity, bounds));
@@ -285,13 +285,9 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
             own.values = words.interval()?;
         }
         "witness" => {
-            let witness = (words.number()?, words.number()?, words.number()?, words.interval()?);
-            last(out)?.witness = Some(witness);
+            last(out)?.witness = Some((words.number()?, words.number()?, words.number()?, words.interval()?));
         }
-        "cover" => {
-            let trees = words.0.by_ref().map(str::to_owned).collect();
-            last(out)?.covers.push(trees);
-        }
+        "cover" => last(out)?.covers.push(words.0.by_ref().map(str::to_owned).collect()),
         word => {
             let graph = out.graphs.last_mut().ok_or_else(|| format!("`{word}` is unknown"))?;
             let node = node(word.to_owned().as_str(), words, (graph.nodes.len(), out.tables.as_slice()))?;
@@ -299,6 +295,11 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
         }
     }
     words.end()
+}
+
+/// The first or the last cell between the cuts of a phase.
+pub(crate) fn end_cell(cuts: &[Real], last: bool) -> usize {
+    if last { cuts.len().saturating_sub(2) } else { 0 }
 }
 
 fn claim(name: String, quantity: Quantity, bounds: (Option<usize>, Option<usize>)) -> Claim {
@@ -331,8 +332,13 @@ fn sum(out: &Certificate, words: &mut Words<'_>) -> Read<Quantity> {
 fn input(out: &Certificate, words: &mut Words<'_>) -> Read<Input> {
     Ok(match words.next()? {
         "flat" => Input::Flat(words.below(out.flats.len())?, None),
-        "start" => Input::Flat(words.below(out.flats.len())?, Some(false)),
-        "end" => Input::Flat(words.below(out.flats.len())?, Some(true)),
+        word @ ("start" | "end" | "inside") => {
+            let (is_inside, last) = (word == "inside", word == "end");
+            let flat = words.below(out.flats.len())?;
+            let cuts = &out.phases[out.splines[out.flats[flat].0].phase];
+            let cell = if is_inside { words.below(cuts.len().saturating_sub(1))? } else { end_cell(cuts, last) };
+            Input::Flat(flat, Some((cell, last)))
+        }
         "number" => Input::Value(out.numbers[words.below(out.numbers.len())?]),
         "value" => Input::Value(Interval::point(words.real()?)),
         "tau" => Input::Tau,

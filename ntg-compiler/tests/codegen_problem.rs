@@ -5,8 +5,8 @@ mod codegen_support;
 use codegen_support::{expand, phase, rest};
 use ntg_compiler::codegen::generate;
 use ntg_structure::{
-    Agent, Block, Call, Constraint, Domain, Family, Loop, Named, Parameter, PhaseRef, Place, Start, Table, TableAxis,
-    TableExtrapolation, TableMethod, TableSymmetry, Unit, Variable,
+    Agent, Block, Call, Constraint, Domain, Family, Loop, Named, Parameter, Part, PhaseRef, Place, Start, Table,
+    TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Unit, Variable,
 };
 
 fn unit(symbol: &str, factor: f64) -> Unit {
@@ -31,7 +31,7 @@ fn named(name: &str, domain: Domain, loops: usize, family: Option<Family>) -> Na
 }
 
 fn along(phase: usize) -> Domain {
-    Domain::Path { phase: PhaseRef { phase, ..PhaseRef::default() }, points: 0 }
+    Domain::Path { phase: PhaseRef { phase, ..PhaseRef::default() }, points: 0, part: Part::WHOLE }
 }
 
 fn constraint(name: &str) -> Constraint {

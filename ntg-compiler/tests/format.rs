@@ -114,6 +114,35 @@ fn blanks_and_line_breaks_are_those_of_the_language() {
 }
 
 #[test]
+fn places_parts_and_prices_read_as_they_are_spoken() {
+    assert_layout(
+        "problem P {
+at 2.5[s]{x==3[m];}
+at T/2{ y == 1; }
+trajectory from 0.4*T to T-1[s]{quiet:x<=1;}
+trajectory except initial,final { x >= 0; }
+periodic x,y[2] up to 1;
+trajectory { soft( 200[1/s] ):rail:x in -1..1;
+soft(linear=1,square = 2): x<=1; soft:x<=2; }
+temporal { at( T/3,x )<=2; }
+}",
+        "problem P {
+    at 2.5 [s]                           { x == 3 [m]; }
+    at T / 2                             { y == 1; }
+    trajectory from 0.4 * T to T - 1 [s] { quiet: x <= 1; }
+    trajectory except initial, final     { x >= 0; }
+    periodic x, y[2] up to 1;
+    trajectory {
+        soft(200 [1/s]): rail: x in -1 .. 1;
+        soft(linear = 1, square = 2): x <= 1;  soft: x <= 2;
+    }
+    temporal { at(T / 3, x) <= 2; }
+}
+",
+    );
+}
+
+#[test]
 fn blocks_stay_on_one_line_or_on_several_as_their_author_wrote_them() {
     assert_layout(
         "problem P {

@@ -312,7 +312,7 @@ fn a_boundary_value_in_a_boundary_block_makes_a_constraint_of_the_mission() {
     let ends = |_: &str, _: Option<i64>, _: usize, at: At| match at {
         At::Start => 2.0,
         At::End => 7.0,
-        At::Here => f64::NAN,
+        At::Here | At::Inside(_) => f64::NAN,
     };
     close(value(&p, p.constraints[0].body, World { flat: &ends, other: &other }), 7.0 - 3.0);
     assert!(matches!(p.constraints[1].domain, Domain::End(_)));
@@ -333,7 +333,7 @@ fn numbers_of_the_mission_are_named_as_such() {
     );
     let domain = |name: &str| &p.named.iter().find(|named| named.name == name).expect("it is there").domain;
     assert_eq!((domain("spent"), domain("share")), (&Domain::Mission, &Domain::Mission));
-    assert!(matches!(domain("along"), Domain::Path(_)));
+    assert!(matches!(domain("along"), Domain::Path(..)));
     assert!(p.maximize);
     let x = flat("x", None, 0, At::Here);
     close(value(&p, p.objective[0].body, WORLD), -(x * x + x));

@@ -3,26 +3,7 @@
 
 mod model_support;
 
-use model_support::Files;
-use ntg_compiler::program::Program;
-use ntg_compiler::source::Source;
-use ntg_structure::Place;
-
-fn program(text: &str) -> Program {
-    let source = Source::new("spec.ntg", text);
-    let compiled = ntg_compiler::compile(&source, &Files(vec![]));
-    let mut program = compiled.unwrap_or_else(|found| panic!("{}", found.render(&source))).program;
-    let structure = &mut program.structure;
-    structure.constraints.iter_mut().for_each(|constraint| constraint.place = Place::default());
-    structure.terms.iter_mut().for_each(|term| term.place = Place::default());
-    structure.variables.iter_mut().for_each(|variable| variable.place = Place::default());
-    structure.agents.iter_mut().for_each(|agent| agent.place = Place::default());
-    structure.phases.iter_mut().for_each(|phase| phase.place = Place::default());
-    structure.integrals.iter_mut().for_each(|integral| integral.place = Place::default());
-    structure.kernels.iter_mut().for_each(|kernel| kernel.probes.fill(Place::default()));
-    program.kernels.iter_mut().for_each(|kernel| kernel.labels.clear());
-    program
-}
+use model_support::program;
 
 /// Holds two specs with common declarations against each other.
 #[track_caller]

@@ -49,7 +49,7 @@ messages! {
     a_comment_that_never_ends: errors("problem P { let a = 1;\n/* /* */\n}");
     documentation_of_nothing: inside("guess {\n/// one\nx = 1; }\nlet a = 1 +\n/// two\n2;\ntrajectory { x <= 1;\n/// three\n}\n/// four");
     names_that_cannot_be: inside("let _a = 1;\nlet _ = 1;\nlet self = 1;\nlet Self = 1;\nlet super = 1;\nlet crate = 1;");
-    reserved_words_as_names: inside("let table = 1;\nparam start = 1;\nlet t = 1;\nlet if = 1;\noutput x, unit: spline(order = 3);\nfn f(in) = 1;\nphase final { }\nlet a = b * let;\nfinal { at: x == 1; }\nguess { soft = 2; }");
+    reserved_words_as_names: inside("let table = 1;\nparam start = 1;\nlet t = 1;\nlet if = 1;\noutput x, unit: spline(order = 3);\nfn f(in) = 1;\nphase final { }\nlet a = b * let;\nfinal { if: x == 1; }\nguess { use = 2; }");
     relations: inside("trajectory { x < 1; x > 1; x != 1; x = 1; x =< 1; x => 1; }");
     chains: inside("trajectory { a <= b >= c; a == b == c; a <= b == c; a <= b <= c <= d; }");
     an_expression_is_missing: inside("let a = ;\nlet b = x + ;\nlet c = x + * y;\nlet d = f();\nlet e = f(1,);\nlet g = +1;\nlet h = 2 ** 3;\nlet i = [1, 2];\nlet j = (1, 2);\nlet k = 5 km;");
@@ -71,6 +71,7 @@ messages! {
     guesses: inside("guess { (x, y) through (1, 2), (3); x == 1; x; 3 = x; let a = 1; x through; }");
     words_that_begin_no_statement: inside("trajctory { x <= 1; }\nvelocity = 3;\nx <= 3;\nfor i in 1 .. 3 { x == 1; }\nunit a = 3;\n3;\n;");
     statements_in_the_wrong_place: inside("trajectory { let a = 1; initial { x == 1; } }\nphase p { phase q { } agent a { } start = 1; }\nagent a { agent b { } }\njump x;\ncontinuous x up to 1;\nproblem Q { }");
+    points_of_time: inside("at { x == 1; }\nat 2 [s] x == 1;\nat 2, 3 { x == 1; }\ntrajectory except { }\ntrajectory except start { }\ntrajectory from { }\ntrajectory from 1 until 2 { }\ntrajectory at 2 { }\nperiodic;\nperiodic x up 2;\nfinal { at 2 { } }\ninitial from 0 to 1 { x == 0; }\ndynamics to 1 { x == 0; }\ntrajectory { soft(): x <= 1; soft(cubic = 2): x <= 1; soft(1, 2): x <= 1; soft 3: x <= 1; soft(2) x <= 1; }");
     declarations: inside("output x;\noutput x: splin(order = 3);\noutput x[3]: spline(order = 3);\nduration 5;\nlet a == 3;\nconst 3 = x;\nfn f = 3;\nminimize a = b;\nphase p x { }\ntable f() = linear { }\nvariable v in ..;\nvariable v in 1;\ntrajectory { x; for i 1 .. 3 { x <= ; } }\ncontinuous x to 1;");
     no_problem: errors("// nothing\n");
     two_problems: errors("problem P { }\nproblem Q { }");

@@ -27,10 +27,12 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
     let mut items = names(analysis, byte);
     if text[..start].trim_end().ends_with([';', '{', '}']) || text[..start].trim().is_empty() {
         items.push(keyword("use"));
-        items.extend(ITEM_WORDS.iter().chain(OTHER_ITEM_WORDS).chain(&["for"]).map(|word| keyword(word)));
+        items.extend(ITEM_WORDS.iter().chain(OTHER_ITEM_WORDS).chain(&["for", "soft"]).map(|word| keyword(word)));
     } else {
         items.extend(EXPRESSION_WORDS.iter().map(|word| keyword(word)));
-        items.extend(["else", "smooth", "spline", "held", "gauss", "uniform", "after", "through", "from"].map(keyword));
+        items.extend(
+            ["else", "smooth", "spline", "held", "gauss", "uniform", "after", "through", "from", "except"].map(keyword),
+        );
     }
     for used in analysis.uses() {
         items.push(CompletionItem {
@@ -232,6 +234,13 @@ pub fn explained(word: &str) -> Option<String> {
         "collocation" => "`collocation gauss(points = 5);`, `collocation uniform(breakpoints = 41);`",
         "guess" => "`guess { (x, y) through (0, 0), (1, 5) [km];  T = 9 [s]; }`: where to begin",
         "continuous" => "`continuous x up to 1;`: how smoothly phases meet",
+        "at" => "`at 2.5 [s] { ... }`: what holds at one time; `at(2.5 [s], e)`: the value there",
+        "periodic" => "`periodic x, y;`: outputs that end as they begin, with their derivatives",
+        "soft" => "`soft(200 [1/s]): c;`: a constraint that may be missed, at a price",
+        "except" => "`trajectory except final { ... }`: everywhere but at that end",
+        "from" => {
+            "`trajectory from a to b { ... }`: a part of the trajectory; `table f(u) = linear from \"f.csv\";`: data"
+        }
         "jump" => "`jump m;`: an output that is not continuous at the start of the phase",
         "der" => "`der(e)`, `der(e, 2)`: derivative in real time, by the chain rule",
         "partial" => "`partial(f(s, w), s)`: partial derivative of a function or table",

@@ -124,14 +124,12 @@ impl Writer<'_> {
                     At::Here => value,
                     At::Start => format!("initial({value})"),
                     At::End => format!("final({value})"),
+                    At::Inside(instant) => format!("at({} * {}, {value})", instant.tau(), self.duration(phase)),
                 }
             }
             Leaf::Time(_) => "t".to_owned(),
             Leaf::Tau => "tau".to_owned(),
-            Leaf::Duration(phase) => {
-                let declared = self.problem.phases.get(phase.phase).and_then(|phase| phase.duration_name.clone());
-                declared.unwrap_or_else(|| format!("duration({})", self.phase(phase)))
-            }
+            Leaf::Duration(phase) => self.duration(phase),
             Leaf::Start(phase) => format!("start({})", self.phase(phase)),
             Leaf::Parameter { parameter, index } => {
                 let name = self.problem.parameters.get(*parameter).map_or("param", |p| p.name.as_str());
@@ -145,6 +143,11 @@ impl Writer<'_> {
             Leaf::Integral { .. } => "integral(...)".to_owned(),
             Leaf::Symbol(_) => "...".to_owned(),
         }
+    }
+
+    fn duration(&self, phase: &PhaseAt) -> String {
+        let declared = self.problem.phases.get(phase.phase).and_then(|phase| phase.duration_name.clone());
+        declared.unwrap_or_else(|| format!("duration({})", self.phase(phase)))
     }
 
     fn phase(&self, phase: &PhaseAt) -> String {

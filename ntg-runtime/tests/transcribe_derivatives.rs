@@ -99,7 +99,7 @@ fn an_integral_that_is_a_variable_is_defined_by_its_row() {
     let kernel = p.kernel((1, 1), 1, Degree::Linear, |u| vec![u[0].clone() * u[1].clone()]);
     let slots = vec![flat(phase.clone(), At::Here, 0, 0)];
     let call = Call { kernel, slots, data: vec![Data::Duration(phase.clone())], ..Call::default() };
-    let domain = Domain::Path { phase, points: 0 };
+    let domain = Domain::Path { phase, points: 0, part: Part::WHOLE };
     p.structure.groups.push(group(domain, call, vec![Row::Integral { integral: 0, index: vec![] }]));
     // The cost exp(integral / 10).
     let kernel = p.kernel((1, 0), 1, Degree::Nonlinear, |u| vec![(u[0].clone() * 0.1).exp()]);
@@ -130,7 +130,7 @@ fn parts_add_to_the_row_that_a_mission_group_makes() {
     p.structure.groups.push(Group { bounds: Some(bounds), ..group(Domain::Mission, call, rows) });
     let kernel = p.kernel((2, 0), 1, Degree::Nonlinear, |u| vec![u[0].sin() * u[1].clone()]);
     let slots = vec![flat(phase(false, 0), At::Here, 0, 0), Slot::Duration(phase(false, 0))];
-    let domain = Domain::Path { phase: phase(false, 0), points: 0 };
+    let domain = Domain::Path { phase: phase(false, 0), points: 0, part: Part::WHOLE };
     let call = Call { kernel, slots, ..Call::default() };
     p.structure.groups.push(group(domain, call, vec![Row::Part { constraint, index: vec![] }]));
     let nlp = Transcription::new(&p).expect("a sound problem");
@@ -186,7 +186,7 @@ fn what_is_not_finite_is_named_with_its_place_and_point() {
     p.structure.kernels[kernel].probes = vec![place("sqrt(x)")];
     let call = Call { kernel, slots: vec![flat(phase(false, 0), At::Here, 0, 0)], ..Call::default() };
     let term = p.term("root");
-    let domain = Domain::Path { phase: phase(false, 0), points: 0 };
+    let domain = Domain::Path { phase: phase(false, 0), points: 0, part: Part::WHOLE };
     p.structure.groups.push(group(domain, call, vec![Row::Cost { term }]));
     let nlp = Transcription::new(&p).expect("a sound problem");
     let (mut work, mut out) = nlp.workspace();

@@ -21,7 +21,7 @@ fn bounds_that_cross() {
     let kernel = problem.kernel((1, 0), 1, Degree::Linear, |u| u.to_vec());
     let bounds = problem.constants(&[2.0, 1.0]);
     let call = Call { kernel, slots: vec![flat(phase(false, 0), At::Here, 0, 0)], ..Call::default() };
-    let domain = Domain::Path { phase: phase(false, 0), points: 0 };
+    let domain = Domain::Path { phase: phase(false, 0), points: 0, part: Part::WHOLE };
     let rows = vec![Row::Constraint { constraint, lower: Some(0), upper: Some(1) }];
     problem.structure.groups.push(Group { bounds: Some(bounds), ..group(domain, call, rows) });
     let error = refused(&problem);
@@ -140,6 +140,6 @@ fn a_defective_structure_is_an_error_and_no_panic() {
     problem.structure.groups[0].call.slots.pop();
     assert!(matches!(refused(&problem), SetupError::Malformed { .. }));
     let mut problem = problems::double_integrator(3.0, 2.0, false);
-    problem.structure.groups[0].domain = Domain::Path { phase: phase(false, 0), points: 1 };
+    problem.structure.groups[0].domain = Domain::Path { phase: phase(false, 0), points: 1, part: Part::WHOLE };
     assert!(matches!(refused(&problem), SetupError::Malformed { .. }));
 }

@@ -100,7 +100,7 @@ fn bounds_alone_put_an_output_in_their_middle() {
     let constraint = problem.constraint("window", Block::Trajectory);
     let bounds = problem.constants(&[2.0, 6.0]);
     let call = Call { kernel, slots: vec![flat(phase(false, 0), At::Here, 0, 0)], ..Call::default() };
-    let domain = Domain::Path { phase: phase(false, 0), points: 0 };
+    let domain = Domain::Path { phase: phase(false, 0), points: 0, part: Part::WHOLE };
     let rows = vec![Row::Constraint { constraint, lower: Some(0), upper: Some(1) }];
     problem.structure.groups.push(Group { bounds: Some(bounds), ..group(domain, call, rows) });
     let x = first(&problem, &Guess::new()).output("x").expect("declared");

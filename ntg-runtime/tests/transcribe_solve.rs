@@ -138,7 +138,7 @@ fn agents_and_phases_are_solved_and_named() {
     for p in 0..2 {
         let slots = vec![flat(phase(true, p), At::Here, 0, 2), flat(phase(true, p), At::Here, 1, 2)];
         let call = Call { kernel, slots, ..Call::default() };
-        let domain = Domain::Path { phase: phase(true, p), points: 0 };
+        let domain = Domain::Path { phase: phase(true, p), points: 0, part: Part::WHOLE };
         problem.structure.groups.push(Group { loops: over.clone(), ..group(domain, call, vec![Row::Cost { term }]) });
     }
     let report = solve(&problem, &Settings::default()).expect("a sound problem");
@@ -176,7 +176,7 @@ fn named_expressions_are_functions_of_time() {
         family: None,
         agent: 0,
         loops: vec![],
-        domain: Domain::Path { phase: here, points: 0 },
+        domain: Domain::Path { phase: here, points: 0, part: Part::WHOLE },
         call,
     });
     let report = solve(&problem, &Settings::default()).expect("a sound problem");

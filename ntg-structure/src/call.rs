@@ -1,6 +1,6 @@
 //! A kernel together with what its inputs mean.
 
-use crate::{Affine, Loop};
+use crate::{Affine, Instant, Loop};
 
 /// One member of a family of phases.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -22,6 +22,8 @@ pub enum At {
     Start,
     /// At the phase's end.
     End,
+    /// At a place inside the phase, from the right where intervals meet.
+    Inside(Instant),
 }
 
 /// An input with respect to which a kernel is differentiated.

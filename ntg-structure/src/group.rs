@@ -1,6 +1,6 @@
 //! Where kernels are evaluated, and what becomes of their rows.
 
-use crate::{Affine, Call, Family, Loop, PhaseRef, Place, Unit};
+use crate::{Affine, Call, Family, Loop, Part, PhaseRef, Place, Unit};
 
 /// Where a group is evaluated.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -11,12 +11,14 @@ pub enum Domain {
     Start(PhaseRef),
     /// At the end of a phase.
     End(PhaseRef),
-    /// At every point of one of the phase's point sets.
+    /// At every point of one of the phase's point sets that lies in a part of the phase.
     Path {
         /// The phase.
         phase: PhaseRef,
         /// Index into `Phase::points`.
         points: usize,
+        /// Which part; point sets with the ends of intervals have the ends of the part too.
+        part: Part,
     },
 }
 

@@ -19,6 +19,7 @@ mod guess;
 mod index;
 mod kernel;
 mod mission;
+mod part;
 mod quantity;
 
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
@@ -30,6 +31,7 @@ pub use mission::{
     Agent, Bounds, Duration, Output, Parameter, Phase, Points, Spline, Start, Table, TableAxis, TableExtrapolation,
     TableMethod, TableSymmetry, Variable,
 };
+pub use part::{Instant, Part};
 pub use quantity::{Place, Unit};
 
 /// A whole problem, without its formulas.

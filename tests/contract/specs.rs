@@ -54,6 +54,7 @@ specs! {
     powered_descent_6dof: "specs/powered_descent_6dof.ntg" => PoweredDescent6dof,
     radar_net: "specs/radar_net.ntg" => RadarNet,
     strike_and_look: "specs/strike_and_look.ntg" => StrikeAndLook,
+    round_the_mast: "specs/round_the_mast.ntg" => RoundTheMast,
     swarm: "specs/swarm.ntg" => Swarm,
     van_der_pol: "specs/van_der_pol.ntg" => VanDerPol,
     van_der_pol_gauss: "specs/van_der_pol_gauss.ntg" => VanDerPolGauss,

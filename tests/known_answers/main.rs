@@ -12,6 +12,7 @@ mod flight_phases;
 mod missile;
 mod oscillator;
 mod phases;
+mod places;
 mod resolve;
 mod support;
 mod vectors;

@@ -52,7 +52,7 @@ impl Planted {
         };
         let bound = Graph { nodes: vec![Node::Input(0)], rows: vec![0] };
         let inputs = vec![Input::Flat(0), Input::Flat(1), Input::Number(1)];
-        let path = Quantity::Path(0, 0);
+        let path = Quantity::Path(0, 0, 0..intervals);
         let subject = |kind, name: &str, bound| Subject {
             kind,
             name: name.to_owned(),

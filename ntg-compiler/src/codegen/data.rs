@@ -13,9 +13,9 @@
 
 use ntg_structure::{
     Affine, Agent, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family, Group,
-    Guess, GuessKind, GuessScope, Integral, Kernel, Loop, Named, Output, Parameter, Phase, PhaseRef, Place, Points,
-    ReduceOp, Reduction, Row, Slot, Spline, Start, Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry,
-    Term, Unit, Variable,
+    Guess, GuessKind, GuessScope, Instant, Integral, Kernel, Loop, Named, Output, Parameter, Part, Phase, PhaseRef,
+    Place, Points, ReduceOp, Reduction, Row, Slot, Spline, Start, Table, TableAxis, TableExtrapolation, TableMethod,
+    TableSymmetry, Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -130,12 +130,36 @@ structs_with_default! {
     Unit {; symbol, factor }
 }
 
+impl ToRust for Instant {
+    fn to_rust(&self) -> TokenStream {
+        match *self {
+            Self::START => quote! { Instant::START },
+            Self::END => quote! { Instant::END },
+            _ => {
+                let tau = self.tau().to_rust();
+                quote! { Instant::new(#tau) }
+            }
+        }
+    }
+}
+
+impl ToRust for Part {
+    fn to_rust(&self) -> TokenStream {
+        if self.is_whole() {
+            return quote! { Part::WHOLE };
+        }
+        let Self { from, to, with_first, with_last } = self;
+        let (from, to) = (from.to_rust(), to.to_rust());
+        quote! { Part { from: #from, to: #to, with_first: #with_first, with_last: #with_last } }
+    }
+}
+
 enums! {
-    At { Here Start End;; }
+    At { Here Start End; Inside(instant); }
     Block { Initial Trajectory Final Temporal Continuity;; }
     Data { Tau; Index(index) Duration(phase) Start(phase); Parameter { parameter, index } }
     Degree { Constant Linear Quadratic Nonlinear;; }
-    Domain { Mission; Start(phase) End(phase); Path { phase, points } }
+    Domain { Mission; Start(phase) End(phase); Path { phase, points, part } }
     Duration {; Fixed(call) Free(bounds); }
     GuessKind {; ;
         Output { output, index, value }

@@ -126,12 +126,15 @@ codes! {
     SourceTooLarge "E090" "a spec too large to be read";
     TooManySteps "E091" "a problem too large to be given a meaning";
     TooDeepMeaning "E092" "definitions nested too deeply in one another";
+    UnknownPlace "E093" "a place in time that is not known before the solve, or outside";
+    Delay "E094" "an expression at another time than that at which it stands";
 
     GradientJumps "N001" "a gradient that may jump";
     DerivativeJumps "N002" "a derivative that jumps at the knots";
     FitReport "N003" "how well a table follows its values";
     AlwaysHolds "N004" "a constraint that always holds";
     FreeStart "N005" "an end without a start";
+    UnitTaken "N006" "a name in a list takes the next unit";
 }
 
 impl Code {

@@ -11,7 +11,7 @@ use ntg_structure::Block;
 
 use super::constants::extremes;
 use super::elaborator::Elaborator;
-use super::problem::{Constraint, Domain, Duration, Leaf, Loop};
+use super::problem::{Constraint, Domain, Duration, Instant, Leaf, Loop};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Binary, InputId, Node, NodeId, Unary};
 use crate::source::Span;
@@ -78,8 +78,13 @@ impl Elaborator<'_> {
         if fixed.is_empty() {
             return;
         }
-        let along = (0..self.problem.constraints.len())
-            .filter(|k| matches!(&self.problem.constraints[*k].domain, Domain::Path(at) if at.phase == phase));
+        let along = (0..self.problem.constraints.len()).filter(|k| match &self.problem.constraints[*k].domain {
+            Domain::Path(at, part) if block == Block::Initial => {
+                at.phase == phase && part.from == Instant::START && part.with_first
+            }
+            Domain::Path(at, part) => at.phase == phase && part.to == Instant::END && part.with_last,
+            _ => false,
+        });
         let along: Vec<usize> = along.collect();
         let told = |this: &Self, k: usize| {
             let constraint = &this.problem.constraints[k];

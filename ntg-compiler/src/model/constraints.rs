@@ -9,7 +9,7 @@ use ntg_structure::{Block, Unit};
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
-use super::problem::{Bounds, Constraint, Domain, Form};
+use super::problem::{Bounds, Constraint, Domain, Form, Part};
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
 use super::units;
@@ -32,6 +32,8 @@ pub(super) struct Site {
     pub(super) block: Block,
     pub(super) agent: Option<usize>,
     pub(super) phase: Option<usize>,
+    /// Which part of the phase, for a trajectory.
+    pub(super) part: Part,
 }
 
 /// What is bounded, by what, and in which unit it is shown.
@@ -46,9 +48,12 @@ impl<'a> Elaborator<'a> {
     pub(super) fn constraints(&mut self) {
         for scope in 0..self.scopes.len() {
             for item in self.items[scope] {
-                if let ItemKind::Block(block) = &item.kind {
-                    self.block(scope, block);
+                match &item.kind {
+                    ItemKind::Block(block) => self.block_at_its_place(scope, block),
+                    ItemKind::At(block) => self.at_block(scope, block),
+                    _ => continue,
                 }
+                self.settle_open();
             }
         }
         for phase in 0..self.phases.len() {
@@ -57,14 +62,12 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn block(&mut self, scope: usize, block: &'a ast::Block) {
-        self.block_at_its_place(scope, block);
-        self.settle_open();
-    }
-
     fn block_at_its_place(&mut self, scope: usize, block: &'a ast::Block) {
         let agent = self.scopes[scope].agent;
         let phase = self.scopes[scope].phase;
+        if let (Some(part), Some(agent), BlockPlace::Trajectory) = (&block.part, agent, block.place) {
+            return self.part_block(scope, agent, block, part);
+        }
         match (block.place, agent) {
             (BlockPlace::Temporal, _) => {
                 let cx = match (phase, agent) {
@@ -72,7 +75,7 @@ impl<'a> Elaborator<'a> {
                     (None, Some(agent)) => self.agent_context(agent, Allow::All),
                     (None, None) => Context::of(scope, Allow::All),
                 };
-                let site = Site { block: Block::Temporal, agent, phase };
+                let site = Site { block: Block::Temporal, agent, phase, part: Part::WHOLE };
                 self.statements(&cx, &block.statements, &site);
             }
             (_, None) => {} // Told of as standing at the wrong level.
@@ -84,7 +87,8 @@ impl<'a> Elaborator<'a> {
                         continue;
                     }
                     let cx = self.phase_context(phase, Allow::All, Point::Path);
-                    let site = Site { block: Block::Trajectory, agent: Some(agent), phase: Some(phase) };
+                    let site =
+                        Site { block: Block::Trajectory, agent: Some(agent), phase: Some(phase), part: Part::WHOLE };
                     self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
                 }
             }
@@ -111,7 +115,7 @@ impl<'a> Elaborator<'a> {
                 Context { scope: self.phases[stretch.phase].scope, phase: stretch.index, point, ..outer }
             }
         };
-        let site = Site { block: kind, agent: Some(agent), phase };
+        let site = Site { block: kind, agent: Some(agent), phase, part: Part::WHOLE };
         self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
     }
 
@@ -282,16 +286,18 @@ impl<'a> Elaborator<'a> {
     }
 
     fn push_all(&mut self, cx: &Context<'a>, constraint: &'a ast::Constraint, site: &Site, bodies: Vec<Body>) {
+        // Those of a constant are decided, and told.
+        let is_open = |body: &Body| self.problem.dag.is_constant(body.value.node).is_none();
+        let bodies: Vec<Body> = bodies.into_iter().filter(is_open).collect();
+        let domain = match self.domain(cx) {
+            Domain::Path(phase, _) => Domain::Path(phase, site.part),
+            other => other,
+        };
+        if let Some(softness) = &constraint.softness {
+            return self.push_soft(cx, constraint, softness, (site, domain, bodies));
+        }
         for Body { value: body, bounds, unit } in bodies {
-            if self.problem.dag.is_constant(body.node).is_some() {
-                continue; // Decided, and told.
-            }
-            let domain = self.domain(cx);
-            let member = member_text(&cx.members);
-            let name = constraint.name.as_ref().map(|name| match site.agent {
-                Some(agent) => self.path_name(agent, site.phase, &name.text) + &member,
-                None => name.text.clone() + &member,
-            });
+            let name = self.constraint_name(cx, constraint, site);
             self.origin(body.node, constraint.span);
             self.problem.constraints.push(Constraint {
                 name,
@@ -299,18 +305,32 @@ impl<'a> Elaborator<'a> {
                 block: site.block,
                 unit,
                 loops: (*cx.loops).clone(),
-                domain,
+                domain: domain.clone(),
                 body: body.node,
                 bounds,
             });
         }
     }
 
+    /// The name of a constraint with its path and the members that are made one by one.
+    pub(super) fn constraint_name(
+        &self,
+        cx: &Context<'a>,
+        constraint: &ast::Constraint,
+        site: &Site,
+    ) -> Option<String> {
+        let member = member_text(&cx.members);
+        constraint.name.as_ref().map(|name| match site.agent {
+            Some(agent) => self.path_name(agent, site.phase, &name.text) + &member,
+            None => name.text.clone() + &member,
+        })
+    }
+
     /// Where an expression elaborated in a context lives.
     pub(super) fn domain(&self, cx: &Context<'a>) -> Domain {
         let phase = self.scopes[cx.scope].phase.map(|phase| cx.phase_at(phase));
         match (cx.point, phase) {
-            (Point::Path, Some(phase)) => Domain::Path(phase),
+            (Point::Path, Some(phase)) => Domain::Path(phase, Part::WHOLE),
             (Point::Start, Some(phase)) => Domain::Start(phase),
             (Point::End, Some(phase)) => Domain::End(phase),
             _ => Domain::Mission,

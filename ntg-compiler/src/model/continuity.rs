@@ -99,7 +99,7 @@ impl<'a> Elaborator<'a> {
         limits
     }
 
-    fn junction_output(
+    pub(super) fn junction_output(
         &mut self,
         cx: &Context<'a>,
         phase: usize,
@@ -206,7 +206,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The unit of a derivative of something shown in `unit`.
-    fn rate_unit(&self, unit: &Unit, order: usize) -> Unit {
+    pub(super) fn rate_unit(&self, unit: &Unit, order: usize) -> Unit {
         if order == 0 || self.time.is_none() {
             return unit.clone();
         }

@@ -126,6 +126,8 @@ impl<'a> Elaborator<'a> {
             ItemKind::Start(_)
             | ItemKind::Jump(_)
             | ItemKind::Continuous(_)
+            | ItemKind::Periodic(_)
+            | ItemKind::At(_)
             | ItemKind::Collocation(_)
             | ItemKind::Objective(_)
             | ItemKind::Block(_)
@@ -228,7 +230,9 @@ fn allowed(kind: &ItemKind, level: Level) -> bool {
         ItemKind::Param(_) | ItemKind::Variable(_) | ItemKind::Continuation(_) => {
             matches!(level, Level::Problem | Level::AboveAgents)
         }
-        ItemKind::Let(_) | ItemKind::Output(_) | ItemKind::Duration(_) => level != Level::AboveAgents,
+        ItemKind::Let(_) | ItemKind::Output(_) | ItemKind::Duration(_) | ItemKind::Periodic(_) | ItemKind::At(_) => {
+            level != Level::AboveAgents
+        }
         ItemKind::Block(block) => level != Level::AboveAgents || block.place == ast::BlockPlace::Temporal,
         ItemKind::Start(_) | ItemKind::Phase(_) => matches!(level, Level::Problem | Level::Agent),
         ItemKind::Agent(_) => level == Level::AboveAgents,
@@ -258,6 +262,8 @@ fn keyword(kind: &ItemKind) -> &'static str {
         ItemKind::Agent(_) => "agent",
         ItemKind::Jump(_) => "jump",
         ItemKind::Continuous(_) => "continuous",
+        ItemKind::Periodic(_) => "periodic",
+        ItemKind::At(_) => "at",
         ItemKind::Collocation(_) => "collocation",
         ItemKind::Objective(objective) => match objective.sense {
             ast::Sense::Minimize => "minimize",

@@ -278,7 +278,7 @@ impl<'a> Elaborator<'a> {
         for constraint in &self.problem.constraints {
             let is_equation = constraint.bounds.lower.is_some() && constraint.bounds.lower == constraint.bounds.upper;
             match &constraint.domain {
-                Domain::Path(at) if is_equation && self.is_gauss(at.phase) => equations.push(constraint.body),
+                Domain::Path(at, _) if is_equation && self.is_gauss(at.phase) => equations.push(constraint.body),
                 _ => others.push(constraint.body),
             }
         }

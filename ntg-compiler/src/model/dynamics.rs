@@ -11,7 +11,7 @@ use ntg_structure::Block;
 use super::check::members;
 use super::constraints::Site;
 use super::elaborator::Elaborator;
-use super::problem::{At, Constraint, Domain, Form, Leaf};
+use super::problem::{At, Constraint, Domain, Form, Leaf, Part};
 use super::scope::{Allow, Context, Entity, Point, ScopeId, look_up};
 use super::settle::Use;
 use super::shape::{Ends, Shape};
@@ -188,7 +188,8 @@ impl<'a> Elaborator<'a> {
         self.only_equations(&block.statements);
         let cx = self.phase_context(phase, Allow::All, Point::Path);
         let around = cx.loops.len();
-        let site = Site { block: Block::Trajectory, agent: Some(self.phases[phase].agent), phase: Some(phase) };
+        let agent = Some(self.phases[phase].agent);
+        let site = Site { block: Block::Trajectory, agent, phase: Some(phase), part: Part::WHOLE };
         let before = self.problem.constraints.len();
         self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
         let rows: i64 = self.problem.constraints[before..]
@@ -203,6 +204,11 @@ impl<'a> Elaborator<'a> {
             match statement {
                 Statement::For(inner) => self.only_equations(&inner.body),
                 Statement::One(constraint) => {
+                    if let Some(softness) = &constraint.softness {
+                        let message = "equations of motion always hold";
+                        let finding = Diagnostic::new(Code::WrongEquations, softness.span, message);
+                        self.report(finding.help("write what may be missed in `trajectory { }`"));
+                    }
                     if !matches!(&constraint.relation, Relation::Compare { comparison: Comparison::Equal, .. }) {
                         let message = "`dynamics` holds equations";
                         let finding = Diagnostic::new(Code::WrongEquations, constraint.span, message);
@@ -356,7 +362,7 @@ impl<'a> Elaborator<'a> {
         let span: Span = name.name.span.to(bounds.span);
         for body in self.within(lower.as_ref(), &body, upper.as_ref()) {
             self.origin(body.value.node, span);
-            let domain = Domain::Path(cx.phase_at(phase));
+            let domain = Domain::Path(cx.phase_at(phase), Part::WHOLE);
             let loops = (*cx.loops).clone();
             self.problem.constraints.push(Constraint {
                 name: None,

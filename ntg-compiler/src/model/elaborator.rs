@@ -18,6 +18,7 @@ use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
 use super::scope::{Context, Declared, Entity, Scope, ScopeId};
 use super::shape::{Ends, FunctionKey, Shape};
+use super::soft::Slack;
 use super::units::{self, Quantity};
 use super::value::{Flaw, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
@@ -164,6 +165,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) jumps: Vec<Jump>,
     /// How many times the expression at hand is going to be differentiated.
     pub(super) derivatives_around: usize,
+    /// The dimension of the objective, once there is one.
+    pub(super) objective_dimension: Option<Dimension>,
+    /// By how much soft constraints are missed.
+    pub(super) slacks: Vec<Slack>,
     /// How many equations `dynamics` has in each phase, where it has any.
     pub(super) equations: HashMap<usize, i64>, // Looked up, never iterated.
     reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
@@ -222,6 +227,8 @@ impl<'a> Elaborator<'a> {
             lacking: Vec::new(),
             jumps: Vec::new(),
             derivatives_around: 0,
+            objective_dimension: None,
+            slacks: Vec::new(),
             equations: HashMap::new(),
             reported: HashSet::new(),
             next_index: 0,

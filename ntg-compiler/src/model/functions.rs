@@ -78,6 +78,9 @@ pub(super) const BUILTINS: &[Builtin] = &[
     Builtin { name: "smooth_max", rule: Rule::SmoothMax },
 ];
 
+/// The function that takes an expression at a place in time; a declaration of its name in the spec wins.
+pub(super) const AT: &str = "at";
+
 /// Names that people try, and how the language writes them.
 const HABITS: &[(&str, &str)] = &[
     ("ln", "log(x)"),
@@ -150,6 +153,7 @@ impl<'a> Elaborator<'a> {
                     let arguments = self.plain_arguments(cx, call);
                     self.apply(builtin, call, arguments)
                 }
+                (None, None) if other.is_none() && name == AT => self.value_at(cx, call, at),
                 (None, Some(function)) if other.is_none() => self.vector_call(cx, function, call, at),
                 _ => {
                     for argument in &call.arguments {
@@ -167,6 +171,12 @@ impl<'a> Elaborator<'a> {
         let name = call.function.text.as_str();
         let span = call.function.span;
         if let Some(entity) = entity {
+            if let ([only], true) =
+                (call.arguments.as_slice(), matches!(entity, Entity::Output | Entity::Definition(_)))
+                && super::mention::mentions_time(only)
+            {
+                return self.delay(call.span, name);
+            }
             let message = format!("`{name}` is {}, not a function", entity.describe());
             let finding = Diagnostic::new(Code::NoFunction, span, message);
             let has_members = self.axes_of(cx, entity, name).is_some_and(|axes| !axes.is_empty());

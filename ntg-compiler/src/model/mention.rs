@@ -2,6 +2,24 @@
 
 use crate::syntax::ast::{Expr, ExprKind};
 
+/// Whether `t` or `tau` occurs where an expression's own context holds.
+pub(super) fn mentions_time(expr: &Expr) -> bool {
+    let mut open = vec![expr];
+    while let Some(expr) = open.pop() {
+        match &expr.kind {
+            ExprKind::Time | ExprKind::ScaledTime => return true,
+            ExprKind::Neg(inner) | ExprKind::Der { of: inner, .. } => open.push(inner),
+            ExprKind::Tuple(elements) => open.extend(elements),
+            ExprKind::Sum(terms) => open.extend(terms.iter().map(|(_, term)| term)),
+            ExprKind::Product(factors) => open.extend(factors.iter().map(|(_, factor)| factor)),
+            ExprKind::Power(base, exponent) => open.extend([&**base, &**exponent]),
+            ExprKind::Call(call) => open.extend(&call.arguments),
+            _ => {}
+        }
+    }
+    false
+}
+
 /// Names that stand alone and without index in an expression, whatever else happens. What is taken at other points
 /// (`integral`, `initial`, `final`) or bound by an index is left out, and so are branches, which may not be chosen.
 pub(super) fn mentioned(expr: &Expr) -> Vec<&str> {

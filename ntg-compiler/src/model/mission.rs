@@ -282,7 +282,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Tells when a value is no time.
-    fn as_time(&mut self, value: Value, what: &str) -> Option<Value> {
+    pub(super) fn as_time(&mut self, value: Value, what: &str) -> Option<Value> {
         let Some(dimension) = value.dimension.filter(|d| *d != self.time) else { return Some(value) };
         if !value.is_sound() {
             return None;

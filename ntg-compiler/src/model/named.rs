@@ -252,7 +252,7 @@ impl<'a> Elaborator<'a> {
             }
         };
         let domain = match self.domain(cx) {
-            Domain::Path(phase) => Domain::Path(phase),
+            path @ Domain::Path(..) => path,
             _ => Domain::Mission,
         };
         let declared = &self.definitions[definition];

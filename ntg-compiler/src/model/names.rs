@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
-use super::problem::{At, Form, Leaf};
+use super::problem::{At, Form, Instant, Leaf};
 use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up, visible};
 use super::shape::Ends;
 use super::suggest::nearest;
@@ -236,6 +236,9 @@ impl<'a> Elaborator<'a> {
             Point::Path | Point::Start | Point::End => At::Here,
             Point::MissionStart => At::Start,
             Point::MissionEnd => At::End,
+            Point::MissionInside(Instant::START) => At::Start,
+            Point::MissionInside(Instant::END) => At::End,
+            Point::MissionInside(instant) => At::Inside(instant),
             Point::Nowhere => {
                 let text = self.text(span);
                 return self.misplaced_value(What::Trajectory, span, &text, Some(dimension));

@@ -40,6 +40,7 @@ impl<'a> Elaborator<'a> {
             }
         }
         self.problem.maximize = matches!(first, Some((Sense::Maximize, _)));
+        self.objective_dimension = sum.as_ref().map(Value::dimension_or_none);
         let dimension = sum.map(|value| value.dimension_or_none()).unwrap_or(super::dimension::Dimension::NONE);
         self.problem.objective_unit = declared.unwrap_or_else(|| units::si(&dimension));
     }

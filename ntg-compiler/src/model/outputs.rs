@@ -83,6 +83,7 @@ impl<'a> Elaborator<'a> {
         let mut all: Vec<Declared> = Vec::new();
         for item in self.items[scope] {
             let ItemKind::Output(output) = &item.kind else { continue };
+            self.units_taken(output);
             let spline = match &output.course {
                 Course::Spline(spline) => self.spline((scope, phase), spline, output.role),
                 course => self.collocated_start(phase, (course, output.role), item.span),
@@ -97,6 +98,22 @@ impl<'a> Elaborator<'a> {
             }
         }
         all
+    }
+
+    /// Notes names in a list of outputs that take the next unit, where earlier versions gave them the last one.
+    fn units_taken(&mut self, output: &'a ast::Output) {
+        let Some(last) = output.names.iter().rev().find_map(|name| name.unit.as_ref()) else { return };
+        for name in output.names.iter().filter(|_| output.role == Role::Output) {
+            let Some(unit) = name.unit.as_ref().filter(|unit| unit.span.start > name.span.end) else { continue };
+            let (taken, before) = (self.text(unit.span), self.text(last.span));
+            if taken == before {
+                continue;
+            }
+            let text = &name.name.text;
+            let message = format!("`{text}` takes the next unit, {taken}; before version 2 it was {before}");
+            let note = Diagnostic::new(Code::UnitTaken, name.name.span, message).label(unit.span, "the next unit");
+            self.report(note.help(format!("write it out: `{text} {taken}`")));
+        }
     }
 
     fn output_declaration(&mut self, scope: ScopeId, name: &'a OutputName, doc: String, spline: &Spline) -> Declared {

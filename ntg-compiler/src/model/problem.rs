@@ -48,8 +48,8 @@ pub struct PhaseAt {
     pub index: Option<Form>,
 }
 
-/// At which point of a phase.
-pub use ntg_structure::At;
+/// At which point of a phase, and which part of it.
+pub use ntg_structure::{At, Instant, Part};
 
 /// What an input of the expression graph means.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -256,8 +256,8 @@ pub enum Domain {
     Start(PhaseAt),
     /// At a phase's end.
     End(PhaseAt),
-    /// Along a phase.
-    Path(PhaseAt),
+    /// Along a part of a phase.
+    Path(PhaseAt, Part),
 }
 
 /// `lower <= body <= upper`, at every point of the domain, for all members of the loops.

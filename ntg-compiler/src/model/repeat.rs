@@ -16,6 +16,10 @@ struct Mark {
     constraints: usize,
     guesses: usize,
     named: usize,
+    objective: usize,
+    variables: usize,
+    outputs: Vec<usize>,
+    slacks: usize,
 }
 
 /// The most members that are made one by one: beyond it, a formula for each is more than can be compiled.
@@ -24,13 +28,29 @@ const MOST_MEMBERS: i64 = 20_000;
 impl<'a> Elaborator<'a> {
     fn mark(&self) -> Mark {
         let problem = &self.problem;
-        Mark { constraints: problem.constraints.len(), guesses: problem.guesses.len(), named: problem.named.len() }
+        Mark {
+            constraints: problem.constraints.len(),
+            guesses: problem.guesses.len(),
+            named: problem.named.len(),
+            objective: problem.objective.len(),
+            variables: problem.variables.len(),
+            outputs: problem.phases.iter().map(|phase| phase.outputs.len()).collect(),
+            slacks: self.slacks.len(),
+        }
     }
 
     fn take_back(&mut self, mark: &Mark) {
         self.problem.constraints.truncate(mark.constraints);
         self.problem.guesses.truncate(mark.guesses);
         self.problem.named.truncate(mark.named);
+        self.problem.objective.truncate(mark.objective);
+        self.problem.variables.truncate(mark.variables);
+        for (phase, outputs) in mark.outputs.iter().enumerate() {
+            self.problem.phases[phase].outputs.truncate(*outputs);
+            self.output_axes[phase].truncate(*outputs);
+            self.output_dimensions[phase].truncate(*outputs);
+        }
+        self.slacks.truncate(mark.slacks);
     }
 
     /// Calls `body` inside a loop; for parts of its range where an index must be known.

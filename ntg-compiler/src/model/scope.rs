@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::element::Lazy;
-use super::problem::{Form, Loop, PhaseAt};
+use super::problem::{Form, Instant, Loop, PhaseAt};
 use super::shape::Shape;
 use super::value::Value;
 use crate::source::Span;
@@ -106,6 +106,8 @@ pub(super) enum Point {
     MissionStart,
     /// At the phase's end, seen from the mission.
     MissionEnd,
+    /// At a place inside the phase, seen from the mission.
+    MissionInside(Instant),
 }
 
 /// What an expression may depend on.

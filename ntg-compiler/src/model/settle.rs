@@ -21,6 +21,8 @@ pub(super) enum Use<'s> {
     Guess,
     /// A constraint at a point.
     Point,
+    /// A place in time.
+    Place,
 }
 
 impl Elaborator<'_> {
@@ -64,6 +66,7 @@ fn misplacement(misplaced: &Misplaced, place: Use<'_>) -> Diagnostic {
         Use::Bound(what) => format!("{what} is made of constants and parameters"),
         Use::Constant(what) => format!("{what} must be known when the spec is compiled"),
         Use::Guess => "a guess is made of parameters, `tau`, `t` and guessed durations".to_owned(),
+        Use::Place => "a place in time is made of constants and durations".to_owned(),
         Use::Point => "there is no phase here that it could belong to".to_owned(),
     };
     let code = match (misplaced.what, place) {
@@ -103,6 +106,7 @@ fn remedy(misplaced: &Misplaced, place: Use<'_>) -> String {
             Some((path, inner)) => format!("write `final({path}, {inner})` in `temporal`, or let both share one agent"),
             None => "write it inside a phase".to_owned(),
         },
+        (_, Use::Place) => "write a time such as `2.5 [s]`, or a multiple of the duration such as `0.5 * T`".to_owned(),
         (_, Use::Objective | Use::Temporal) => "write it in another block".to_owned(),
     }
 }

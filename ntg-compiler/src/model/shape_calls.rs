@@ -4,8 +4,8 @@
 //! Finds: arguments of a shape that a function does not take.
 
 use super::elaborator::Elaborator;
-use super::functions::{Builtin, builtin};
-use super::scope::{Context, Entity, Meaning, look_up};
+use super::functions::{AT, Builtin, builtin};
+use super::scope::{Context, Entity, Meaning, Point, look_up};
 use super::shape::{FunctionKey, Shape};
 use super::vectors::{VectorFunction, vector_function};
 use crate::diagnostic::{Code, Diagnostic};
@@ -25,9 +25,20 @@ impl<'a> Elaborator<'a> {
             _ => match (builtin(name), vector_function(name)) {
                 (Some(builtin), _) => self.builtin_shape(cx, builtin, call),
                 (None, Some(function)) => self.vector_shape(cx, function, call),
+                (None, None) if name == AT => self.shape_at(cx, call),
                 (None, None) => Some(Shape::NUMBER),
             },
         }
+    }
+
+    /// The shape of `at(time, e)`: that of `e`.
+    fn shape_at(&mut self, cx: &Context<'a>, call: &'a Call) -> Option<Shape> {
+        let (path, time, of) = self.at_arguments(call)?;
+        let stretches = self.stretches_of(cx, path, call.span).unwrap_or_default();
+        let sound = self.is_number(cx, time);
+        let Some(first) = stretches.first() else { return Some(Shape::NUMBER) };
+        let inner = self.on(cx, first, Point::Path);
+        self.shape(&inner, of).filter(|_| sound)
     }
 
     fn numbers_only(&mut self, cx: &Context<'a>, call: &'a Call) -> Option<Shape> {

@@ -53,6 +53,13 @@ impl<'a> Elaborator<'a> {
                 let duration = self.leaf(Leaf::Duration(phase));
                 Some(self.problem.dag.add(start, duration))
             }
+            (Allow::All, Point::MissionInside(instant), Some(phase)) => {
+                let start = self.leaf(Leaf::Start(phase.clone()));
+                let duration = self.leaf(Leaf::Duration(phase));
+                let tau = self.problem.dag.constant(instant.tau());
+                let gone = self.problem.dag.mul(tau, duration);
+                Some(self.problem.dag.add(start, gone))
+            }
             _ => None,
         };
         match node {
@@ -78,6 +85,7 @@ impl<'a> Elaborator<'a> {
             (Allow::Guess, _) | (Allow::All, Point::Path) => self.leaf(Leaf::Tau),
             (Allow::All, Point::Start | Point::MissionStart) => self.problem.dag.constant(0.0),
             (Allow::All, Point::End | Point::MissionEnd) => self.problem.dag.constant(1.0),
+            (Allow::All, Point::MissionInside(instant)) => self.problem.dag.constant(instant.tau()),
             _ => return self.misplaced_value(What::ScaledTime, span, "tau", Some(Dimension::NONE)),
         };
         Value::new(node, Dimension::NONE, span)

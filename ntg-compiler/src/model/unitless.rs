@@ -53,9 +53,18 @@ impl Look {
                     self.unit(&o.unit);
                     self.expr(&o.value);
                 }
-                ItemKind::Block(b) => self.statements(&b.statements, &mut Self::constraint),
+                ItemKind::Block(b) => {
+                    if let Some(Part::Between { from, to, .. }) = &b.part {
+                        from.iter().chain(to).for_each(|end| self.expr(end));
+                    }
+                    self.statements(&b.statements, &mut Self::constraint);
+                }
+                ItemKind::At(a) => {
+                    self.expr(&a.time);
+                    self.statements(&a.statements, &mut Self::constraint);
+                }
                 ItemKind::Guess(g) => self.statements(&g.statements, &mut Self::guess),
-                ItemKind::Jump(_) | ItemKind::Continuous(_) | ItemKind::Collocation(_) => {}
+                ItemKind::Jump(_) | ItemKind::Continuous(_) | ItemKind::Periodic(_) | ItemKind::Collocation(_) => {}
             }
         }
     }
@@ -92,6 +101,9 @@ impl Look {
     }
 
     fn constraint(&mut self, constraint: &Constraint) {
+        if let Some(softness) = &constraint.softness {
+            softness.linear.iter().chain(&softness.square).for_each(|price| self.expr(price));
+        }
         match &constraint.relation {
             Relation::Compare { left, right, .. } => [left, right].into_iter().for_each(|e| self.expr(e)),
             Relation::Between { first, middle, last, .. } => {

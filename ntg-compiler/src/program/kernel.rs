@@ -124,6 +124,7 @@ impl Copy<'_, '_> {
                     At::Here => String::new(),
                     At::Start => "_start".to_owned(),
                     At::End => "_end".to_owned(),
+                    At::Inside(_) => "_at".to_owned(),
                 };
                 let name = identifier(&format!("{name}{place}_{order}"));
                 let scaled = self.inputs.slot(slot, &name);

@@ -116,7 +116,7 @@ impl Lowering<'_> {
             model::Domain::Mission => vec![(Domain::Mission, "mission")],
             model::Domain::Start(phase) => vec![(Domain::Start(at.phase(phase)), "initial")],
             model::Domain::End(phase) => vec![(Domain::End(at.phase(phase)), "final")],
-            model::Domain::Path(phase) => point_sets(&self.problem, phase, piece)
+            model::Domain::Path(phase, part) => point_sets(&self.problem, phase, piece)
                 .into_iter()
                 .map(|points| {
                     let purpose = match points {
@@ -129,7 +129,7 @@ impl Lowering<'_> {
                         sets.push(points);
                         sets.len() - 1
                     });
-                    (Domain::Path { phase: at.phase(phase), points }, purpose)
+                    (Domain::Path { phase: at.phase(phase), points, part: *part }, purpose)
                 })
                 .collect(),
         }

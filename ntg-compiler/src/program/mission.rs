@@ -130,7 +130,9 @@ pub(super) fn named(lowering: &mut Lowering<'_>) -> Vec<out::Named> {
                 Domain::Mission => out::Domain::Mission,
                 Domain::Start(phase) => out::Domain::Start(environment.phase(phase)),
                 Domain::End(phase) => out::Domain::End(environment.phase(phase)),
-                Domain::Path(phase) => out::Domain::Path { phase: environment.phase(phase), points: 0 },
+                Domain::Path(phase, part) => {
+                    out::Domain::Path { phase: environment.phase(phase), points: 0, part: *part }
+                }
             };
             let last = n.loops.last().filter(|_| n.family).map(family);
             let root = Root { body: n.body, loops: &n.loops, label: n.name.clone() };

@@ -12,7 +12,7 @@ use ntg_structure::Affine;
 
 use super::environment::identity;
 use crate::expr::{Binary, Fold, Node, NodeId, Unary};
-use crate::model::problem::{Bounds, Domain, Leaf, Loop, Problem};
+use crate::model::problem::{Bounds, Domain, Leaf, Loop, Part, Problem};
 use crate::source::Span;
 
 /// What a piece adds to.
@@ -125,7 +125,10 @@ fn step(problem: &mut Problem, work: &Work) -> Step {
                 let duration = problem.leaves.id(Leaf::Duration(phase.clone()));
                 let duration = problem.dag.input(duration);
                 let scaled = problem.dag.mul(work.factor, duration);
-                Step::Integral { domain: Domain::Path(phase), integrand: problem.dag.mul(scaled, integrand) }
+                Step::Integral {
+                    domain: Domain::Path(phase, Part::WHOLE),
+                    integrand: problem.dag.mul(scaled, integrand),
+                }
             }
             _ => Step::Rest(problem.dag.mul(work.factor, work.node)),
         },

@@ -34,7 +34,7 @@ pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> V
 
 /// Whether the piece holds a derivative that is discontinuous at interior breakpoints.
 fn jumps(problem: &Problem, piece: &Piece) -> bool {
-    let Domain::Path(_) = piece.domain else { return false };
+    let Domain::Path(..) = piece.domain else { return false };
     problem.dag.schedule(&[piece.body]).iter().any(|id| {
         let Node::Input(input) = problem.dag.node(*id) else { return false };
         let Leaf::Flat { phase, output, order, .. } = problem.leaves.leaf(*input) else { return false };

@@ -129,12 +129,16 @@ pub enum ItemKind {
     Jump(Jump),
     /// `continuous x up to 1;`, in a phase.
     Continuous(Continuous),
+    /// `periodic x, v up to 1;`
+    Periodic(Periodic),
     /// `collocation gauss(points = 5);`
     Collocation(Collocation),
     /// `minimize fuel [kg]: m0;`
     Objective(Objective),
     /// `trajectory { ... }` and its three sisters.
     Block(Block),
+    /// `at 2.5 [s] { ... }`
+    At(AtBlock),
     /// `guess { ... }`
     Guess(Guess),
 }
@@ -389,6 +393,15 @@ pub struct Continuous {
     pub outputs: Vec<Segment>,
     /// The highest derivative that is continuous.
     pub up_to: Expr,
+}
+
+/// `periodic x, y;`, `periodic x up to 1;`: these outputs end as they begin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Periodic {
+    /// The outputs, one at least; an index picks one of an array.
+    pub outputs: Vec<Segment>,
+    /// The highest derivative that ends as it begins; all that are continuous where none is written.
+    pub up_to: Option<Expr>,
 }
 
 /// `collocation gauss(points = 5, equalities = 3);`, `collocation uniform(breakpoints = 41);`

@@ -7,7 +7,7 @@
 use super::grammar::{Rule, Stuck};
 use super::recover::{Body, text};
 use super::scan::{Scan, Token, TokenKind};
-use super::words::{ITEM_WORDS, LATER_WORDS, OTHER_ITEM_WORDS, is_reserved, nearest_item_word};
+use super::words::{ITEM_WORDS, OTHER_ITEM_WORDS, is_reserved, nearest_item_word};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 
@@ -152,18 +152,13 @@ impl Here<'_> {
         let token = self.token.filter(|token| token.kind == TokenKind::Word)?;
         let word = text(self.scan, token);
         let starts_statement = ITEM_WORDS.contains(&word) && begins_line(self.scan, self.index);
-        let for_later = LATER_WORDS.contains(&word);
-        let is_named = self.expected.wants_a_name() || (for_later && self.expected.wants_a_condition());
-        if !is_reserved(word) || starts_statement || !is_named {
+        if !is_reserved(word) || starts_statement || !self.expected.wants_a_name() {
             return None;
         }
         let finding = Diagnostic::new(Code::ReservedWord, token.span, format!("`{word}` is a reserved word"));
         Some(match word {
             "t" | "tau" | "pi" if self.expected.has(Rule::name) => finding
                 .help(format!("`{word}` has a meaning in every expression; choose another name, such as `{word}_`")),
-            _ if for_later => {
-                finding.help(format!("it is kept for later versions; choose another name, such as `{word}_`"))
-            }
             _ => finding.help(format!("choose another name, such as `{word}_`")),
         })
     }
@@ -209,12 +204,26 @@ impl Here<'_> {
         format!("`{short}{dots}`")
     }
 
+    /// Whether the statement begins with `soft` as constraints that may be missed do.
+    fn is_soft(&self) -> bool {
+        let tokens = &self.scan.tokens[..self.index.min(self.scan.tokens.len())];
+        let start = tokens.iter().rposition(|token| matches!(text(self.scan, token), ";" | "{" | "}"));
+        let first = tokens.get(start.map_or(0, |start| start + 1));
+        first.is_some_and(|token| text(self.scan, token) == "soft")
+    }
+
     /// What to write instead, where the tokens tell.
     fn advice(&self) -> Option<String> {
         let word = |token: Option<&Token>| token.map_or("", |token| text(self.scan, token));
         let (this, before) = (word(self.token), word(self.before));
         let is_word = self.token.is_some_and(|token| token.kind == TokenKind::Word);
         let after_number = self.before.is_some_and(|token| token.kind == TokenKind::Number);
+        if self.is_soft() && self.expected.has(Rule::relation) {
+            return Some("a soft constraint is `soft(w): c`, with two prices `soft(linear = v, square = w): c`".into());
+        }
+        if this == "at" && self.expected.has(Rule::part) {
+            return Some("one time has a block of its own: `at 2.5 [s] { ... }`".into());
+        }
         if this == "**" {
             return Some("write `^` for a power".into());
         }

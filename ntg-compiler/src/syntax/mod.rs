@@ -27,7 +27,7 @@ use parse::Build;
 
 pub use format::{WIDTH, format};
 pub use scan::{Comment, MAX_DEPTH};
-pub use words::{EXPRESSION_WORDS, ITEM_WORDS, LATER_WORDS, OTHER_ITEM_WORDS};
+pub use words::{EXPRESSION_WORDS, ITEM_WORDS, OTHER_ITEM_WORDS};
 
 /// Reads a spec.
 ///

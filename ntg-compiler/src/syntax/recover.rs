@@ -239,6 +239,7 @@ impl Walk<'_> {
             ("initial" | "trajectory" | "final" | "temporal" | "dynamics", Body::Items(_)) => {
                 (Rule::whole_block_head, Body::Constraints)
             }
+            ("at", Body::Items(_)) => (Rule::whole_at_head, Body::Constraints),
             ("guess", Body::Items(_)) => (Rule::whole_guess_head, Body::Guess),
             ("table", Body::Items(_)) => (Rule::whole_table_head, Body::Rows),
             ("param", Body::Items(_)) if self.text(word + 1) == "table" => (Rule::whole_table_head, Body::Rows),

@@ -132,10 +132,13 @@ structures! {
     Agent { name, family, items }
     Jump { outputs }
     Continuous { outputs, up_to }
+    Periodic { outputs, up_to }
     Collocation { kind, points, equalities, inequalities, intervals, knots }
     Objective { sense, name, unit, value }
-    Block { place, statements }
-    Constraint { doc, name, relation, span }
+    Block { place, part, statements }
+    AtBlock { time, statements }
+    Constraint { doc, softness, name, relation, span }
+    Softness { linear, square, span }
     Guess { statements }
     Assign { target, value, span }
     Route { outputs, points, span }
@@ -182,10 +185,12 @@ macro_rules! choices {
 choices! {
     ItemKind {
         Const(x), Param(x), Variable(x), Output(x), Function(x), Let(x), Table(x), Continuation(x), Duration(x),
-        Start(x), Phase(x), Agent(x), Jump(x), Continuous(x), Collocation(x), Objective(x), Block(x), Guess(x);;
+        Start(x), Phase(x), Agent(x), Jump(x), Continuous(x), Periodic(x), Collocation(x), Objective(x), Block(x), At(x),
+        Guess(x);;
     }
     UseTarget { Module(x), File(x);; }
     TableData { Inline(x); File { path, span }; }
+    Part { ; Except { ends, span }, Between { from, to, span }; }
     Extent { Fixed(x), Free(x);; }
     Course { Spline(x);; Held, Continuous, Collocated }
     Statement<T> { One(x), For(x);; }

@@ -30,18 +30,16 @@ pub const EXPRESSION_WORDS: &[&str] = &[
     "sum", "t", "tau",
 ];
 
-/// Words kept free for later versions of the language.
-pub const LATER_WORDS: &[&str] = &["at", "soft"];
-
 /// Words that Rust refuses as names even in their raw form.
 pub(crate) const NEVER_NAMES: &[&str] = &["Self", "crate", "self", "super"];
 
 /// Words that begin a declaration though they are reserved for expressions, or not at all.
-pub const OTHER_ITEM_WORDS: &[&str] = &["duration", "dynamics", "final", "initial", "input", "jump", "start", "state"];
+pub const OTHER_ITEM_WORDS: &[&str] =
+    &["at", "duration", "dynamics", "final", "initial", "input", "jump", "periodic", "start", "state"];
 
 /// Whether no name may be so.
 pub(crate) fn is_reserved(word: &str) -> bool {
-    [ITEM_WORDS, EXPRESSION_WORDS, LATER_WORDS].iter().any(|words| words.contains(&word))
+    [ITEM_WORDS, EXPRESSION_WORDS].iter().any(|words| words.contains(&word))
 }
 
 /// The word that begins a declaration and is most like `word`, if any is.
@@ -111,7 +109,7 @@ mod tests {
         let mut reserved: Vec<&str> = rule.split('"').skip(1).step_by(2).collect();
         assert!(reserved.windows(2).all(|pair| pair[0].len() >= pair[1].len()), "{reserved:?}");
         let mut words: Vec<&str> =
-            [ITEM_WORDS, EXPRESSION_WORDS, LATER_WORDS].iter().flat_map(|list| list.iter()).copied().collect();
+            [ITEM_WORDS, EXPRESSION_WORDS].iter().flat_map(|list| list.iter()).copied().collect();
         reserved.sort_unstable();
         words.sort_unstable();
         assert_eq!(reserved, words);
@@ -119,15 +117,12 @@ mod tests {
 
     #[test]
     fn the_lists_are_sorted_and_do_not_overlap() {
-        let all: Vec<&str> = [ITEM_WORDS, EXPRESSION_WORDS, LATER_WORDS, NEVER_NAMES]
-            .iter()
-            .flat_map(|list| list.iter())
-            .copied()
-            .collect();
+        let all: Vec<&str> =
+            [ITEM_WORDS, EXPRESSION_WORDS, NEVER_NAMES].iter().flat_map(|list| list.iter()).copied().collect();
         let mut sorted = all.clone();
         sorted.sort_unstable();
         sorted.dedup();
         assert_eq!(sorted.len(), all.len());
-        assert!([ITEM_WORDS, EXPRESSION_WORDS, LATER_WORDS].iter().all(|list| list.is_sorted()));
+        assert!([ITEM_WORDS, EXPRESSION_WORDS].iter().all(|list| list.is_sorted()));
     }
 }

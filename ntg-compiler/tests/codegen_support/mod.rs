@@ -4,8 +4,8 @@ use ntg_compiler::codegen::generate;
 use ntg_compiler::expr::{Dag, InputId, NodeId};
 use ntg_compiler::program::{KernelBody, Program};
 use ntg_structure::{
-    Agent, At, Bounds, Call, Degree, Domain, Duration, Group, Kernel, Output, Phase, PhaseRef, Place, Points, Row,
-    Slot, Spline, Start, Structure, Term, Unit,
+    Agent, At, Bounds, Call, Degree, Domain, Duration, Group, Kernel, Output, Part, Phase, PhaseRef, Place, Points,
+    Row, Slot, Spline, Start, Structure, Term, Unit,
 };
 
 /// The generated code, formatted.
@@ -74,7 +74,7 @@ pub(crate) fn rest() -> Program {
     let x = Slot::Flat { phase: PhaseRef::default(), at: At::Here, output: 0, index: None, derivative: 1 };
     structure.groups = vec![Group {
         loops: vec![],
-        domain: Domain::Path { phase: PhaseRef::default(), points: 0 },
+        domain: Domain::Path { phase: PhaseRef::default(), points: 0, part: Part::WHOLE },
         call: Call {
             slots: vec![x],
             data: vec![ntg_structure::Data::Duration(PhaseRef::default())],

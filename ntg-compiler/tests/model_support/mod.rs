@@ -8,10 +8,11 @@ use ntg_compiler::diagnostic::{Diagnostic, Severity};
 use ntg_compiler::expr::{Environment, Node, NodeId, eval_in};
 use ntg_compiler::model::problem::{At, Form, Leaf, Problem};
 use ntg_compiler::model::{Loader, build};
+use ntg_compiler::program::Program;
 use ntg_compiler::source::Source;
 use ntg_compiler::syntax::parse;
 use ntg_splines::{Axis, Extrapolation, Method, Symmetry};
-use ntg_structure::{TableExtrapolation, TableMethod, TableSymmetry};
+use ntg_structure::{Place, TableExtrapolation, TableMethod, TableSymmetry};
 
 /// Files by path.
 pub(crate) struct Files(pub(crate) Vec<(&'static str, &'static str)>);
@@ -31,6 +32,24 @@ pub(crate) fn good(text: &str) -> Problem {
     let (problem, found) = build(&spec, &source, &Files(vec![]));
     let rendered: Vec<String> = found.iter().map(|finding| finding.render(&source)).collect();
     problem.unwrap_or_else(|| panic!("{}", rendered.join("\n\n")))
+}
+
+/// The program of a good spec, without the places and the texts of the spec.
+#[track_caller]
+pub(crate) fn program(text: &str) -> Program {
+    let source = Source::new("spec.ntg", text);
+    let compiled = ntg_compiler::compile(&source, &Files(vec![]));
+    let mut program = compiled.unwrap_or_else(|found| panic!("{}", found.render(&source))).program;
+    let structure = &mut program.structure;
+    structure.constraints.iter_mut().for_each(|constraint| constraint.place = Place::default());
+    structure.terms.iter_mut().for_each(|term| term.place = Place::default());
+    structure.variables.iter_mut().for_each(|variable| variable.place = Place::default());
+    structure.agents.iter_mut().for_each(|agent| agent.place = Place::default());
+    structure.phases.iter_mut().for_each(|phase| phase.place = Place::default());
+    structure.integrals.iter_mut().for_each(|integral| integral.place = Place::default());
+    structure.kernels.iter_mut().for_each(|kernel| kernel.probes.fill(Place::default()));
+    program.kernels.iter_mut().for_each(|kernel| kernel.labels.clear());
+    program
 }
 
 /// Holds a problem against what the model promises: without errors there is one, and nothing in it

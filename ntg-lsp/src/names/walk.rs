@@ -279,6 +279,10 @@ impl Walk {
                 it.outputs.iter().for_each(|output| self.segment(scope, output));
                 self.expr(scope, &it.up_to);
             }
+            ItemKind::Periodic(it) => {
+                it.outputs.iter().for_each(|output| self.segment(scope, output));
+                it.up_to.iter().for_each(|up_to| self.expr(scope, up_to));
+            }
             ItemKind::Collocation(it) => {
                 let settings = [&it.points, &it.equalities, &it.intervals];
                 settings.into_iter().flatten().for_each(|points| self.expr(scope, points));
@@ -290,7 +294,16 @@ impl Walk {
                 }
                 self.expr(scope, &it.value);
             }
-            ItemKind::Block(it) => self.statements(scope, &it.statements, &Self::constraint),
+            ItemKind::Block(it) => {
+                if let Some(Part::Between { from, to, .. }) = &it.part {
+                    from.iter().chain(to).for_each(|end| self.expr(scope, end));
+                }
+                self.statements(scope, &it.statements, &Self::constraint);
+            }
+            ItemKind::At(it) => {
+                self.expr(scope, &it.time);
+                self.statements(scope, &it.statements, &Self::constraint);
+            }
             ItemKind::Guess(it) => self.statements(scope, &it.statements, &Self::guess),
         }
     }
@@ -365,6 +378,9 @@ impl Walk {
         if let Some(name) = &constraint.name {
             let doc = constraint.doc.as_ref().map(|doc| doc.text.clone());
             self.declare(scope, name, Kind::Constraint, constraint.span, doc, None);
+        }
+        if let Some(softness) = &constraint.softness {
+            softness.linear.iter().chain(&softness.square).for_each(|price| self.expr(scope, price));
         }
         constraint.relation.sides().into_iter().for_each(|side| self.expr(scope, side));
     }

@@ -10,7 +10,7 @@ use super::frame::Frame;
 use super::instances::members;
 use super::layout::{Layout, narrow, outside};
 use super::node::Site;
-use super::points::{Point, point_set};
+use super::points::{Point, point_set, within};
 use super::rows::{RowInfo, RowKind, group_bounds};
 use super::slots::AffineMap;
 use ntg_nlp::{Block, Target};
@@ -81,13 +81,13 @@ pub(crate) fn domain_sites(
             Domain::Mission => vec![Point::NONE],
             Domain::Start(reference) => vec![Point::start(phase(reference)?)],
             Domain::End(reference) => vec![Point::end(phase(reference)?)],
-            Domain::Path { phase: reference, points } => {
+            Domain::Path { phase: reference, points, part } => {
                 let phase = phase(reference)?;
                 let member = &frame.layout.phases[phase];
                 let Some(set) = frame.structure.phases[member.phase].points.get(*points) else {
                     return Err(SetupError::malformed(format!("there is no point set number {points}")));
                 };
-                make(set, &member.breakpoints, phase)
+                within(part, set, make(set, &member.breakpoints, phase), phase, &member.breakpoints)
             }
         };
         sites.extend(points.into_iter().map(|point| Site { indices: indices.clone(), point }));

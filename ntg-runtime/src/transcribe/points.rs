@@ -5,7 +5,7 @@
 //! jump are taken. The same set can be made finer for the check after a solve (section 9).
 
 use ntg_splines::{Side, equidistant, gauss, trapezoid};
-use ntg_structure::Points;
+use ntg_structure::{Instant, Part, Points};
 
 /// Breakpoints nearer to each other than this are one.
 const SAME: f64 = 1e-12;
@@ -36,6 +36,42 @@ impl Point {
     pub(crate) fn end(phase: usize) -> Self {
         Self { phase: Some(phase), tau: 1.0, side: Side::Left, weight: f64::NAN }
     }
+}
+
+impl Point {
+    /// A place inside a phase, from the right but at its end.
+    pub(crate) fn inside(phase: usize, instant: Instant, breakpoints: &[f64]) -> Self {
+        if instant == Instant::END {
+            return Self::end(phase);
+        }
+        Self { tau: snap(instant.tau(), breakpoints), ..Self::start(phase) }
+    }
+}
+
+/// Those of a set's points that lie in a part of the phase, by increasing scaled time. Where the set has the ends of
+/// intervals it gets those of the part, each from inside.
+pub(crate) fn within(part: &Part, points: &Points, set: Vec<Point>, phase: usize, breakpoints: &[f64]) -> Vec<Point> {
+    if part.is_whole() {
+        return set;
+    }
+    let (first, last) = (snap(part.from.tau(), breakpoints), snap(part.to.tau(), breakpoints));
+    let is_first = |point: &Point| (point.tau - first).abs() <= SAME && point.side == Side::Right;
+    let is_last = |point: &Point| (point.tau - last).abs() <= SAME && point.side == Side::Left;
+    let belongs = |point: &Point| {
+        let inside = point.tau > first + SAME && point.tau < last - SAME;
+        inside || (part.with_first && is_first(point)) || (part.with_last && is_last(point))
+    };
+    let mut kept: Vec<Point> = set.into_iter().filter(belongs).collect();
+    let end = |tau, side| Point { phase: Some(phase), tau, side, weight: f64::NAN };
+    if matches!(points, Points::Breakpoints | Points::Uniform { .. }) {
+        if part.with_first && !kept.first().is_some_and(is_first) {
+            kept.insert(0, end(first, Side::Right));
+        }
+        if part.with_last && !kept.last().is_some_and(is_last) {
+            kept.push(end(last, Side::Left));
+        }
+    }
+    kept
 }
 
 /// The points of a set in a phase, by increasing scaled time.
@@ -190,6 +226,38 @@ mod tests {
         assert!(ends.iter().all(|p| p.weight == 0.0));
         assert!(set.len() >= 3 * 27 && set.iter().all(|p| p.weight.is_finite()));
         assert!(fine_set(&Points::Breakpoints, &THIRDS, 0, 20).iter().all(|p| p.weight.is_nan()));
+    }
+
+    #[test]
+    fn a_part_has_the_points_inside_and_its_own_ends_from_inside() {
+        let half = Part { from: Instant::new(1.0 / 3.0), to: Instant::new(0.5), ..Part::WHOLE };
+        let places = |points: Points, part: &Part| -> Vec<(f64, Side)> {
+            let set = within(part, &points, point_set(&points, &THIRDS, 0), 0, &THIRDS);
+            set.iter().map(|point| (point.tau, point.side)).collect()
+        };
+        let ends = [(THIRDS[1], Side::Right), (0.5, Side::Left)];
+        assert_eq!(places(Points::Breakpoints, &half), ends);
+        assert_eq!(places(Points::Uniform { points: 7 }, &half), ends);
+        assert_eq!(places(Points::Gauss { points: 1 }, &half), []);
+        assert_eq!(places(Points::LeftLimits, &half), []);
+        let middle = Part { from: Instant::new(0.2), to: Instant::new(0.6), ..Part::WHOLE };
+        assert_eq!(places(Points::Gauss { points: 1 }, &middle), [(0.5, Side::Right)]);
+        assert_eq!(places(Points::LeftLimits, &middle), [(THIRDS[1], Side::Left)]);
+        let inner = [(0.2, Side::Right), (THIRDS[1], Side::Right), (0.6, Side::Left)];
+        assert_eq!(places(Points::Breakpoints, &middle), inner);
+    }
+
+    #[test]
+    fn without_its_end_a_part_has_all_other_points() {
+        let part = Part { with_last: false, ..Part::WHOLE };
+        for points in [Points::Breakpoints, Points::Uniform { points: 4 }] {
+            let all = point_set(&points, &THIRDS, 0);
+            let set = within(&part, &points, all.clone(), 0, &THIRDS);
+            assert_eq!(set.len(), all.len() - 1);
+            assert!(set.iter().all(|point| point.tau < 1.0));
+        }
+        let fine = fine_set(&Points::Breakpoints, &THIRDS, 0, 20);
+        assert_eq!(within(&part, &Points::Breakpoints, fine.clone(), 0, &THIRDS).len(), fine.len() - 1);
     }
 
     #[test]

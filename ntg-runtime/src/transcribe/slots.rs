@@ -56,6 +56,7 @@ impl Layout {
                     At::Here => *here,
                     At::Start => Point::start(phase),
                     At::End => Point::end(phase),
+                    At::Inside(instant) => Point::inside(phase, instant, &self.phases[phase].breakpoints),
                 };
                 map.terms = self.basis(phase, output, derivative, point.tau, point.side);
             }

@@ -35,7 +35,7 @@ fn add_energy(p: &mut Double, free: bool) {
     let degree = if free { Degree::Nonlinear } else { Degree::Quadratic };
     let kernel = p.kernel((slots.len(), data.len()), 1, degree, formula);
     let term = p.term("energy");
-    let domain = Domain::Path { phase: phase(false, 0), points: 0 };
+    let domain = Domain::Path { phase: phase(false, 0), points: 0, part: Part::WHOLE };
     let call = Call { kernel, slots, data, ..Call::default() };
     p.structure.groups.push(group(domain, call, vec![Row::Cost { term }]));
     if free {
@@ -67,7 +67,7 @@ pub fn add_ceiling(p: &mut Double, bound: f64) {
     let bounds = p.constants(&[bound]);
     for points in 0..2 {
         let call = Call { kernel, slots: vec![flat(phase(false, 0), At::Here, 0, 0)], ..Call::default() };
-        let domain = Domain::Path { phase: phase(false, 0), points };
+        let domain = Domain::Path { phase: phase(false, 0), points, part: Part::WHOLE };
         let rows = vec![Row::Constraint { constraint, lower: None, upper: Some(0) }];
         p.structure.groups.push(Group { bounds: Some(bounds.clone()), ..group(domain, call, rows) });
     }
@@ -101,7 +101,7 @@ pub fn family(members: i64) -> Double {
     let slots =
         vec![flat(coast.clone(), At::Here, 0, 1), flat(coast.clone(), At::Here, 1, 0), Slot::Duration(coast.clone())];
     let call = Call { kernel, slots, data: vec![Data::Index(Affine::index(0))], ..Call::default() };
-    let domain = Domain::Path { phase: coast.clone(), points: 0 };
+    let domain = Domain::Path { phase: coast.clone(), points: 0, part: Part::WHOLE };
     p.structure.groups.push(Group { loops: over.clone(), ..group(domain, call, vec![Row::Cost { term }]) });
 
     // Continuity of x and its rate: x'(boost end) / T1 = x'(coast start) / T2.

@@ -2,7 +2,7 @@
 //!
 //! See `ast` for what holds of these types.
 
-use super::{Bounds, Doc, Event, Expr, Ident, IndexRange, Path};
+use super::{Boundary, Bounds, Doc, Event, Expr, Ident, IndexRange, Path};
 use crate::source::Span;
 
 /// `initial { ... }`, `trajectory { ... }`, `final { ... }`, `temporal { ... }`, `dynamics { ... }`
@@ -10,6 +10,8 @@ use crate::source::Span;
 pub struct Block {
     /// Where its constraints hold.
     pub place: BlockPlace,
+    /// In which part of that, if not in all of it.
+    pub part: Option<Part>,
     /// What stands in it.
     pub statements: Vec<Statement<Constraint>>,
 }
@@ -27,6 +29,45 @@ pub enum BlockPlace {
     Temporal,
     /// All the way: the equations of motion.
     Dynamics,
+}
+
+/// Which part of a trajectory a block is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Part {
+    /// `except initial`, `except final`, `except initial, final`
+    Except {
+        /// The ends that are left out, one or two.
+        ends: Vec<Boundary>,
+        /// All of it.
+        span: Span,
+    },
+    /// `from a to b`, `from a`, `to b`
+    Between {
+        /// Where it begins.
+        from: Option<Expr>,
+        /// Where it ends.
+        to: Option<Expr>,
+        /// All of it.
+        span: Span,
+    },
+}
+
+impl Part {
+    /// Where it stands.
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Except { span, .. } | Self::Between { span, .. } => *span,
+        }
+    }
+}
+
+/// `at 2.5 [s] { ... }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtBlock {
+    /// When its constraints hold.
+    pub time: Expr,
+    /// What stands in it.
+    pub statements: Vec<Statement<Constraint>>,
 }
 
 /// Something in a block, or a loop around some of it.
@@ -55,11 +96,24 @@ pub struct For<T> {
 pub struct Constraint {
     /// The doc comment before it.
     pub doc: Option<Doc>,
+    /// At which price it may be missed, if it may.
+    pub softness: Option<Softness>,
     /// Its name.
     pub name: Option<Ident>,
     /// What must hold.
     pub relation: Relation,
     /// From its first word to before its `;`, the doc comment excluded.
+    pub span: Span,
+}
+
+/// `soft(w)`, `soft(linear = w)`, `soft(square = w)`: at which price a constraint may be missed; one at least is there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Softness {
+    /// The price of what is missed.
+    pub linear: Option<Expr>,
+    /// The price of its square.
+    pub square: Option<Expr>,
+    /// From `soft` to the parenthesis.
     pub span: Span,
 }
 

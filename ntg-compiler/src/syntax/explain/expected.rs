@@ -34,11 +34,6 @@ impl Expected {
         self.has_expression() || self.rules.iter().any(|rule| kind(*rule) == Kind::Name)
     }
 
-    /// Whether a constraint or a guess would have done, which may begin with a name.
-    pub(super) fn wants_a_condition(&self) -> bool {
-        self.rules.iter().any(|rule| matches!(kind(*rule), Kind::Constraint | Kind::Guess))
-    }
-
     /// Whether only parts of a unit would have done.
     pub(super) fn is_inside_unit(&self) -> bool {
         let of_unit = |rule: &Rule| matches!(kind(*rule), Kind::Unit | Kind::Power) && *rule != Rule::unit;
@@ -156,14 +151,17 @@ fn kind(rule: Rule) -> Kind {
         | R::agent_head
         | R::jump
         | R::continuous
+        | R::periodic
         | R::collocation
         | R::objective
         | R::sense
         | R::block
         | R::block_head
+        | R::at_block
+        | R::at_head
         | R::guess
         | R::guess_head => Kind::Statement,
-        R::statement | R::constraint | R::repeated => Kind::Constraint,
+        R::statement | R::constraint | R::repeated | R::softness | R::kw_soft => Kind::Constraint,
         R::guess_statement | R::guess_repeated | R::route | R::assign => Kind::Guess,
         R::bounds
         | R::expression
@@ -241,12 +239,15 @@ fn mark(rule: Rule) -> Kind {
         R::equals => Kind::Mark("="),
         R::extent => Kind::Mark("="),
         R::after => Kind::Keyword("after".into()),
+        R::part => Kind::Keyword("from".into()),
+        R::end_word => Kind::Keyword("initial` or `final".into()),
         R::spline => Kind::Keyword("spline".into()),
         R::smoothness => Kind::Keyword("smooth".into()),
         R::course => Kind::Keyword("held".into()),
         R::method => Kind::Name,
         R::place
         | R::whole_block_head
+        | R::whole_at_head
         | R::whole_guess_head
         | R::whole_phase_head
         | R::whole_agent_head

@@ -209,7 +209,7 @@ impl Writer<'_> {
         let mut line = Line::new(blank, indent, "");
         (line.cells, line.align) = match word.as_str() {
             "phase" | "agent" => (vec![head, inside], Align::Phases),
-            "initial" | "trajectory" | "final" | "temporal" | "dynamics" | "guess" => {
+            "at" | "initial" | "trajectory" | "final" | "temporal" | "dynamics" | "guess" => {
                 (vec![head, inside], Align::Blocks)
             }
             _ => (vec![format!("{head} {inside}")], Align::Nothing),

@@ -60,6 +60,11 @@ impl Stream<'_> {
         let is_equals = self.pieces[sign].is_mark("=");
         self.text(if is_equals { " =" } else { ":" });
         let rest = self.behind(sign, range.end);
+        // `soft(w): name: c` has two colons.
+        if !is_equals && self.pieces[range.start].is_word("soft") {
+            self.space();
+            return self.assignment(rest..range.end, is_whole);
+        }
         let may_break = is_whole && rest == sign + 1 && self.commas(&(rest..range.end)).is_empty();
         if may_break {
             self.ops.push(Op::Assign);

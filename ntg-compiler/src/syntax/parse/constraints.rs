@@ -4,7 +4,9 @@ use super::Build;
 use super::parts::Parts;
 use crate::diagnostic::Code;
 use crate::source::Span;
-use crate::syntax::ast::{Block, BlockPlace, Comparison, Constraint, Expr, For, Relation, Statement};
+use crate::syntax::ast::{
+    AtBlock, Block, BlockPlace, Boundary, Comparison, Constraint, Expr, For, Part, Relation, Softness, Statement,
+};
 use crate::syntax::grammar::{Pair, Rule};
 
 /// A relation as it was taken to be meant, and its place.
@@ -13,15 +15,45 @@ type Sign = (Comparison, Span);
 impl Build {
     pub(super) fn block(&mut self, pair: Pair<'_>) -> Block {
         let mut parts = Parts::of(pair);
-        let head = parts.required(Rule::block_head);
-        let place = match Parts::of(head).required(Rule::place).as_str() {
+        let mut head = Parts::of(parts.required(Rule::block_head));
+        let place = match head.required(Rule::place).as_str() {
             "initial" => BlockPlace::Initial,
             "trajectory" => BlockPlace::Trajectory,
             "final" => BlockPlace::Final,
             "dynamics" => BlockPlace::Dynamics,
             _ => BlockPlace::Temporal,
         };
-        Block { place, statements: parts.map(|pair| self.statement(pair)).collect() }
+        let part = head.optional(Rule::part).map(|pair| self.part(pair));
+        if let Some(part) = part.as_ref().filter(|_| place != BlockPlace::Trajectory) {
+            let help = match place {
+                BlockPlace::Dynamics => "equations of motion hold all the way: write `dynamics { ... }`",
+                _ => "only `trajectory` has parts: write `trajectory from a to b { ... }`",
+            };
+            self.report(Code::Misplaced, part.span(), "this block has no parts", help);
+        }
+        Block { place, part, statements: parts.map(|pair| self.statement(pair)).collect() }
+    }
+
+    /// `except final`, `from a to b`.
+    fn part(&mut self, pair: Pair<'_>) -> Part {
+        let span = self.span(&pair);
+        let mut inner = pair.into_inner();
+        let word = inner.next().expect("the grammar begins a part with a word");
+        if word.as_rule() == Rule::kw_except {
+            let ends = inner.filter(|pair| pair.as_rule() == Rule::end_word);
+            let ends = ends.map(|end| if end.as_str() == "initial" { Boundary::Initial } else { Boundary::Final });
+            return Part::Except { ends: ends.collect(), span };
+        }
+        let mut ends = inner.filter(|pair| pair.as_rule() == Rule::expression).map(|pair| self.expression(pair));
+        let from = if word.as_rule() == Rule::kw_from { ends.next() } else { None };
+        let to = ends.next();
+        Part::Between { from, to, span }
+    }
+
+    pub(super) fn at_block(&mut self, pair: Pair<'_>) -> AtBlock {
+        let mut parts = Parts::of(pair);
+        let time = self.expression(Parts::of(parts.required(Rule::at_head)).required(Rule::expression));
+        AtBlock { time, statements: parts.map(|pair| self.statement(pair)).collect() }
     }
 
     pub(in crate::syntax) fn statement(&mut self, pair: Pair<'_>) -> Statement<Constraint> {
@@ -44,6 +76,7 @@ impl Build {
     fn constraint(&mut self, pair: Pair<'_>) -> Constraint {
         let mut parts = Parts::of(pair);
         let doc = parts.optional(Rule::doc).map(|pair| self.doc(pair));
+        let softness = parts.optional(Rule::softness).map(|pair| self.softness(pair));
         let name = parts.optional(Rule::constraint_name).map(|pair| self.name(&pair));
         let first = self.expression(parts.required(Rule::expression));
         let start = name.as_ref().map_or(first.span, |name| name.span);
@@ -54,7 +87,26 @@ impl Build {
         } else {
             self.chain(first, parts, "constraints")
         };
-        Constraint { doc, name, relation, span: start.to(end) }
+        Constraint { doc, softness, name, relation, span: start.to(end) }
+    }
+
+    /// `soft(w)`, `soft(linear = w, square = v)`.
+    fn softness(&mut self, pair: Pair<'_>) -> Softness {
+        let whole = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        if let Some(price) = parts.optional(Rule::expression) {
+            let linear = Some(self.expression(price));
+            return Softness { linear, square: None, span: whole };
+        }
+        let mut settings = self.settings("soft", parts.next());
+        let (linear, square) = (settings.value(self, "linear"), settings.value(self, "square"));
+        let before = self.found.len();
+        settings.finish(self);
+        if linear.is_none() && square.is_none() && self.found.len() == before {
+            let help = "write `soft(200 [1/s]): x <= 1;`, or `soft(square = 50 [1/s]): x <= 1;`";
+            self.report(Code::Setting, whole, "what does it cost to miss this constraint?", help);
+        }
+        Softness { linear, square, span: whole }
     }
 
     /// `a <= b`, `a <= b <= c`, and everything like it that must be refused.

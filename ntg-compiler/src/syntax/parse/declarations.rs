@@ -35,15 +35,7 @@ impl Build {
 
     pub(super) fn output(&mut self, pair: Pair<'_>) -> Output {
         let mut parts = Parts::of(pair);
-        let mut names = vec![];
-        while let Some(pair) = parts.optional(Rule::output_name) {
-            names.push(self.output_name(pair));
-        }
-        // Names without a unit take the last one of the list.
-        let last: Option<Unit> = names.iter().rev().find_map(|name| name.unit.clone());
-        for name in names.iter_mut().filter(|name| name.unit.is_none() && name.bounds.is_none()) {
-            name.unit.clone_from(&last);
-        }
+        let names = self.output_names(&mut parts);
         let course = Course::Spline(self.spline(parts.required(Rule::spline)));
         Output { role: Role::Output, names, course }
     }
@@ -51,11 +43,22 @@ impl Build {
     /// `state` or `input`.
     pub(super) fn process(&mut self, pair: Pair<'_>, role: Role) -> Output {
         let mut parts = Parts::of(pair);
+        let names = self.output_names(&mut parts);
+        let course = match parts.next() {
+            None => Course::Collocated,
+            Some(pair) if pair.as_rule() == Rule::spline => Course::Spline(self.spline(pair)),
+            Some(pair) if pair.as_str() == "held" => Course::Held,
+            Some(_) => Course::Continuous,
+        };
+        Output { role, names, course }
+    }
+
+    /// The names of a list. One without unit and bounds takes the next unit to its right, else the last one of the list.
+    fn output_names(&mut self, parts: &mut Parts<'_>) -> Vec<OutputName> {
         let mut names = vec![];
         while let Some(pair) = parts.optional(Rule::output_name) {
             names.push(self.output_name(pair));
         }
-        // A name without unit and bounds takes the next unit to its right, else the last one of the list.
         let last: Option<Unit> = names.iter().rev().find_map(|name| name.unit.clone());
         let mut next = last;
         for name in names.iter_mut().rev() {
@@ -65,13 +68,7 @@ impl Build {
                 None => {}
             }
         }
-        let course = match parts.next() {
-            None => Course::Collocated,
-            Some(pair) if pair.as_rule() == Rule::spline => Course::Spline(self.spline(pair)),
-            Some(pair) if pair.as_str() == "held" => Course::Held,
-            Some(_) => Course::Continuous,
-        };
-        Output { role, names, course }
+        names
     }
 
     fn output_name(&mut self, pair: Pair<'_>) -> OutputName {

@@ -54,9 +54,11 @@ impl Build {
             Rule::agent => ItemKind::Agent(self.agent(pair)),
             Rule::jump => ItemKind::Jump(self.jump(pair)),
             Rule::continuous => ItemKind::Continuous(self.continuous(pair)),
+            Rule::periodic => ItemKind::Periodic(self.periodic(pair)),
             Rule::collocation => ItemKind::Collocation(self.collocation(pair)),
             Rule::objective => ItemKind::Objective(self.objective(pair)),
             Rule::block => ItemKind::Block(self.block(pair)),
+            Rule::at_block => ItemKind::At(self.at_block(pair)),
             Rule::guess => ItemKind::Guess(self.guess(pair)),
             rule => unreachable!("the grammar has no declaration {rule:?}"),
         }

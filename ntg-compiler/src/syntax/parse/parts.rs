@@ -80,12 +80,14 @@ fn is_keyword(rule: Rule) -> bool {
         R::kw_after
             | R::kw_agent
             | R::kw_as
+            | R::kw_at
             | R::kw_collocation
             | R::kw_const
             | R::kw_continuation
             | R::kw_continuous
             | R::kw_duration
             | R::kw_else
+            | R::kw_except
             | R::kw_fn
             | R::kw_for
             | R::kw_from
@@ -97,9 +99,11 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_let
             | R::kw_output
             | R::kw_param
+            | R::kw_periodic
             | R::kw_phase
             | R::kw_problem
             | R::kw_smooth
+            | R::kw_soft
             | R::kw_spline
             | R::kw_start
             | R::kw_state

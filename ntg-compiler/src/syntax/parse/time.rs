@@ -3,7 +3,9 @@
 use super::parts::Parts;
 use super::{Build, Scope};
 use crate::diagnostic::Code;
-use crate::syntax::ast::{Agent, Collocation, CollocationKind, Continuous, Duration, Extent, Jump, Phase, Segment};
+use crate::syntax::ast::{
+    Agent, Collocation, CollocationKind, Continuous, Duration, Extent, Jump, Periodic, Phase, Segment,
+};
 use crate::syntax::grammar::{Pair, Rule};
 use crate::syntax::words::nearest;
 
@@ -51,6 +53,12 @@ impl Build {
         let mut parts = Parts::of(pair);
         let outputs = self.segments(&mut parts);
         Continuous { outputs, up_to: self.expression(parts.required(Rule::expression)) }
+    }
+
+    pub(super) fn periodic(&mut self, pair: Pair<'_>) -> Periodic {
+        let mut parts = Parts::of(pair);
+        let outputs = self.segments(&mut parts);
+        Periodic { outputs, up_to: parts.optional(Rule::expression).map(|pair| self.expression(pair)) }
     }
 
     fn segments(&mut self, parts: &mut Parts<'_>) -> Vec<Segment> {

@@ -116,6 +116,9 @@ impl Rates<'_> {
     pub(super) fn depend_on_time(&self) -> Result<bool, SetupError> {
         let point = self.point(Where::Along(0.5));
         for group in &self.nlp.model.structure.groups {
+            if matches!(&group.domain, Domain::Path { part, .. } if !part.is_whole()) {
+                return Ok(true);
+            }
             for indices in members(&group.loops) {
                 if !self.concerns(group, Where::Along(0.5), &indices)? {
                     continue;
@@ -136,7 +139,11 @@ impl Rates<'_> {
     /// Whether a group is evaluated there in this phase.
     fn concerns(&self, group: &Group, place: Where, indices: &[i64]) -> Result<bool, SetupError> {
         let reference = match (&group.domain, place) {
-            (Domain::Path { phase, .. }, Where::Along(_)) => phase,
+            (Domain::Path { phase, part, .. }, Where::Along(tau))
+                if (part.from.tau()..=part.to.tau()).contains(&tau) =>
+            {
+                phase
+            }
             (Domain::Start(phase), Where::Start) | (Domain::End(phase), Where::End) => phase,
             _ => return Ok(false),
         };
@@ -190,6 +197,7 @@ impl Rates<'_> {
             At::Here => true,
             At::Start => place == Where::Start,
             At::End => place == Where::End,
+            At::Inside(_) => false,
         };
         let first = self.nlp.model.layout.agents[self.vehicle.agent].phases.start;
         let axis = self.vehicle.members[self.phase - first].iter().position(|member| *member == output)?;

@@ -1,0 +1,156 @@
+//! Points of time, parts of a trajectory and periods, on problems small enough for paper.
+
+use ntg::prelude::*;
+
+use crate::support::{Shipped, close};
+
+#[test]
+fn a_way_through_a_point_at_a_time_is_two_ways() {
+    mod inline {
+        ntg::ntg! {
+            problem Through {
+                duration T = 2 [s];
+                output x [m]: spline(order = 4, intervals = 2);
+                minimize integral(der(x, 2)^2);
+                initial { x == 0;  der(x) == 0; }
+                at 1 [s] { x == 1 [m]; }
+                final { x == 0;  der(x) == 0; }
+            }
+        }
+    }
+    // By symmetry the middle is at rest: twice from rest to rest over 1 m in 1 s, 12 m^2/s^3 each.
+    let report = solve(&inline::Through::default(), &Settings::default()).expect("it can be set up");
+    assert!(report.is_solved(), "{report}");
+    close(report.objective, 24.0, 1e-8);
+    close(report.solution.output("x").expect("an output").derivative(1.0, 0), 1.0, 1e-10);
+}
+
+#[test]
+fn a_time_between_knots_moves_with_a_free_duration() {
+    let spec = Shipped::text(
+        "problem P {
+            duration T in 1 .. 10 [s];
+            output x [m]: spline(order = 4, intervals = 7);
+            minimize cost: integral(der(x)^2) / 1 [m^2/s] + T / 1 [s];
+            initial { x == 0; }
+            at T / 3 { x == 2 [m]; }
+            final { x == 6 [m]; }
+            temporal { half: at(0.5 * T, x) >= 3 [m]; }
+            guess { T = 3 [s]; }
+        }",
+    );
+    // A straight line: 36 / T + T.
+    let report = spec.solve();
+    close(report.objective, 12.0, 1e-8);
+    close(report.phases()[0].end, 6.0, 1e-6);
+}
+
+#[test]
+fn a_bound_on_a_part_of_the_way_leaves_the_rest_free() {
+    let spec = Shipped::text(
+        "problem P {
+            duration T = 1;
+            output x: spline(order = 2, intervals = 4);
+            minimize integral(der(x)^2);
+            initial { x == 0; }
+            trajectory from 0.5 * T to 0.75 * T { x >= 1; }
+            final { x == 0; }
+        }",
+    );
+    // Up in half of the time, level while the bound holds, down in a quarter.
+    close(spec.solve().objective, 2.0 + 4.0, 1e-7);
+}
+
+#[test]
+fn without_its_end_an_expression_may_have_no_value_there() {
+    let spec = Shipped::text(
+        "problem P {
+            duration T = 1;
+            output x: spline(order = 3, intervals = 4);
+            minimize integral(der(x)^2);
+            initial { x == 1; }
+            trajectory except final { steep: x / (1 - tau) <= 2;  log(1 - tau) * x <= 3; }
+            final { x == 0; }
+        }",
+    );
+    close(spec.solve().objective, 1.0, 1e-8);
+}
+
+#[test]
+fn what_is_periodic_closes() {
+    let spec = Shipped::text(
+        "problem P {
+            duration T = 2;
+            output x: spline(order = 5, intervals = 8);
+            minimize integral((x - tau)^2 + 0.001 * der(x, 2)^2);
+            periodic x;
+        }",
+    );
+    let report = spec.solve();
+    let x = report.solution.output("x").expect("an output");
+    for order in 0..4 {
+        close(1.0 + x.derivative(2.0, order), 1.0 + x.derivative(0.0, order), 1e-9);
+    }
+    let free = Shipped::text(
+        "problem P { duration T = 2; output x: spline(order = 5, intervals = 8); \
+         minimize integral((x - tau)^2 + 0.001 * der(x, 2)^2); }",
+    );
+    assert!(report.objective > 100.0 * free.solve().objective);
+}
+
+#[test]
+fn a_part_through_phases_of_open_lengths() {
+    let spec = Shipped::text(
+        "problem P {
+            output x: spline(order = 2, intervals = 2, smoothness = 1);
+            duration T in 1 .. 2;
+            phase out { duration in 0.1 .. 2; }
+            phase stay after out { duration = 0.5; }
+            phase back after stay { duration in 0.1 .. 2; }
+            minimize integral(der(x)^2) + 4 * T;
+            initial { x == 0; }
+            trajectory from start(stay) to end(stay) { x >= 1; }
+            final { x == 0; }
+            guess { x = 1;  duration(out) = 0.4;  duration(back) = 0.6; }
+        }",
+    );
+    // Out and back in a each: 1/a + 4 a, least at a half.
+    close(spec.solve().objective, 2.0 * 4.0 + 4.0 * 0.5, 1e-6);
+}
+
+#[test]
+fn what_a_soft_constraint_is_missed_by_balances_its_price() {
+    let missed = |soft: &str| {
+        let text = format!(
+            "problem P {{
+                duration T = 1;
+                output x: spline(order = 4, intervals = 1);
+                minimize integral(der(x, 2)^2);
+                initial {{ x == 0;  der(x) == 0; }}
+                final {{ der(x) == 0;  {soft}: aim: x == 1; }}
+            }}"
+        );
+        let report = Shipped::text(&text).solve();
+        1.0 - report.solution.output("x").expect("an output").derivative(1.0, 0)
+    };
+    // From rest to rest over d costs 12 d^2: with a price w s^2 it is w s = 12 (1 - s), with w s it is w = 24 (1 - s).
+    close(missed("soft(square = 36)"), 12.0 / 48.0, 1e-7);
+    close(missed("soft(12)"), 0.5, 1e-6);
+    close(1.0 + missed("soft(100)"), 1.0, 1e-7);
+}
+
+#[test]
+fn along_the_way_only_what_pays_is_missed() {
+    let spec = Shipped::text(
+        "problem P {
+            duration T = 1;
+            output x: spline(order = 3, intervals = 4);
+            minimize integral((x - 2)^2);
+            trajectory { soft(1): low: x <= 1; }
+        }",
+    );
+    // Point by point (x - 2)^2 + (x - 1) is least at 1.5.
+    let report = spec.solve();
+    close(report.objective, 0.75, 1e-6);
+    close(report.solution.output("low_miss").expect("it is shown").derivative(0.3, 0), 0.5, 1e-5);
+}
