@@ -1,0 +1,172 @@
+//! Laws of the solver over all shipped specs: what changes a program without changing its optimum changes neither the
+//! optimum nor, by much, the iterations.
+//!
+//! The transcribed program of each spec is solved again with factors of the objective and of every row. Factors that are
+//! powers of two round nothing: there every iterate is the same to the bit. Other factors round, so that the optimum
+//! agrees to 1e-6 and iterations to half as many again. Other units of variables are a law of `ntg-nlp`'s own tests.
+
+use ntg_compiler::model::Loader;
+use ntg_compiler::source::Source;
+use ntg_interp::Interpreted;
+use ntg_runtime::guess::start;
+use ntg_runtime::nlp::{Block, Evaluation, Limits, Nlp, NotFinite, Options, Outcome, Status, Target, ipm};
+use ntg_runtime::settings::Settings;
+use ntg_runtime::transcribe::{Transcription, Workspace};
+use std::path::{Path, PathBuf};
+
+/// A program with other factors: `minimise factor f`, rows `rows_i c_i`.
+struct Multiplied<'a, 'p> {
+    inner: &'a Transcription<'p>,
+    factor: f64,
+    rows: Vec<f64>,
+    blocks: Vec<Block>,
+    limits: Limits,
+}
+
+impl<'a, 'p> Multiplied<'a, 'p> {
+    fn new(inner: &'a Transcription<'p>, factor: f64, rows: Vec<f64>) -> Self {
+        let mut blocks = inner.blocks().to_vec();
+        for block in &mut blocks {
+            for (weight, target) in block.weight.iter_mut().zip(&block.target) {
+                *weight *= match target {
+                    Target::Objective => factor,
+                    Target::Row(row) => rows[*row as usize],
+                };
+            }
+        }
+        let mut limits = inner.limits().clone();
+        for (i, row) in rows.iter().enumerate() {
+            for bound in [&mut limits.row_lower, &mut limits.row_upper, &mut limits.row_scale] {
+                bound[i] *= row;
+            }
+        }
+        Self { inner, factor, rows, blocks, limits }
+    }
+
+    fn scale(&self, out: &mut Evaluation) {
+        out.objective *= self.factor;
+        out.rows.iter_mut().zip(&self.rows).for_each(|(value, row)| *value *= row);
+    }
+}
+
+impl Nlp for Multiplied<'_, '_> {
+    type Workspace = (Workspace, Vec<f64>);
+
+    fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    fn globals(&self) -> usize {
+        self.inner.globals()
+    }
+
+    fn workspace(&self) -> (Self::Workspace, Evaluation) {
+        let (work, at) = self.inner.workspace();
+        ((work, self.rows.clone()), at)
+    }
+
+    fn values(&self, x: &[f64], work: &mut Self::Workspace, out: &mut Evaluation) -> Result<(), NotFinite> {
+        self.inner.values(x, &mut work.0, out)?;
+        self.scale(out);
+        Ok(())
+    }
+
+    fn derivatives(
+        &self,
+        x: &[f64],
+        objective_weight: f64,
+        multipliers: &[f64],
+        (work, weights): &mut Self::Workspace,
+        out: &mut Evaluation,
+    ) -> Result<(), NotFinite> {
+        weights.iter_mut().zip(multipliers.iter().zip(&self.rows)).for_each(|(out, (y, row))| *out = y * row);
+        self.inner.derivatives(x, objective_weight * self.factor, weights, work, out)?;
+        self.scale(out);
+        Ok(())
+    }
+}
+
+/// Files are found beside the specs.
+struct BesideSpecs;
+
+impl Loader for BesideSpecs {
+    fn load(&self, path: &str) -> Result<String, String> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
+        std::fs::read_to_string(folder.join(path)).map_err(|error| error.to_string())
+    }
+}
+
+/// All shipped specs.
+fn specs() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
+    let files = std::fs::read_dir(folder).expect("the folder is there").map(|entry| entry.expect("readable").path());
+    let mut specs: Vec<_> = files.filter(|path| path.extension().is_some_and(|e| e == "ntg")).collect();
+    specs.sort();
+    assert!(specs.len() >= 20, "{} specs", specs.len());
+    specs
+}
+
+/// Factors by row, from a seed, each a power of `base`.
+fn factors(count: usize, base: f64, seed: &mut u64) -> Vec<f64> {
+    let draw = |_| {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        base.powi(i32::try_from((*seed >> 33) % 13).expect("small") - 6)
+    };
+    (0..count).map(draw).collect()
+}
+
+/// Solves every spec plainly and with factors; `law` compares the outcomes.
+fn holds(name: &str, base: f64, law: impl Fn(&Outcome, &Outcome, f64) -> bool) {
+    let mut broken = vec![];
+    for path in specs() {
+        let source = Source::new(path.display().to_string(), std::fs::read_to_string(&path).expect("readable"));
+        let compiled = ntg_compiler::compile(&source, &BesideSpecs).unwrap_or_else(|_| panic!("{}", path.display()));
+        let problem = Interpreted::new(&compiled.program);
+        let mut nlp = Transcription::new(&problem).expect("a shipped spec transcribes");
+        let first = start(&nlp, None).expect("a start");
+        nlp.set_scales(&first, &Settings::default()).expect("sizes");
+        let options = Options::default();
+        let plain = ipm::solve(&nlp, &first, &options);
+        let mut seed = 7;
+        for (factor, has_factors) in [(base.powi(6), false), (base.powi(-6), false), (1.0, true), (base, true)] {
+            let rows = if has_factors { factors(nlp.rows(), base, &mut seed) } else { vec![1.0; nlp.rows()] };
+            let found = ipm::solve(&Multiplied::new(&nlp, factor, rows), &first, &options);
+            if !law(&plain, &found, factor) {
+                broken.push(format!(
+                    "{} ({factor:e}, rows {has_factors}): {} after {} for {} after {}, {:e} for {:e}",
+                    path.file_stem().expect("a name").to_string_lossy(),
+                    found.status,
+                    found.iterations,
+                    plain.status,
+                    plain.iterations,
+                    found.objective / factor,
+                    plain.objective
+                ));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{name}:\n{}", broken.join("\n"));
+}
+
+#[test]
+fn factors_that_round_nothing_change_no_bit() {
+    holds("powers of two", 8.0, |plain, found, factor| {
+        std::mem::discriminant(&found.status) == std::mem::discriminant(&plain.status)
+            && found.iterations == plain.iterations
+            && (found.objective / factor).to_bits() == plain.objective.to_bits()
+    });
+}
+
+#[test]
+fn factors_that_round_change_no_optimum() {
+    holds("powers of ten", 10.0, |plain, found, factor| {
+        plain.status != Status::Solved
+            || found.status == Status::Solved
+                && (found.objective / factor - plain.objective).abs() <= 1e-6 * plain.objective.abs()
+                && found.iterations <= plain.iterations * 3 / 2 + 3
+    });
+}
