@@ -14,10 +14,10 @@ use ntg_splines::{Axis, Extrapolation, Method as Interpolation, Table};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Iterations that are timed; as many solves are made with one only, which everything else that a solve does costs too.
+/// The iterations of a timed solve; one of a single iteration costs everything else that a solve does.
 const ITERATIONS: usize = 7;
-/// Repetitions, of which the least time counts.
-const TURNS: usize = 3;
+/// Everything is repeated for so many seconds on the processor, whose clock may tick every hundredth.
+const SECONDS: f64 = 0.5;
 
 /// One thing that grows: its name, its unit, its sizes, and how a size is measured.
 struct Kind {
@@ -119,13 +119,8 @@ fn iteration(text: &str, before: &str, after: &str) -> Fallible<f64> {
     let mut solver = Solver::new(problem, &settings);
     let mut run = |iterations: usize| -> Fallible<(f64, usize)> {
         solver.settings.max_iterations = iterations;
-        let mut found = (f64::INFINITY, 0);
-        for _ in 0..TURNS {
-            let began = processor_seconds();
-            let report = solver.solve()?;
-            found = (found.0.min(processor_seconds() - began), report.iterations);
-        }
-        Ok(found)
+        let last = solver.solve()?.iterations;
+        Ok((each(|| solver.solve().map(drop))?, last))
     };
     let (one, first) = run(1)?;
     let (all, last) = run(ITERATIONS)?;
@@ -140,26 +135,35 @@ fn look_up(n: usize, method: Interpolation) -> Fallible<f64> {
     let table = Table::new(axes, values.collect(), method, Extrapolation::Clamp).map_err(|error| error.to_string())?;
     let path: Vec<[f64; 2]> =
         (0..1000).map(|i| [0.01 * f64::from(i), 5.0 + 4.9 * (0.01 * f64::from(i)).sin()]).collect();
-    let mut least = f64::INFINITY;
-    for _ in 0..20 * TURNS {
-        let began = processor_seconds();
+    let seconds = each(|| {
         for place in &path {
             for order in [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]] {
                 black_box(table.eval(black_box(place), &order));
             }
         }
-        least = least.min(processor_seconds() - began);
-    }
-    Ok(1e9 * least / path.len() as f64)
+        Ok::<(), Error>(())
+    })?;
+    Ok(1e9 * seconds / path.len() as f64)
 }
 
 /// Milliseconds of compiling a spec.
 fn compile(text: &str) -> Fallible<f64> {
     let source = Source::new("growth.ntg", text.to_owned());
-    let began = processor_seconds();
-    let compiled = ntg_compiler::compile(&source, &NoFiles).map_err(|_| "the spec does not compile")?;
-    black_box(&compiled.program);
-    Ok(1e3 * (processor_seconds() - began))
+    let compiled = || ntg_compiler::compile(&source, &NoFiles).map_err(|_| "the spec does not compile");
+    Ok(1e3 * each(|| compiled().map(|compiled| drop(black_box(compiled))))?)
+}
+
+/// The seconds that one run takes, the mean of as many as [`SECONDS`] allow.
+fn each<E: Into<Box<dyn std::error::Error>>>(mut run: impl FnMut() -> Result<(), E>) -> Fallible<f64> {
+    let (began, mut runs) = (processor_seconds(), 0);
+    loop {
+        run().map_err(Into::into)?;
+        runs += 1;
+        let spent = processor_seconds() - began;
+        if spent >= SECONDS {
+            return Ok(spent / f64::from(runs));
+        }
+    }
 }
 
 /// Hills.
