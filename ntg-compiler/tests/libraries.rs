@@ -129,6 +129,16 @@ messages! {
     };
 }
 
+/// What is wrong with the syntax of a spec.
+fn unread(text: &str) -> String {
+    let source = Source::new("spec.ntg", text);
+    ntg_compiler::syntax::parse(&source).map_or_else(|found| found.render(&source), |_| String::new())
+}
+
+messages! {
+    forms_with_a_dot: unread("use std.rotation;\nuse std::atmosphere\nproblem P { let a = air.density(h); }");
+}
+
 /// What is found in a library by itself.
 fn checked(text: &str) -> String {
     let source = Source::new("lib.ntg", text);

@@ -183,7 +183,7 @@ pub(super) struct Elaborator<'a> {
 const MAX_STEPS: usize = 1_000_000;
 
 /// How deeply expressions, definitions and functions may nest in one another.
-const MAX_DEPTH: usize = 700;
+const MAX_DEPTH: usize = 500;
 
 impl<'a> Elaborator<'a> {
     pub(super) fn new(source: &'a Source, loader: &'a dyn Loader) -> Self {

@@ -55,10 +55,7 @@ impl<'a> Elaborator<'a> {
             ExprKind::Power(base, exponent) => self.power(cx, base, exponent, span),
             ExprKind::Call(call) => self.call(cx, call, at),
             ExprKind::If(conditional) => self.conditional(cx, conditional, at, span),
-            ExprKind::Steps(steps) => match self.steps(cx, steps) {
-                Some(inner) => self.element_or_zero(&inner, &steps.value, at),
-                None => self.poison(span),
-            },
+            ExprKind::Steps(steps) => self.behind_steps(cx, steps, at, span),
             ExprKind::Der { of, order } => self.derivative(cx, (of, at), order.as_deref(), span),
             ExprKind::Partial { of, argument } => self.partial(cx, of, argument, span),
             ExprKind::Integral { path, of } => self.integral(cx, path.as_ref(), (of, at), span),

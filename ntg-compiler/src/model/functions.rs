@@ -366,13 +366,7 @@ impl<'a> Elaborator<'a> {
             return self.poison(call.span);
         }
         if self.inlining.contains(&function) {
-            let name = &declared.name.text;
-            let message = format!("the function `{name}` uses itself");
-            let finding = Diagnostic::new(Code::Circle, call.span, message)
-                .label(call.span, "used again here")
-                .label(declared.name.span, "declared here")
-                .help("write it without itself: functions are inlined, so they cannot recur; use `sum` or `prod` over an index");
-            return self.refuse(finding, call.span);
+            return self.uses_itself(function, call);
         }
         let before = self.found.len();
         let Some(inner) = self.inside_function(cx, function, call, arguments) else {
@@ -380,8 +374,25 @@ impl<'a> Elaborator<'a> {
             return self.poison(call.span);
         };
         self.inlining.push(function);
-        let mut value = self.element_or_zero(&inner, &declared.body, at);
+        let value = self.element_or_zero(&inner, &declared.body, at);
         self.inlining.pop();
+        self.value_of_call(value, function, call, before)
+    }
+
+    /// Refuses a function inside itself. Apart from `inline`, whose frames lie on the stack as deep as functions nest.
+    fn uses_itself(&mut self, function: usize, call: &Call) -> Value {
+        let name = &self.functions[function].function.name;
+        let message = format!("the function `{}` uses itself", name.text);
+        let finding = Diagnostic::new(Code::Circle, call.span, message)
+            .label(call.span, "used again here")
+            .label(name.span, "declared here")
+            .help("write it without itself: functions are inlined, so they cannot recur; use `sum` or `prod` over an index");
+        self.refuse(finding, call.span)
+    }
+
+    /// The value of a function's body where it is used.
+    fn value_of_call(&mut self, mut value: Value, function: usize, call: &Call, before: usize) -> Value {
+        let declared = self.functions[function].function;
         if let Some(unit) = declared.unit.as_ref().filter(|_| value.is_sound()) {
             value = self.declared_unit(value, unit, &format!("the value of `{}`", declared.name.text));
         }

@@ -226,23 +226,27 @@ impl Libraries {
         {
             return None;
         }
-        let mut places: Vec<(usize, Option<(Span, String)>, Span)> = Vec::new();
+        let mut places: Vec<(usize, Span, Option<String>)> = Vec::new();
         let mut labels = Vec::new();
         for (span, text) in std::mem::take(&mut finding.labels) {
             match file(span).filter(|_| !own(span)) {
-                Some(file) => places.push((file, Some((span, text)), span)),
+                Some(file) => places.push((file, span, Some(text))),
                 // What is no text of the spec, as around a library that is checked alone.
                 None if home.is_some() && file(span).is_none() => {}
                 None => labels.push((span, text)),
             }
         }
         if let Some(file) = place.filter(|_| !own(finding.span)) {
-            places.push((file, None, finding.span));
+            places.push((file, finding.span, None));
             let used = labels.iter().find(|(_, text)| text.starts_with("in this use")).map(|(span, _)| *span);
             finding.span = used.or_else(|| uses_here.first().copied()).unwrap_or(self.files[file].used);
             if used.is_none() && !labels.iter().any(|(span, _)| *span == finding.span) {
                 labels.push((finding.span, "used here".to_owned()));
             }
+        }
+        // A finding about the text around a library that is checked alone stands where it meets the library.
+        if home.is_some() && place.is_none() {
+            finding.span = uses_here.first().copied().unwrap_or_default();
         }
         let shift =
             |span: Span, base: u32| Span { start: span.start.saturating_sub(base), end: span.end.saturating_sub(base) };
@@ -253,7 +257,7 @@ impl Libraries {
             finding.labels.iter_mut().for_each(|(span, _)| *span = shift(*span, base));
         }
         let mut libraries: Vec<InLibrary> = Vec::new();
-        for (file, label, span) in places {
+        for (file, span, label) in places {
             let (base, source) = (self.files[file].span.start, &self.files[file].source);
             let known = libraries.iter().position(|library| Arc::ptr_eq(&library.source, source));
             let at = known.unwrap_or_else(|| {
@@ -261,7 +265,7 @@ impl Libraries {
                 libraries.len() - 1
             });
             match label {
-                Some((span, text)) => libraries[at].labels.push((shift(span, base), text)),
+                Some(text) => libraries[at].labels.push((shift(span, base), text)),
                 None => libraries[at].span = Some(shift(span, base)),
             }
         }

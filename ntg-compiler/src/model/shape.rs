@@ -153,10 +153,7 @@ impl<'a> Elaborator<'a> {
             }
             ExprKind::Call(call) => self.call_shape(cx, call),
             ExprKind::If(conditional) => self.conditional_shape(cx, conditional),
-            ExprKind::Steps(steps) => {
-                let inner = self.step_shapes(cx, steps)?;
-                self.shape(&inner, &steps.value)
-            }
+            ExprKind::Steps(steps) => self.steps_shape(cx, steps),
             ExprKind::Der { of, .. } => self.shape(cx, of),
             ExprKind::Partial { .. } => Some(Shape::NUMBER),
             ExprKind::Integral { path, of } | ExprKind::Boundary { path, of, .. } => {

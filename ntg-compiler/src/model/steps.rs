@@ -8,12 +8,23 @@ use std::rc::Rc;
 
 use super::elaborator::Elaborator;
 use super::element::{Lazy, Stated};
+use super::problem::Form;
 use super::scope::{Allow, Context, Meaning};
 use super::shape::{Ends, Shape};
+use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
 use crate::syntax::ast::{self, Let, Steps};
 
 impl<'a> Elaborator<'a> {
+    /// An element of the value behind steps.
+    pub(super) fn behind_steps(&mut self, cx: &Context<'a>, steps: &'a Steps, at: &[Form], span: Span) -> Value {
+        match self.steps(cx, steps) {
+            Some(inner) => self.element_or_zero(&inner, &steps.value, at),
+            None => self.poison(span),
+        }
+    }
+
     /// The context in which the value behind the steps stands.
     pub(super) fn steps(&mut self, cx: &Context<'a>, steps: &'a Steps) -> Option<Context<'a>> {
         let mut inner = cx.clone();
@@ -36,8 +47,14 @@ impl<'a> Elaborator<'a> {
         Some(inner)
     }
 
-    /// The same where only shapes are looked for.
-    pub(super) fn step_shapes(&mut self, cx: &Context<'a>, steps: &'a Steps) -> Option<Context<'a>> {
+    /// The shape of the value behind steps.
+    pub(super) fn steps_shape(&mut self, cx: &Context<'a>, steps: &'a Steps) -> Option<Shape> {
+        let inner = self.step_shapes(cx, steps)?;
+        self.shape(&inner, &steps.value)
+    }
+
+    /// The context in which the shape of the value behind the steps is found.
+    fn step_shapes(&mut self, cx: &Context<'a>, steps: &'a Steps) -> Option<Context<'a>> {
         let mut inner = cx.clone();
         for step in &steps.lets {
             let shape = self.step_shape(&inner, step)?;
@@ -84,8 +101,8 @@ impl<'a> Elaborator<'a> {
     pub(super) fn fits(
         &mut self,
         stated: Option<Shape>,
-        (name, shape): (crate::source::Span, &Shape),
-        expr: crate::source::Span,
+        (name, shape): (Span, &Shape),
+        expr: Span,
         help: &str,
     ) -> Option<Shape> {
         let stated = stated?;

@@ -227,6 +227,14 @@ impl Here<'_> {
         if this == "**" {
             return Some("write `^` for a power".into());
         }
+        let earlier = self.index.checked_sub(2).and_then(|at| self.scan.tokens.get(at));
+        if (this == "."
+            && self.expected.has(Rule::semicolon)
+            && (self.expected.has(Rule::alias) || self.expected.has(Rule::kw_as)))
+            || (this == "(" && word(earlier) == ".")
+        {
+            return Some("names of a library stand behind `::`: `use std::rotation;`, `rotation::matrix(q)`".into());
+        }
         if let Some(advice) = self.advice_on_conditions(this, before) {
             return Some(advice.into());
         }
