@@ -58,7 +58,7 @@ fn shipped(name: &str) -> Interpreted {
 
 /// To the last digits, which differences need.
 fn settings() -> Settings {
-    Settings { tolerance: 1e-11, constraint_tolerance: 1e-11, samples: 1, ..Settings::default() }
+    Settings { tolerance: 1e-11, constraint_tolerance: 1e-11, max_iterations: 200, samples: 1, ..Settings::default() }
 }
 
 #[track_caller]
@@ -134,6 +134,9 @@ fn disagreements(problem: Interpreted) -> Vec<String> {
         let place = problem.place(name, index).expect("a parameter of the problem");
         let (mut errors, mut compared) = (vec![f64::INFINITY; numbers.len()], false);
         for step in STEPS {
+            if errors.iter().all(|error| *error <= MOST) {
+                break;
+            }
             let step = step * if parameter.value == 0.0 { 1.0 } else { parameter.value.abs() };
             let mut beside = |sign: f64| {
                 solver.problem = problem.clone();
@@ -186,10 +189,8 @@ fn derivatives_of_the_flights_are_those_of_differences() {
         "low_observable",
         "low_observable_cosine",
         "low_observable_gauss",
-        "low_observable_lock_loss",
         "low_observable_phases",
         "low_observable_phases_cosine",
-        "radar_net",
     ]);
 }
 
