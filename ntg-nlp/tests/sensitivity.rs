@@ -81,21 +81,6 @@ fn a_bound_that_is_met_by_chance_is_weakly_active() {
 }
 
 #[test]
-fn a_flat_direction_makes_a_minimum_that_is_not_strict() {
-    // (x + y - p)^2: the solution that moves least shares what p asks for.
-    let program = Program::dense(&[(-INF, INF), (-INF, INF), (1.0, 1.0)], &[], |v, out| {
-        let rest = v[0] + v[1] - v[2];
-        out.set_value(0, rest * rest);
-        out.set_gradient(0, &[2.0 * rest, 2.0 * rest, -2.0 * rest]);
-        out.set_hessian(0, &[2.0, 2.0, -2.0, 2.0, 2.0, -2.0, -2.0, -2.0, 2.0]);
-    });
-    let mut sensitivity = differentiated(&program).unwrap_or_else(|why| panic!("{why}"));
-    assert!(!sensitivity.is_strict());
-    let response = sensitivity.response(Moving { rows: &[], variables: &[0.0, 0.0, 1.0] }).expect("a derivative");
-    assert!((response.x[0] + response.x[1] - 1.0).abs() < 1e-6 && (response.x[0] - 0.5).abs() < 1e-6);
-}
-
-#[test]
 fn bounds_that_contradict_each_other_as_soon_as_they_move_have_no_derivative() {
     // Two equalities say the same; one of them moves.
     let program = Program::dense(&[(-INF, INF)], &[(1.0, 1.0), (1.0, 1.0)], |v, out| {
