@@ -155,9 +155,11 @@ fn compile(text: &str) -> Fallible<f64> {
 
 /// The seconds that one run takes, the mean of as many as [`SECONDS`] allow.
 fn each<E: Into<Box<dyn std::error::Error>>>(mut run: impl FnMut() -> Result<(), E>) -> Fallible<f64> {
-    let (began, mut runs) = (processor_seconds(), 0);
+    let (began, mut runs) = (processor_seconds(), 0_u32);
     loop {
-        run().map_err(Into::into)?;
+        if let Err(error) = run() {
+            return Err(error.into());
+        }
         runs += 1;
         let spent = processor_seconds() - began;
         if spent >= SECONDS {
