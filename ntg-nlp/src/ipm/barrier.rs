@@ -81,6 +81,12 @@ impl<N: Nlp> State<'_, N> {
         self.record.residuals.scaled.dual.max(self.barrier_error())
     }
 
+    /// Whether the problem of the last barrier parameter is solved well enough.
+    pub(super) fn last_barrier_problem_is_solved(&self) -> bool {
+        self.mu <= self.last_barrier()
+            && self.barrier_problem_error() <= (KAPPA_EPSILON * self.mu).max(self.options.tolerance)
+    }
+
     /// Lowers the barrier parameter although its problem is not solved well enough; false where it is the last one.
     pub(super) fn force_lower_barrier(&mut self) -> bool {
         let last = self.last_barrier();

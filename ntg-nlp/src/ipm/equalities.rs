@@ -9,7 +9,7 @@ use crate::kkt::Curvature;
 /// Refinements of the equalities at most.
 const REFINEMENTS: usize = 6;
 /// The fraction of the equalities' residuals that may remain, and what may remain anyway (scaled).
-const REFINED: f64 = 1e-10;
+const REFINED: f64 = 1e-12;
 const ROUNDING: f64 = 1e-13;
 /// Where an estimated multiplier is larger than this, all start at 0 instead. WB, section 3.6: lambda_max = 1e3.
 const LARGEST_ESTIMATE: f64 = 1e3;

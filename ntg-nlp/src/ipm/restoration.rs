@@ -133,8 +133,12 @@ impl<N: Nlp> State<'_, N> {
         is_finite
     }
 
-    /// The step of a restoration, and the search along it.
+    /// The step of a restoration, and the search along it. A restoration that has converged to a point which the filter
+    /// does not accept is stuck: the sum of violations has a local minimum.
     pub(super) fn restoration_step(&mut self) -> SearchOutcome {
+        if self.last_barrier_problem_is_solved() {
+            return SearchOutcome::Stuck;
+        }
         if let Some(restoration) = &mut self.restoration {
             restoration.steps += 1;
         }

@@ -158,7 +158,9 @@ impl<N: Nlp> State<'_, N> {
         if let Some(penalty) = &self.penalty {
             penalty.residuals(&self.slacks, self.mu, &mut self.step.residual, &mut self.step.equality_residual);
         }
-        let mut proximal = (PROXIMAL_RISE * self.proximal).min(LARGEST_PROXIMAL);
+        // In penalty mode the compliances leave the proximal term nothing to do.
+        let largest = if self.penalty.is_some() { LEAST_PROXIMAL } else { LARGEST_PROXIMAL };
+        let mut proximal = (PROXIMAL_RISE * self.proximal).min(largest);
         loop {
             if !self.factorise(proximal) {
                 return false;
