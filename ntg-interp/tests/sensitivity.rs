@@ -166,7 +166,7 @@ fn disagreements(problem: Interpreted) -> Vec<String> {
             }
         }
         let worst = (0..errors.len()).max_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap_or(0);
-        if compared && !(errors[worst] <= MOST) {
+        if compared && (errors[worst].is_nan() || errors[worst] > MOST) {
             let own = numbers[worst].slopes.get(k);
             found.push(format!("{}: {} {:.1e} ({own:?})", parameter.name, numbers[worst].name, errors[worst]));
         }

@@ -261,7 +261,7 @@ impl<W> Sensitivity<W> {
     fn residual(&mut self, right: &Scaled, step: &Scaled) -> (Scaled, f64) {
         let Self { system, assembly, active, buffers, .. } = self;
         let Scales { variables, rows, .. } = &system.scales;
-        let (n, first) = (variables.len(), system.first_variable());
+        let first = system.first_variable();
         for ((to, x), size) in buffers.unscaled.iter_mut().zip(&step.x).zip(variables) {
             *to = x * size;
         }
@@ -270,18 +270,19 @@ impl<W> Sensitivity<W> {
         assembly.hessian.add_symmetric_product(1.0, &buffers.unscaled, &mut buffers.product);
         let mut left = Scaled { x: right.x.clone(), y: vec![0.0; right.y.len()] };
         let mut size = right.x.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
-        for j in 0..n {
-            let curvature = buffers.product[j] * variables[j];
-            left.x[j] -= curvature;
+        for ((left, product), variable) in left.x.iter_mut().zip(&buffers.product).zip(variables) {
+            let curvature = product * variable;
+            *left -= curvature;
             size = size.max(curvature.abs());
         }
         buffers.rows.fill(0.0);
         active.iter().filter(|&&f| f < rows.len()).for_each(|&f| buffers.rows[f] = step.y[f] * rows[f]);
         buffers.product.fill(0.0);
         assembly.jacobian.add_transposed_product(1.0, &buffers.rows, &mut buffers.product);
-        for j in 0..n {
-            let pull = buffers.product[j] * variables[j] + step.y[first + j];
-            left.x[j] += pull;
+        let bounds = &step.y[first..];
+        for (((left, product), variable), bound) in left.x.iter_mut().zip(&buffers.product).zip(variables).zip(bounds) {
+            let pull = product * variable + bound;
+            *left += pull;
             size = size.max(pull.abs());
         }
         buffers.rows.fill(0.0);

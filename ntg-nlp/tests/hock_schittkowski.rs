@@ -30,10 +30,7 @@ const OTHER_OPTIMA: [(u32, f64); 13] = [
 ];
 
 /// Problems that a method does not solve as asked, and what is seen. A problem that is solved must leave the table.
-const EXCEPTIONS_OF_IPM: [(u32, &str); 2] = [
-    (25, "at the optimum, but called acceptable only"),
-    (56, "called solved where all derivatives of the objective vanish, which is no minimum"),
-];
+const EXCEPTIONS_OF_IPM: [(u32, &str); 1] = [(25, "at the optimum, but called acceptable only")];
 /// As above. Those of 13 and 116 are faults: they are called solved. So is that of 63.
 const EXCEPTIONS_OF_SQP: [(u32, &str); 7] = [
     (13, "called solved 1e-5 beside the optimum, where no multipliers exist"),

@@ -17,6 +17,7 @@ use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::BlockValues;
 use ntg_splines::Side;
 use ntg_structure::{Bounds, Call, Duration, Row, Start, Structure};
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 
 /// A program at a solution. All vectors are those of the parametric program.
@@ -250,12 +251,13 @@ fn row_limits(nlp: &Transcription, full: &Structure, x: &[f64]) -> Result<Vec<Li
         let Row::Constraint { lower, upper, .. } = &group.rows[own] else {
             return Err(SetupError::malformed("a row is made by what is no constraint"));
         };
-        let key = (number, &row.indices[..]);
-        if !known.contains_key(&key) {
-            let bounds = group.bounds.as_ref().map_or(Ok(vec![]), |call| bounds(&frame, call, &row.indices, x))?;
-            known.insert(key, bounds);
-        }
-        let pick = |at: &Option<usize>| at.and_then(|at| known[&key].get(at).cloned()).unwrap_or_default();
+        let found = match known.entry((number, &row.indices[..])) {
+            Entry::Occupied(found) => found.into_mut(),
+            Entry::Vacant(place) => {
+                place.insert(group.bounds.as_ref().map_or(Ok(vec![]), |call| bounds(&frame, call, &row.indices, x))?)
+            }
+        };
+        let pick = |at: &Option<usize>| at.and_then(|at| found.get(at).cloned()).unwrap_or_default();
         limits.push(Limit { lower: pick(lower), upper: pick(upper) });
     }
     Ok(limits)

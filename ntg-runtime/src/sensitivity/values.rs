@@ -116,18 +116,18 @@ impl Sensitivity {
     /// Equation 16.6.
     fn named(&self, name: &str, time: f64) -> Option<Vec<f64>> {
         let signal = self.at.signal(&*self.problem, name)?;
-        let (place, named, indices) = signal.place(time)?;
+        let place = signal.place(time)?;
         let is_end = signal.span().is_none_or(|(start, end)| !(start < time && time < end));
-        let moment = place.map(|place| self.moment(place, is_end));
+        let moment = place.phase.map(|phase| self.moment(phase, is_end));
         let model = &self.at.inner.model;
         let point = moment.as_ref().map_or(Point::NONE, |moment| moment.point);
-        let site = Site { indices, point };
+        let site = Site { indices: place.indices, point };
         let mut x = self.at.inner.x.clone();
         // The last declared variable of the parametric form is the scaled time.
         let tau = *model.layout.variable_first.last()?;
         x[tau as usize] = if point.tau.is_nan() { 0.0 } else { point.tau };
         let frame = model.frame(&*self.problem);
-        let call = &model.structure.named[named].call;
+        let call = &model.structure.named[place.named].call;
         let (batch, maps) = batches(&frame, call, vec![site]).ok()?.pop()?;
         let kernels = &model.structure.kernels;
         let [jacobian, hessian] = batch.patterns(kernels);

@@ -124,15 +124,15 @@ impl Signal<'_> {
         values
     }
 
-    /// The phase at a mission time and the scaled time in it (none for a number), which of `Structure::named` it is there,
-    /// and for which indices.
-    pub(crate) fn place(&self, t: f64) -> Option<(Option<(usize, f64)>, usize, Vec<i64>)> {
+    /// Where a mission time is.
+    pub(crate) fn place(&self, t: f64) -> Option<Place> {
         let (phase, point) = self.point(t);
         let piece = self.pieces.iter().find(|piece| piece.phase == phase)?;
         if phase.is_some() && point.tau.is_nan() {
             return None;
         }
-        Some((phase.map(|phase| (phase, point.tau)), piece.named, piece.indices.clone()))
+        let phase = phase.map(|phase| (phase, point.tau));
+        Some(Place { phase, named: piece.named, indices: piece.indices.clone() })
     }
 
     /// The phase and the point of a mission time; a point whose scaled time is NaN where there is none.
@@ -146,6 +146,16 @@ impl Signal<'_> {
             None => (Some(phases.start), Point::NONE),
         }
     }
+}
+
+/// Where a named expression is at a mission time.
+pub(crate) struct Place {
+    /// The phase and the scaled time in it; none for a number.
+    pub(crate) phase: Option<(usize, f64)>,
+    /// Which of `Structure::named` it is there.
+    pub(crate) named: usize,
+    /// For which indices.
+    pub(crate) indices: Vec<i64>,
 }
 
 impl Solution {
