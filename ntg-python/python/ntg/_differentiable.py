@@ -54,12 +54,16 @@ class Function:
         columns = [sensitivity.parameters.index(name) for name in self.inputs]
         return sensitivity.jacobian(self.outputs)[:, columns]
 
+    def check(self, given: int) -> None:
+        """Raises where the number of given values is not that of the inputs."""
+        if given != len(self.inputs):
+            raise ValueError(f"{given} values are given for {len(self.inputs)} inputs")
+
     def _solution(self, values: Any) -> "Solution":
         import numpy as np
 
         given = tuple(np.asarray(values, dtype=np.float64).reshape(-1).tolist())
-        if len(given) != len(self.inputs):
-            raise ValueError(f"{len(given)} values are given for {len(self.inputs)} inputs")
+        self.check(len(given))
         if self._last is None or self._last[0] != given:
             solution = self._solver.resolve(dict(zip(self.inputs, given))).raise_if_unsolved()
             self._last = (given, solution)

@@ -56,4 +56,10 @@ def function(
         return (weights @ jacobian,)
 
     optimum.defvjp(forward, backward)
-    return lambda p: optimum(jnp.asarray(p, kind))
+
+    def checked(p: Any) -> Any:
+        values = jnp.asarray(p, kind)
+        core.check(values.size)  # Here, because JAX wraps what a callback raises.
+        return optimum(values)
+
+    return checked
