@@ -167,8 +167,9 @@ fn dispersed_parameters_are_sampled_alike_every_time_and_summarised() {
 fn a_changed_study_is_refused_and_the_old_one_goes_on() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let car = spec("low_observable.ntg");
+    // Long enough that the first process is at work when the second one begins.
     let study = |last: &'static str| {
-        vec![car.clone(), "--set".into(), format!("v_max=0.22:{last}:40"), "-o".into(), "s.csv".into()]
+        vec![car.clone(), "--set".into(), format!("v_max=0.22:{last}:200"), "-o".into(), "s.csv".into()]
     };
     let run = |arguments: &[String]| {
         command(folder.path(), &arguments.iter().map(String::as_str).collect::<Vec<_>>()).output().expect("it starts")
@@ -194,7 +195,7 @@ fn a_changed_study_is_refused_and_the_old_one_goes_on() {
     assert_eq!(std::fs::read(&journal).expect("the journal"), before);
     let last = run(&first);
     assert_eq!(last.status.code(), Some(0), "{}", String::from_utf8_lossy(&last.stderr));
-    assert_eq!(table(folder.path().join("s.csv")).len(), 41);
+    assert_eq!(table(folder.path().join("s.csv")).len(), 201);
 }
 
 #[test]
