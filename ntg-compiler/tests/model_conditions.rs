@@ -2,29 +2,9 @@
 
 mod model_support;
 
-use model_support::{Files, World, close, findings, good, named, value};
+use model_support::{World, close, findings, good, named, program, value};
 use ntg_compiler::expr::{Dag, InputId, gradient, hessian};
 use ntg_compiler::model::problem::{At, Problem};
-use ntg_compiler::program::Program;
-use ntg_compiler::source::Source;
-use ntg_structure::Place;
-
-/// A spec without its places, which differ from those of the same by hand.
-#[track_caller]
-fn program(text: &str) -> Program {
-    let source = Source::new("spec.ntg", text);
-    let compiled = ntg_compiler::compile(&source, &Files(vec![]));
-    let mut program = compiled.unwrap_or_else(|found| panic!("{}", found.render(&source))).program;
-    let structure = &mut program.structure;
-    structure.constraints.iter_mut().for_each(|constraint| constraint.place = Place::default());
-    structure.terms.iter_mut().for_each(|term| term.place = Place::default());
-    structure.agents.iter_mut().for_each(|agent| agent.place = Place::default());
-    structure.phases.iter_mut().for_each(|phase| phase.place = Place::default());
-    structure.integrals.iter_mut().for_each(|integral| integral.place = Place::default());
-    structure.kernels.iter_mut().for_each(|kernel| kernel.probes.fill(Place::default()));
-    program.kernels.iter_mut().for_each(|kernel| kernel.labels.clear());
-    program
-}
 
 #[track_caller]
 fn same(short: &str, long: &str) {

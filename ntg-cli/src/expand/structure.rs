@@ -1,4 +1,4 @@
-//! `--what structure`: kernels, elements, band and border.
+//! `--what structure`: kernels, elements, and the shape of the optimisation problem.
 
 use std::fmt::Write;
 
