@@ -22,6 +22,16 @@ pub enum Target {
     Row(u32),
 }
 
+impl Target {
+    /// The constraint row, if it is one.
+    pub(crate) fn row(self) -> Option<usize> {
+        match self {
+            Self::Objective => None,
+            Self::Row(row) => Some(row as usize),
+        }
+    }
+}
+
 /// Elements of one shape. They never change while a program is solved.
 #[derive(Clone, Debug, Default)]
 pub struct Block {

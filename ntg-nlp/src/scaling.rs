@@ -63,7 +63,11 @@ impl Scales {
             Slopes::of(nlp, trial, &assembly.jacobian, &sizes)
         });
         assembly.first(nlp.blocks(), at);
-        Self::from_slopes(nlp.limits(), scaling, &at_start.or_beside(probe, nlp.limits()))
+        Self::from_slopes(
+            nlp.limits(),
+            scaling,
+            &at_start.or_beside(probe, nlp.limits()).within_relations(nlp.blocks()),
+        )
     }
 
     /// Scaled bounds; they have no sizes of their own.
@@ -133,6 +137,21 @@ impl Slopes {
             self.variation = beside.variation;
         } else if beside.variation.is_finite() {
             self.variation = self.variation.max(LEAST_AT_START * beside.variation);
+        }
+        self
+    }
+
+    /// No row counts as less steep than rounding beside the steepest row of its relation, which is the same function at
+    /// other points: a relation that is all but constant at some points (1e-200 for a saturated logistic function) is
+    /// not magnified there until its rounding weighs.
+    pub fn within_relations(mut self, blocks: &[Block]) -> Self {
+        for relation in blocks.iter().flat_map(|block| block.target.chunks(block.elements.max(1))) {
+            let rows = || relation.iter().filter_map(|target| target.row());
+            let least =
+                f64::EPSILON * rows().map(|row| self.rows[row]).filter(|slope| slope.is_finite()).fold(0.0, f64::max);
+            for row in rows() {
+                self.rows[row] = self.rows[row].max(least);
+            }
         }
         self
     }

@@ -28,6 +28,7 @@ of_both_methods! {
     rows_beyond_their_domains
     objectives_without_a_lower_bound
     contradictory_equalities
+    equalities_that_contradict_by_little
     a_row_against_a_bound
     curved_contradictions_end_at_the_least_violation
     fixed_variables
@@ -228,6 +229,24 @@ fn contradictory_equalities(method: Method) {
         vec![x[0].powi(2) + x[1].powi(2), sum, sum]
     });
     infeasible(method, &p, &[3.0, 1.0], 1.0);
+}
+
+/// Two equations that contradict each other by ten times the tolerance: the end is acceptable, soon, where the objective
+/// is least on the line between them. SQP, whose subproblems are then elastic, calls it infeasible.
+fn equalities_that_contradict_by_little(method: Method) {
+    let p = dense(&[FREE; 2], &[(1.0, 1.0), (1.0 + 1e-7, 1.0 + 1e-7)], |x| {
+        let sum = x[0] + x[1];
+        vec![x[0].powi(4) + x[1].exp(), sum, sum]
+    });
+    let found = end(method, &p, &[3.0, -1.0]);
+    if method == Method::Sqp {
+        assert!(matches!(found.status, Status::Infeasible { .. }), "{}", found.status);
+        return;
+    }
+    assert_eq!(found.status, Status::Acceptable, "{:?}", found.residuals);
+    assert!(found.iterations <= 30, "{} iterations", found.iterations);
+    let [x, y] = [found.x[0], found.x[1]];
+    assert!((x + y - 1.0).abs() <= 2e-7 && (4.0 * x.powi(3) - y.exp()).abs() <= 1e-4, "{:?}", found.x);
 }
 
 fn a_row_against_a_bound(method: Method) {

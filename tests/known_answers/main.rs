@@ -6,6 +6,7 @@
 
 mod car;
 mod constructs;
+mod degenerate;
 mod fleet;
 mod flight;
 mod flight_phases;

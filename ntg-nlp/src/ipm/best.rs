@@ -61,6 +61,11 @@ impl<N: Nlp> State<'_, N> {
         }
     }
 
+    /// Whether the best point of all is acceptable.
+    pub(super) fn nearest_is_acceptable(&self) -> bool {
+        self.nearest.is_held && self.nearest.record.residuals.scaled.largest() <= ACCEPTABLE
+    }
+
     /// Returns to the best point of all.
     pub(super) fn take_nearest(&mut self) {
         (self.restoration, self.penalty) = (None, None);

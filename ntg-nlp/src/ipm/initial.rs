@@ -18,7 +18,7 @@ use std::time::Instant;
 /// The first barrier parameter, relative to its unit. WB, section 4: 0.1. A fit to the gallery and to the fleets of
 /// `multi_vehicle_separated`: with a larger one the barrier leads away from the minimum that the guess means, with a
 /// smaller one the first steps hit the bounds.
-const FIRST_BARRIER: f64 = 0.03;
+pub(super) const FIRST_BARRIER: f64 = 0.03;
 /// Where there are more inequalities than this, barrier parameters and first multipliers are smaller in proportion: more
 /// points of collocation must not weigh more beside an integral, whose weights become smaller. The number itself is a
 /// fit to the flights of `examples/robustness.rs`.
@@ -103,20 +103,18 @@ impl<'a, N: Nlp> State<'a, N> {
         self.slacks.update_distances(&self.values);
         match (from, from.multipliers(self.nlp)) {
             (_, Some(from)) => self.start_warm(from),
-            (Start::Cold, None) => self.start_without_multipliers(FIRST_BARRIER, INSIDE),
-            (Start::Near | Start::Warm(_), None) => {
-                self.start_without_multipliers(warm::NEAR_BARRIER, warm::NEAR_INSIDE);
-            }
+            (Start::Cold, None) => self.start_without_multipliers(FIRST_BARRIER),
+            (Start::Near | Start::Warm(_), None) => self.start_without_multipliers(self.near_barrier()),
         }
         self.evaluate()?;
         self.start_filter();
         Ok(())
     }
 
-    /// Slacks and multipliers of a point whose multipliers are not known.
-    fn start_without_multipliers(&mut self, barrier: f64, inside: f64) {
+    /// Slacks and multipliers of a point whose multipliers are not known. `barrier` is relative to its unit.
+    fn start_without_multipliers(&mut self, barrier: f64) {
         self.mu = barrier * self.barrier_unit;
-        self.slacks.initialise(inside);
+        self.slacks.initialise(INSIDE * barrier / FIRST_BARRIER);
         let (mu, most) = (self.mu, self.barrier_unit); // WB, section 3.6: 1.
         let is_near = barrier < FIRST_BARRIER;
         for (z, s) in self.slacks.z.iter_mut().zip(&self.slacks.s) {

@@ -148,6 +148,7 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
                     Some(state.stuck())
                 }
             }
+            SearchOutcome::Stuck if state.nearest_is_acceptable() => Some(state.stuck()),
             SearchOutcome::Stuck => {
                 if !state.enter_restoration() {
                     state.enter_penalty_mode(penalty::PARAMETER);

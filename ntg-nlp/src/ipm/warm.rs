@@ -1,27 +1,31 @@
 //! A start near a solution: multipliers are known, the barrier parameter begins low
 //! (docs/maths.md, section 11.8).
 
+use super::initial::FIRST_BARRIER;
 use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::Multipliers;
 
 /// How far inside their bounds the first point lies, relative to the bound and to the room between bounds.
 pub(super) const INSIDE: f64 = 1e-6;
-/// The first barrier parameter without multipliers.
-pub(super) const NEAR_BARRIER: f64 = 1e-6;
-/// How far inside their bounds the first slacks then are, as for any other start.
-pub(super) const NEAR_INSIDE: f64 = 1e-6;
-/// The first barrier parameter with multipliers.
-const BARRIER: f64 = 1e-6;
+/// The least first barrier parameter, relative to its unit. A fit to the flights of `examples/robustness.rs`.
+const LEAST_BARRIER: f64 = 1e-6;
 /// A first slack is at most pushed to this.
 const LARGEST_PUSH: f64 = 1e-3;
 
 impl<N: Nlp> State<'_, N> {
+    /// The first barrier parameter at a point that is said to be near a solution, relative to its unit: the square of the
+    /// largest violation. After a Newton step residuals are of the order of their squares, so that a lower barrier
+    /// parameter gains nothing; and a point whose violation is large is not near.
+    pub(super) fn near_barrier(&self) -> f64 {
+        self.slacks.violation(&self.values).powi(2).clamp(LEAST_BARRIER, FIRST_BARRIER)
+    }
+
     /// Slacks and multipliers from the multipliers of a solution nearby.
     pub(super) fn start_warm(&mut self, from: Multipliers<'_>) {
         let w = self.system.scales.objective;
         self.slacks.initialise(INSIDE);
-        self.mu = BARRIER * self.barrier_unit;
+        self.mu = self.near_barrier() * self.barrier_unit;
         let first = self.system.first_variable();
         let scales = &self.system.scales;
         let scaled = |function: usize| {

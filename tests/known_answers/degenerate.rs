@@ -1,0 +1,37 @@
+//! Problems whose constraints are dependent, contradict each other by the error of the discretisation, or are all but
+//! constant at most points.
+
+use ntg::prelude::*;
+
+use crate::support::{Shipped, close};
+
+/// The fourth quaternion is an algebraic variable, and its value at the end is redundant up to the error of the
+/// collocation, which no refinement of the equalities removes. Optimum: Betts (2010), section 6.8.
+#[test]
+fn equalities_that_depend_on_each_other_up_to_the_discretisation_end_soon_and_acceptable() {
+    let spec = Shipped::spec("gallery/reorientation");
+    let report = spec.solver().solve().expect("it can be set up");
+    assert!(matches!(report.status, Status::Acceptable | Status::Solved), "{report}");
+    close(report.objective, 28.63041, 5e-3);
+    assert!(report.iterations <= 100, "{} iterations", report.iterations);
+}
+
+/// A bound whose function saturates: at most points it is 1e-200, which is neither met nor missed.
+#[test]
+fn a_bound_that_all_but_vanishes_at_most_points_binds_nowhere() {
+    let spec = Shipped::text(
+        "problem Saturated {
+            duration T = 1;
+            output x: spline(order = 4, intervals = 4);
+            minimize integral(der(x, 2)^2);
+            initial { x == 0;  der(x) == 0; }
+            trajectory {
+                logistic(500 * (1 - x)) * (x - 3) >= -3;
+                logistic(500 * (1 - x)) * (2 - x) - logistic(500 * (x - 3)) >= 0;
+            }
+            final { x == 2;  der(x) == 0; }
+        }",
+    );
+    // Rest to rest over a distance of 2: 12 * 2^2.
+    close(spec.solve().objective, 48.0, 1e-8);
+}
