@@ -1,7 +1,8 @@
 //! Laws of the solver over all shipped specs: what changes a program without changing its optimum changes neither the
 //! optimum nor, by much, the iterations.
 //!
-//! The transcribed program of each spec is solved again with factors of the objective and of every row. Factors that are
+//! The transcribed program of each spec is solved again with factors of the objective and of every relation, which is one
+//! constraint at all of its points. Factors that are
 //! powers of two round nothing: there every iterate is the same to the bit. Other factors round, so that the optimum
 //! agrees to 1e-6 and iterations to half as many again. Other units of variables are a law of `ntg-nlp`'s own tests.
 
@@ -114,13 +115,32 @@ fn specs() -> Vec<PathBuf> {
     specs
 }
 
-/// Factors by row, from a seed, each a power of `base`.
-fn factors(count: usize, base: f64, seed: &mut u64) -> Vec<f64> {
+/// The relation of each row, by the least of its rows: rows to which the same function of a block adds.
+fn relations(nlp: &Transcription<'_>) -> Vec<usize> {
+    let mut relation: Vec<usize> = (0..nlp.rows()).collect();
+    let mut has_changed = true;
+    while std::mem::take(&mut has_changed) {
+        for targets in nlp.blocks().iter().flat_map(|block| block.target.chunks(block.elements.max(1))) {
+            let rows =
+                || targets.iter().filter_map(|t| if let Target::Row(row) = t { Some(*row as usize) } else { None });
+            let Some(least) = rows().map(|row| relation[row]).min() else { continue };
+            for row in rows() {
+                has_changed |= relation[row] != least;
+                relation[row] = least;
+            }
+        }
+    }
+    relation
+}
+
+/// Factors by row, the same for all rows of a relation, from a seed, each a power of `base`.
+fn factors(relations: &[usize], base: f64, seed: &mut u64) -> Vec<f64> {
     let draw = |_| {
         *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         base.powi(i32::try_from((*seed >> 33) % 13).expect("small") - 6)
     };
-    (0..count).map(draw).collect()
+    let drawn: Vec<f64> = relations.iter().map(draw).collect();
+    relations.iter().map(|&relation| drawn[relation]).collect()
 }
 
 /// Solves every spec plainly and with factors; `law` compares the outcomes.
@@ -135,9 +155,10 @@ fn holds(name: &str, base: f64, law: impl Fn(&Outcome, &Outcome, f64) -> bool) {
         nlp.set_scales(&first, &Settings::default()).expect("sizes");
         let options = Options::default();
         let plain = ipm::solve(&nlp, &first, &options);
-        let mut seed = 7;
+        let (mut seed, relations) = (7, relations(&nlp));
+        assert!(relations.iter().any(|relation| *relation != relations[0]), "{}: one relation", path.display());
         for (factor, has_factors) in [(base.powi(6), false), (base.powi(-6), false), (1.0, true), (base, true)] {
-            let rows = if has_factors { factors(nlp.rows(), base, &mut seed) } else { vec![1.0; nlp.rows()] };
+            let rows = if has_factors { factors(&relations, base, &mut seed) } else { vec![1.0; nlp.rows()] };
             let found = ipm::solve(&Multiplied::new(&nlp, factor, rows), &first, &options);
             if !law(&plain, &found, factor) {
                 broken.push(format!(
