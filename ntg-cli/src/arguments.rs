@@ -32,6 +32,7 @@ pub(crate) enum Command {
     /// Examples:
     ///   ntg new landing              # writes landing.ntg, which solves as it is
     ///   ntg new specs/landing.ntg    # the same in another folder
+    ///   ntg new lander --three-dimensional    # a powered descent in space
     #[command(verbatim_doc_comment)]
     New(New),
     /// Say what is wrong with specs, or that nothing is.
@@ -81,6 +82,7 @@ pub(crate) enum Command {
     ///   ntg solve specs/low_observable.ntg --route "x, y: -100, -100; 0, -100; 5, -15 [km]"
     ///   ntg solve specs/low_observable.ntg --starts 50 --seed 2
     ///   ntg solve specs/low_observable.ntg --guarantee     # every constraint proved for all times
+    ///   ntg solve specs/gates.ntg --csv flight.csv --every 0.1s
     #[command(verbatim_doc_comment)]
     Solve(Solve),
     Certify(crate::certify::Arguments),
@@ -153,7 +155,9 @@ pub(crate) struct Solve {
     /// `--force` is given.
     #[arg(long, value_name = "FILE")]
     pub(crate) save: Option<PathBuf>,
-    /// Let `--save` replace an existing file.
+    #[command(flatten)]
+    pub(crate) sampled: crate::samples::Arguments,
+    /// Let `--save`, `--csv` and `--parquet` replace an existing file.
     #[arg(long)]
     pub(crate) force: bool,
     /// Give up after that many seconds.

@@ -20,6 +20,7 @@ mod plot;
 mod report;
 mod route;
 mod runs;
+mod samples;
 mod setup;
 mod solve;
 mod starts;

@@ -10,9 +10,12 @@ use crate::{Exit, arguments, files, write};
 
 /// The spec, with `NAME` and `FILE` where the problem's own stand.
 const START: &str = include_str!("new/start.ntg");
+/// The same in space: a powered descent.
+const THREE_DIMENSIONAL: &str = include_str!("new/three_dimensional.ntg");
 
 pub(crate) fn run(arguments: &arguments::New) -> Exit {
-    match start(&arguments.name, arguments.force) {
+    let spec = if arguments.three_dimensional { THREE_DIMENSIONAL } else { START };
+    match start(&arguments.name, spec, arguments.force) {
         Ok(path) => {
             files::print(&next(&path));
             Exit::Done
@@ -24,11 +27,11 @@ pub(crate) fn run(arguments: &arguments::New) -> Exit {
     }
 }
 
-fn start(name: &Path, force: bool) -> Result<PathBuf, String> {
+fn start(name: &Path, spec: &str, force: bool) -> Result<PathBuf, String> {
     let path = if name.extension().is_some_and(|e| e == "ntg") { name.to_owned() } else { with_extension(name) };
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
     let problem = camel_case(stem);
-    let text = START.replace("NAME", &problem).replace("FILE", &path.display().to_string());
+    let text = spec.replace("NAME", &problem).replace("FILE", &path.display().to_string());
     if let Err(found) = syntax::parse(&Source::new("name", text.as_str())) {
         return Err(refused(stem, &problem, found.first()));
     }
@@ -42,7 +45,7 @@ fn next(path: &Path) -> String {
     let stem = stem.display();
     format!(
         "{spec}: written. Edit it, then:\n  ntg check {spec}\n  ntg solve {spec} --save {stem}.json\n  \
-         ntg plot {stem}.json --xy x,y -o {stem}.svg\n  ntg report {stem}.json -o {stem}.html"
+         ntg plot {stem}.json -o {stem}.svg\n  ntg report {stem}.json -o {stem}.html"
     )
 }
 

@@ -27,9 +27,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "X,Y", value_parser = runs::pair)]
     xy: Vec<(String, String)>,
     /// Draw this quantity or constraint (by name) over time: of all agents and members, or of one
-    /// (`striker.x`, `x[2]`); without `--show` and `--xy` everything is drawn.
+    /// (`striker.x`, `x[2]`); without `--show` and `--xy` everything is drawn, tracks first.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     show: Vec<String>,
+    /// Draw named expressions that only serve others, too: those without unit and documentation that stand in no
+    /// constraint and in no objective.
+    #[arg(long)]
+    all: bool,
     /// Replace an existing file.
     #[arg(long)]
     force: bool,
@@ -69,11 +73,15 @@ fn panels(arguments: &Arguments, runs: &figure::Runs<'_>) -> Result<Vec<Panel>, 
     for (x, y) in &arguments.xy {
         panels.push(figure::track(runs, x, y)?);
     }
+    let everything = arguments.show.is_empty() && arguments.xy.is_empty();
     let mut over_time = figure::outputs(runs);
-    over_time.extend(figure::lets(runs));
+    over_time.extend(figure::lets(runs, arguments.all || !everything));
     over_time.extend(figure::constraints(runs));
-    if arguments.show.is_empty() && arguments.xy.is_empty() {
-        return Ok(over_time);
+    if everything {
+        panels.extend(figure::tracks(runs));
+        panels.extend(figure::side(runs));
+        panels.extend(over_time);
+        return Ok(panels);
     }
     for name in &arguments.show {
         let mut named: Vec<Panel> = over_time.iter().filter(|panel| panel.title == *name).cloned().collect();

@@ -23,9 +23,13 @@ pub(crate) struct Arguments {
     /// Where to write.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Draw a track of two quantities; without it, of `x` and `y` where there are such outputs.
+    /// Draw a track of two quantities; without it, of positions where there are some.
     #[arg(long, value_name = "X,Y", value_parser = runs::pair)]
     xy: Vec<(String, String)>,
+    /// Draw named expressions that only serve others, too: those without unit and documentation that stand in no
+    /// constraint and in no objective.
+    #[arg(long)]
+    all: bool,
     /// Replace an existing file.
     #[arg(long)]
     force: bool,
@@ -35,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     write::may_write(&arguments.output, arguments.force)?;
     let loaded = arguments.inputs.load()?;
     let runs: Vec<(String, &Run)> = loaded.iter().map(|(name, run)| (name.clone(), run)).collect();
-    let page = html::page(&runs, &html::Page { tracks: arguments.xy.clone() })?;
+    let page = html::page(&runs, &html::Page { tracks: arguments.xy.clone(), all: arguments.all })?;
     write::whole(&arguments.output, arguments.force, page.as_bytes())?;
     let all = |is: fn(&Run) -> bool| loaded.iter().all(|(_, run)| is(run));
     Ok(match (all(Run::is_solved), all(Run::has_solution)) {

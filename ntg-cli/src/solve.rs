@@ -56,6 +56,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     if let Some(path) = &arguments.save {
         write::may_write(path, arguments.force)?;
     }
+    let every = arguments.sampled.checked(arguments.force)?;
     let Some((source, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
     let mut problem = Interpreted::new(&compiled.program);
     for assignment in &arguments.set {
@@ -118,6 +119,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         }
         write::whole(path, arguments.force, run.text().as_bytes())?;
     }
+    arguments.sampled.write((problem, report), (every, samples), arguments.force)?;
     let proved = summary.as_ref().is_none_or(Summary::is_proved);
     Ok(match proved && report.is_solved() && report.refined.as_ref().is_none_or(Refined::is_met) {
         true => Exit::Done,

@@ -67,13 +67,14 @@ pub fn quantity(text: &str, unit: &Unit) -> Result<Vec<f64>, String> {
     })
 }
 
-/// `240 m/s` as the language writes it: `240 [m/s]`.
+/// `240 m/s` and `240m/s` as the language writes them: `240 [m/s]`.
 fn bracketed(text: &str) -> String {
-    let parts = text.trim().split_once(char::is_whitespace);
-    match parts.map(|(number, unit)| (number, unit.trim())) {
-        Some((number, unit)) if number.parse::<f64>().is_ok() && unit.starts_with(char::is_alphabetic) => {
-            format!("{number} [{unit}]")
-        }
+    let trimmed = text.trim();
+    // The longest beginning that is a number: `1e3m` is a thousand metres.
+    let cuts = trimmed.char_indices().map(|(at, _)| at).rev();
+    let number = cuts.map(|at| trimmed.split_at(at)).find(|(number, _)| number.trim_end().parse::<f64>().is_ok());
+    match number.map(|(number, unit)| (number.trim_end(), unit.trim_start())) {
+        Some((number, unit)) if unit.starts_with(char::is_alphabetic) => format!("{number} [{unit}]"),
         _ => text.to_owned(),
     }
 }

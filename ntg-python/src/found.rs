@@ -241,7 +241,7 @@ impl Found {
     /// The report as one HTML page that needs no network.
     fn html(&self, py: Python<'_>, tracks: Vec<(String, String)>) -> PyResult<String> {
         let name = self.report.problem.clone();
-        let page = self.record(py, |run| html::page(&[(name, run)], &Page { tracks }))?;
+        let page = self.record(py, |run| html::page(&[(name, run)], &Page { tracks, ..Page::default() }))?;
         page.map_err(|message| errors::plain(py, "Error", &message))
     }
 }

@@ -1,7 +1,9 @@
 //! Panels as an SVG picture, by plotters.
 //!
-//! Lengths are in pixels of a picture 1600 wide: the library rounds to whole pixels, and at this
-//! size that does not show. Colours are Okabe and Ito's, which colour-blind eyes can tell apart.
+//! Lengths are in tenths of a pixel of a picture 1600 wide: the library rounds to whole numbers, and a line whose points
+//! lie on whole pixels wobbles. Colours are Okabe and Ito's, which colour-blind eyes can tell apart.
+
+mod clip;
 
 use std::ops::Range;
 
@@ -10,24 +12,29 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use crate::figure::{Line, Panel};
+use crate::figure::{Kind, Line, Panel, Shape};
 
 /// A rectangle of a picture to draw in.
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
-const WIDTH: u32 = 1600;
+/// How many units of the drawing a pixel is.
+const PIXEL: u32 = 10;
+const WIDTH: u32 = 1600 * PIXEL;
 /// The strip of title and sentence.
-const HEAD: u32 = 130;
+const HEAD: u32 = 130 * PIXEL;
 /// Heights of a panel, and of one that is a map.
-const HEIGHT: u32 = 540;
-const MAP_HEIGHT: u32 = 1100;
+const HEIGHT: u32 = 540 * PIXEL;
+const MAP_HEIGHT: u32 = 1100 * PIXEL;
 /// Height of a row of the legend.
-const ROW: i32 = 40;
+const ROW: i32 = 400;
 
 const INK: RGBColor = RGBColor(30, 30, 30);
 const GREY: RGBColor = RGBColor(110, 110, 110);
+/// Limits, and the ground.
+const LIMIT: RGBColor = RGBColor(178, 34, 34);
+const GROUND: RGBColor = RGBColor(122, 92, 48);
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -51,7 +58,9 @@ pub fn svg(title: &str, sentence: &str, panels: &[Panel]) -> Result<String, Stri
     let height = HEAD + rows.iter().map(|row| row_height(row)).sum::<u32>();
     let mut text = String::new();
     draw(&mut text, height, (title, sentence), &rows).map_err(|error| error.to_string())?;
-    Ok(text)
+    // The view box stays: it says how long a unit is.
+    let size = |scale: u32| format!("width=\"{}\" height=\"{}\"", WIDTH / scale, height / scale);
+    Ok(text.replacen(&size(1), &size(PIXEL), 1))
 }
 
 /// Maps and lone panels take a whole row, others share one.
@@ -73,8 +82,8 @@ fn row_height(row: &[&Panel]) -> u32 {
 fn draw(text: &mut String, height: u32, (title, sentence): (&str, &str), rows: &[Vec<&Panel>]) -> Drawn {
     let root = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
     root.fill(&WHITE)?;
-    root.draw(&Text::new(title.to_owned(), (40, 28), font(46).style(FontStyle::Bold).color(&INK)))?;
-    root.draw(&Text::new(sentence.to_owned(), (40, 84), font(28).color(&GREY)))?;
+    root.draw(&Text::new(title.to_owned(), (400, 280), font(460).style(FontStyle::Bold).color(&INK)))?;
+    root.draw(&Text::new(sentence.to_owned(), (400, 840), font(280).color(&GREY)))?;
     let mut rest = root.split_vertically(HEAD).1;
     for row in rows {
         let (area, below) = rest.split_vertically(row_height(row));
@@ -88,31 +97,31 @@ fn draw(text: &mut String, height: u32, (title, sentence): (&str, &str), rows: &
 }
 
 fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
-    area.draw(&Text::new(panel.title.clone(), (40, 6), font(32).style(FontStyle::Bold).color(&INK)))?;
-    let below = area.split_vertically(48).1;
+    area.draw(&Text::new(panel.title.clone(), (400, 60), font(320).style(FontStyle::Bold).color(&INK)))?;
+    let below = area.split_vertically(480).1;
     let plot = if panel.lines.len() > 1 { legend(&below, &panel.lines)? } else { below };
     let (mut xs, mut ys) = ranges(panel);
     if panel.equal {
         let (width, height) = plot.dim_in_pixel();
         // What the labels and margins below take.
-        let aspect = f64::from(width.saturating_sub(170)) / f64::from(height.saturating_sub(110));
+        let aspect = f64::from(width.saturating_sub(1700)) / f64::from(height.saturating_sub(1100));
         equalise(&mut xs, &mut ys, aspect);
     }
     let mut chart = ChartBuilder::on(&plot)
-        .margin_left(20)
-        .margin_right(40)
-        .margin_top(12)
-        .margin_bottom(10)
-        .x_label_area_size(78)
-        .y_label_area_size(110)
+        .margin_left(200)
+        .margin_right(400)
+        .margin_top(120)
+        .margin_bottom(100)
+        .x_label_area_size(780)
+        .y_label_area_size(1100)
         .build_cartesian_2d(xs.clone(), ys.clone())?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .axis_style(GREY)
-        .label_style(font(24).color(&INK))
-        .axis_desc_style(font(26).color(&INK))
+        .bold_line_style(BLACK.mix(0.12).stroke_width(PIXEL))
+        .axis_style(GREY.stroke_width(PIXEL))
+        .label_style(font(240).color(&INK))
+        .axis_desc_style(font(260).color(&INK))
         .x_labels(9)
         .y_labels(8)
         .x_desc(panel.x.as_str())
@@ -120,6 +129,9 @@ fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .x_label_formatter(&|x| number(*x, xs.end - xs.start))
         .y_label_formatter(&|y| number(*y, ys.end - ys.start))
         .draw()?;
+    for shape in &panel.shapes {
+        draw_shape(&mut chart, shape, (&xs, &ys))?;
+    }
     marks(&mut chart, panel, &xs, &ys)?;
     for (index, line) in panel.lines.iter().enumerate() {
         draw_line(&mut chart, index, line)?;
@@ -134,40 +146,84 @@ fn font(size: u32) -> FontDesc<'static> {
 /// Limits across and events up.
 fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>) -> Drawn {
     for (y, name) in &panel.limits {
-        chart.draw_series(DashedLineSeries::new([(xs.start, *y), (xs.end, *y)], 5, 7, INK.stroke_width(3)))?;
-        let label = Text::new(name.clone(), (10, -26), font(22).color(&GREY));
+        chart.draw_series(DashedLineSeries::new([(xs.start, *y), (xs.end, *y)], 50, 70, INK.stroke_width(30)))?;
+        let label = Text::new(name.clone(), (100, -260), font(220).color(&GREY));
         chart.draw_series([EmptyElement::at((xs.start, *y)) + label])?;
     }
     for (i, (x, name)) in panel.marks.iter().enumerate() {
-        chart.draw_series(DashedLineSeries::new([(*x, ys.start), (*x, ys.end)], 10, 8, GREY.stroke_width(2)))?;
+        chart.draw_series(DashedLineSeries::new([(*x, ys.start), (*x, ys.end)], 100, 80, GREY.stroke_width(20)))?;
         // Neighbouring events stand at different heights.
-        let height = 4 + 24 * i32::try_from(i % 4)?;
+        let height = 40 + 240 * i32::try_from(i % 4)?;
         // Behind its mark, or before it where the panel ends too soon.
-        let style = font(22).color(&GREY);
+        let style = font(220).color(&GREY);
         let (width, right) = (i32::try_from(style.font.box_size(name)?.0)?, chart.plotting_area().get_x_range().end);
         let room = chart.backend_coord(&(right, ys.end)).0 - chart.backend_coord(&(*x, ys.end)).0;
-        let left = if width + 6 <= room { 6 } else { -6 - width };
+        let left = if width + 60 <= room { 60 } else { -60 - width };
         let label = Text::new(name.clone(), (left, height), style);
         chart.draw_series([EmptyElement::at((*x, ys.end)) + label])?;
     }
     Ok(())
 }
 
+/// What lies beneath the lines.
+fn draw_shape(chart: &mut Chart<'_>, shape: &Shape, (xs, ys): (&Range<f64>, &Range<f64>)) -> Drawn {
+    let colour = match shape.kind {
+        Kind::Area | Kind::Border => LIMIT,
+        Kind::Ground => GROUND,
+        Kind::Contour | Kind::Place => GREY,
+    };
+    let area = clip::area(&shape.points, xs, ys);
+    if shape.kind == Kind::Area && area.len() > 2 {
+        chart.draw_series([Polygon::new(area.clone(), LIMIT.mix(0.12))])?;
+    }
+    let parts = clip::line(&shape.points, xs, ys);
+    for part in parts.iter().cloned() {
+        match shape.kind {
+            Kind::Area => chart.draw_series(LineSeries::new(part, LIMIT.stroke_width(20)))?,
+            Kind::Contour => chart.draw_series(LineSeries::new(part, GREY.mix(0.45).stroke_width(15)))?,
+            Kind::Ground => chart.draw_series(LineSeries::new(part, GROUND.stroke_width(35)))?,
+            Kind::Border | Kind::Place => {
+                chart.draw_series(DashedLineSeries::new(part, 100, 60, LIMIT.stroke_width(25)))?;
+                continue;
+            }
+        };
+    }
+    // A name stands in the middle of an area, beside all others; lines of equal height have none.
+    let place =
+        shape.points.first().copied().filter(|(x, y)| shape.kind == Kind::Place && xs.contains(x) && ys.contains(y));
+    if let Some(at) = place {
+        chart.draw_series([TriangleMarker::new(at, 90, INK.filled())])?;
+    }
+    let count = area.len() as f64;
+    let mean = |pick: fn(&(f64, f64)) -> f64| area.iter().map(pick).sum::<f64>() / count;
+    let at = match shape.kind {
+        Kind::Contour => None,
+        Kind::Area => (count > 2.0).then(|| (mean(|p| p.0), mean(|p| p.1))),
+        Kind::Border | Kind::Ground => parts.first().and_then(|part| part.first()).copied(),
+        Kind::Place => place,
+    };
+    if let Some(at) = at {
+        let label = Text::new(shape.name.clone(), (100, -80), font(200).color(&colour));
+        chart.draw_series([EmptyElement::at(at) + label])?;
+    }
+    Ok(())
+}
+
 fn draw_line(chart: &mut Chart<'_>, index: usize, line: &Line) -> Drawn {
     let colour = COLOURS[index % COLOURS.len()];
-    let style = colour.stroke_width(4);
+    let style = colour.stroke_width(40);
     // A gap where a quantity does not exist.
     for stretch in line.points.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let points = stretch.iter().copied();
         if line.run == 0 {
             chart.draw_series(LineSeries::new(points, style))?;
         } else {
-            chart.draw_series(DashedLineSeries::new(points, 14, 4 + 4 * u32::try_from(line.run)?, style))?;
+            chart.draw_series(DashedLineSeries::new(points, 140, 40 + 40 * u32::try_from(line.run)?, style))?;
         }
     }
-    chart.draw_series(line.events.iter().map(|at| Circle::new(*at, 8, colour.filled())))?;
+    chart.draw_series(line.events.iter().map(|at| Circle::new(*at, 80, colour.filled())))?;
     if let (false, Some(start)) = (line.times.is_empty(), line.points.first()) {
-        chart.draw_series([Circle::new(*start, 9, style)])?;
+        chart.draw_series([Circle::new(*start, 90, style)])?;
     }
     Ok(())
 }
@@ -177,25 +233,25 @@ fn legend<'a>(area: &Area<'a>, lines: &[Line]) -> Drawn<Area<'a>> {
     /// Rows of a legend before the rest is left out: who has more lines knows them by their shape.
     const MOST: i32 = 3;
     let right = i32::try_from(area.dim_in_pixel().0)?;
-    let (mut x, mut y) = (40, 8);
+    let (mut x, mut y) = (400, 80);
     for (index, line) in lines.iter().enumerate() {
-        // The width of a letter is not known in SVG; 13 pixels is ample at this size.
-        let width = 100 + 13 * i32::try_from(line.name.chars().count())?;
-        if x > 40 && x + width > right {
-            (x, y) = (40, y + ROW);
+        // The width of a letter is not known in SVG; 13 pixels are ample at this size.
+        let width = 1000 + 130 * i32::try_from(line.name.chars().count())?;
+        if x > 400 && x + width > right {
+            (x, y) = (400, y + ROW);
         }
         if y > MOST * ROW {
-            area.draw(&Text::new(format!("and {} more", lines.len() - index), (x, y - 4), font(24).color(&GREY)))?;
+            area.draw(&Text::new(format!("and {} more", lines.len() - index), (x, y - 40), font(240).color(&GREY)))?;
             break;
         }
-        let ends = [(x, y + 14), (x + 56, y + 14)];
-        let style = COLOURS[index % COLOURS.len()].stroke_width(4);
+        let ends = [(x, y + 140), (x + 560, y + 140)];
+        let style = COLOURS[index % COLOURS.len()].stroke_width(40);
         if line.run == 0 {
             area.draw(&PathElement::new(ends, style))?;
         } else {
-            area.draw(&DashedPathElement::new(ends, 14, 4 + 4 * u32::try_from(line.run)?, style))?;
+            area.draw(&DashedPathElement::new(ends, 140, 40 + 40 * u32::try_from(line.run)?, style))?;
         }
-        area.draw(&Text::new(line.name.clone(), (x + 68, y), font(26).color(&INK)))?;
+        area.draw(&Text::new(line.name.clone(), (x + 680, y), font(260).color(&INK)))?;
         x += width;
     }
     Ok(area.split_vertically(y + ROW).1)
@@ -204,6 +260,7 @@ fn legend<'a>(area: &Area<'a>, lines: &[Line]) -> Drawn<Area<'a>> {
 /// What the axes span: all lines, and the limits.
 fn ranges(panel: &Panel) -> (Range<f64>, Range<f64>) {
     let points = || panel.lines.iter().flat_map(|line| &line.points).filter(|(x, y)| x.is_finite() && y.is_finite());
+    let beneath = || panel.shapes.iter().filter(|shape| shape.kind == Kind::Place).flat_map(|shape| &shape.points);
     let xs = span(points().map(|p| p.0), 0.0);
     let values = span(points().map(|p| p.1), 0.0);
     let reach = 3.0 * (values.end - values.start);
@@ -211,7 +268,18 @@ fn ranges(panel: &Panel) -> (Range<f64>, Range<f64>) {
     let near = panel.limits.iter().map(|limit| limit.0);
     let near = near.filter(|limit| *limit > values.start - reach && *limit < values.end + reach);
     let ys = span(points().map(|p| p.1).chain(near), 0.06);
-    (if panel.equal { span(points().map(|p| p.0), 0.06) } else { xs }, ys)
+    if !panel.equal {
+        return (xs, ys);
+    }
+    // Places that are no further away than the tracks are long belong to the map.
+    let reach = |range: &Range<f64>| {
+        let room = range.end - range.start;
+        range.start - room..range.end + room
+    };
+    let (wide, high) = (reach(&xs), reach(&ys));
+    let near = beneath().filter(|(x, y)| wide.contains(x) && high.contains(y));
+    let near: Vec<(f64, f64)> = points().chain(near).copied().collect();
+    (span(near.iter().map(|p| p.0), 0.06), span(near.iter().map(|p| p.1), 0.06))
 }
 
 /// The least and the greatest, widened by a share; never empty.

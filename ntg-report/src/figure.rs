@@ -3,6 +3,11 @@
 //! Takes [`Run`]s; gives [`Panel`]s that SVG and HTML draw alike. Members of families and the same
 //! quantity of several agents and runs share axes.
 
+mod ground;
+mod track;
+
+pub use track::{Space, side, space, track, tracks};
+
 use crate::run::{Constraint, Run, Series};
 
 /// One pair of axes.
@@ -24,6 +29,34 @@ pub struct Panel {
     pub limits: Vec<(f64, String)>,
     /// Vertical marks at events, each with what happens.
     pub marks: Vec<(f64, String)>,
+    /// What lies beneath the lines of a map.
+    pub shapes: Vec<Shape>,
+}
+
+/// What a shape of a map is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A closed line whose inside is forbidden.
+    Area,
+    /// A line that is not to be crossed.
+    Border,
+    /// A line of equal height.
+    Contour,
+    /// The ground, or a ceiling, under or over a track that is seen from the side.
+    Ground,
+    /// A point with a name.
+    Place,
+}
+
+/// Something that tracks pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// What it is.
+    pub kind: Kind,
+    /// What it is called.
+    pub name: String,
+    /// Its points; one for a place.
+    pub points: Vec<(f64, f64)>,
 }
 
 /// Points that are joined.
@@ -73,9 +106,9 @@ pub fn outputs(runs: &Runs<'_>) -> Vec<Panel> {
     quantities(runs, |run| run.outputs.iter().collect())
 }
 
-/// One panel for each named expression that is a function of time.
-pub fn lets(runs: &Runs<'_>) -> Vec<Panel> {
-    quantities(runs, |run| run.lets.iter().collect())
+/// One panel for each named expression that is a function of time; those that only serve others on demand.
+pub fn lets(runs: &Runs<'_>, with_helpers: bool) -> Vec<Panel> {
+    quantities(runs, |run| run.lets.iter().filter(|(_, series)| with_helpers || !series.helper).collect())
 }
 
 /// An output or a named expression of one agent and member, by its path (`uav[2].x`); nothing where there is none.
@@ -97,7 +130,7 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
             let line = Line {
                 name: label(runs, index, path),
                 run: index,
-                points: series.t.iter().copied().zip(series.value.iter().copied()).collect(),
+                points: series.t.iter().copied().zip(unwrapped(series)).collect(),
                 ..Line::default()
             };
             let lines = std::iter::once(line).chain(bands(runs, index, (path, series)));
@@ -115,6 +148,32 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
         }
     }
     panels
+}
+
+/// The values of a quantity. An angle that goes on beyond a full turn does not fall back by one: values that jump by a
+/// turn between neighbours are moved by it.
+pub fn unwrapped(series: &Series) -> Vec<f64> {
+    let turn = match series.unit.as_str() {
+        "deg" => 360.0,
+        "rad" | "" => std::f64::consts::TAU,
+        _ => return series.value.clone(),
+    };
+    // Only what lies in one turn can have been wrapped into it.
+    let (low, high) = series.value.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    if high - low > turn * (1.0 + 1e-9) {
+        return series.value.clone();
+    }
+    /// A jump of this share of a turn between neighbouring samples is a wrapped angle.
+    const JUMP: f64 = 0.9;
+    let (mut turns, mut last) = (0.0, f64::NAN);
+    let moved = series.value.iter().map(|value| {
+        if (value - last).abs() > JUMP * turn {
+            turns -= (value - last).signum();
+        }
+        last = *value;
+        value + turns * turn
+    });
+    moved.collect()
 }
 
 /// What is proved of a quantity: a line that no value is below, and one that none is above.
@@ -234,76 +293,6 @@ fn marks(runs: &Runs<'_>) -> Vec<(f64, String)> {
     marks
 }
 
-/// A map of two quantities, one line for each agent and member that has both.
-///
-/// # Errors
-/// In words, where a name is unknown.
-pub fn track(runs: &Runs<'_>, x: &str, y: &str) -> Result<Panel, String> {
-    let mut panel = Panel { equal: true, ..Panel::default() };
-    for (index, (_, run)) in runs.iter().enumerate() {
-        let all = || run.outputs.iter().chain(&run.lets).filter(|(_, series)| !series.t.is_empty());
-        for (path, across) in all().filter(|(path, _)| path.as_str() == x || base(path) == x) {
-            let stem = path.strip_suffix(x).map(|stem| format!("{stem}{y}"));
-            let partner = stem.unwrap_or_else(|| replace_base(path, x, y));
-            let Some((_, up)) = all().find(|(other, _)| **other == partner) else { continue };
-            panel.x = with_unit(x, &across.unit);
-            panel.y = with_unit(y, &up.unit);
-            // A unit is as long on both axes only where it is the same unit.
-            panel.equal &= across.unit == up.unit;
-            let name = path
-                .rsplit_once('.')
-                .map_or_else(|| suffix(path).to_owned(), |(agent, own)| format!("{agent}{}", suffix(own)));
-            panel.lines.push(track_line(run, label(runs, index, &name), index, (across, up)));
-        }
-    }
-    if panel.lines.is_empty() {
-        return Err(unknown(runs, x, y));
-    }
-    panel.title = format!("{y} over {x}");
-    Ok(panel)
-}
-
-/// `[2]` of `x[2]`.
-fn suffix(name: &str) -> &str {
-    name.find('[').map_or("", |at| &name[at..])
-}
-
-/// `uav[1].y[2]` from `uav[1].x[2]`.
-fn replace_base(path: &str, x: &str, y: &str) -> String {
-    let (agent, own) = path.rsplit_once('.').map_or((None, path), |(agent, own)| (Some(agent), own));
-    let own = own.replacen(x, y, 1);
-    agent.map_or_else(|| own.clone(), |agent| format!("{agent}.{own}"))
-}
-
-fn track_line(run: &Run, name: String, index: usize, (across, up): (&Series, &Series)) -> Line {
-    let points: Vec<(f64, f64)> = across.value.iter().copied().zip(up.value.iter().copied()).collect();
-    let events = run.phases.iter().filter_map(|phase| {
-        let at = across.t.partition_point(|t| *t < phase.start);
-        (at > 0 && at + 1 < points.len() && across.t[at] - phase.start < 1e-6 * phase.start.abs().max(1.0))
-            .then(|| points[at])
-    });
-    let events = events.collect();
-    Line { name, run: index, times: across.t.clone(), events, points }
-}
-
-fn unknown(runs: &Runs<'_>, x: &str, y: &str) -> String {
-    let mut known: Vec<&str> = vec![];
-    for (_, run) in runs {
-        for (path, series) in run.outputs.iter().chain(&run.lets) {
-            if !series.t.is_empty() && !known.contains(&base(path)) {
-                known.push(base(path));
-            }
-        }
-    }
-    format!("no agent has both `{x}` and `{y}`; there are: `{}`", known.join("`, `"))
-}
-
-/// The pair of outputs that is most likely a map: `x` and `y`, or `x` and `h` or `z`.
-pub fn likely_track(run: &Run) -> Option<(&'static str, &'static str)> {
-    let has = |name: &str| run.outputs.keys().any(|path| base(path) == name);
-    [("x", "y"), ("x", "h"), ("x", "z"), ("east", "north")].into_iter().find(|(x, y)| has(x) && has(y))
-}
-
 /// The convergence of all runs: residuals over iterations.
 pub fn convergence(runs: &Runs<'_>) -> Panel {
     let mut panel = Panel {
@@ -328,4 +317,25 @@ pub fn convergence(runs: &Runs<'_>) -> Panel {
         panel.marks.extend(begun.map(|(i, step)| (i as f64, format!("step {}", step.step))));
     }
     panel
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrapped_angle_goes_on_and_what_was_not_wrapped_stays() {
+        let series = |unit: &str, value: &[f64]| Series {
+            unit: unit.to_owned(),
+            t: (0..value.len()).map(|t| t as f64).collect(),
+            value: value.to_vec(),
+            ..Series::default()
+        };
+        let wrapped = series("deg", &[170.0, 179.0, -178.0, -170.0, 175.0]);
+        assert_eq!(unwrapped(&wrapped), [170.0, 179.0, 182.0, 190.0, 175.0]);
+        // A step of a turn in what already goes beyond one is a step; so is one of another unit.
+        for other in [series("deg", &[0.0, 500.0, 140.0]), series("m", &[170.0, -178.0])] {
+            assert_eq!(unwrapped(&other), other.value);
+        }
+    }
 }

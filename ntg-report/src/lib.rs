@@ -15,5 +15,6 @@ pub mod figure;
 pub mod html;
 pub mod png;
 pub mod run;
+mod scene;
 
 pub use run::Run;

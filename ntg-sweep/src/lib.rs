@@ -38,5 +38,5 @@ pub use run::{Ended, Plan, Solve, Watcher, run, solve_all};
 pub use shard::Shard;
 pub use study::{Results, Row, SOLVED, Study};
 pub use summary::{Spread, Summary};
-pub use table::{Column, Format, Named, Table, columns, read, write};
+pub use table::{Column, Format, Named, Table, bytes, columns, read, write};
 pub use value::Wanted;

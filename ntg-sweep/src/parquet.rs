@@ -47,7 +47,7 @@ pub(crate) fn write(columns: &[(String, Column)]) -> Result<Vec<u8>, String> {
 
 fn file(columns: &[(String, Column)]) -> Result<Vec<u8>, ParquetError> {
     let fields = columns.iter().map(|(name, column)| field(name, column)).collect::<Result<Vec<TypePtr>, _>>()?;
-    let schema = Type::group_type_builder("sweep").with_fields(fields).build()?;
+    let schema = Type::group_type_builder("ntg").with_fields(fields).build()?;
     let mut bytes = vec![];
     let mut writer =
         SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(WriterProperties::builder().build()))?;

@@ -73,13 +73,22 @@ pub enum Column {
 /// # Errors
 /// In words.
 pub fn write(results: &Results, format: Format) -> Result<Vec<u8>, String> {
-    let columns = columns(results);
+    bytes(&columns(results), format)
+}
+
+/// Columns of equal length as the bytes of a file.
+///
+/// # Errors
+/// In words.
+pub fn bytes(columns: &[Named], format: Format) -> Result<Vec<u8>, String> {
     match format {
-        Format::Csv => crate::csv::write(&columns),
+        Format::Csv => crate::csv::write(columns),
         #[cfg(feature = "parquet")]
-        Format::Parquet => crate::parquet::write(&columns),
+        Format::Parquet => crate::parquet::write(columns),
         #[cfg(not(feature = "parquet"))]
-        Format::Parquet => Err("Parquet is not built in".to_owned()),
+        Format::Parquet => {
+            Err("this ntg was built without Parquet; use CSV, or install it with `--features parquet`".to_owned())
+        }
     }
 }
 

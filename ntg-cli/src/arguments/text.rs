@@ -37,6 +37,9 @@ pub(crate) struct Explain {
 pub(crate) struct New {
     /// The problem's name, or a path whose last part is it: `landing`, `specs/landing.ntg`.
     pub(crate) name: PathBuf,
+    /// Write a spec in space, with vectors, states and an input: a powered descent past a hill.
+    #[arg(long)]
+    pub(crate) three_dimensional: bool,
     /// Replace a file that exists.
     #[arg(long)]
     pub(crate) force: bool,

@@ -1,5 +1,16 @@
 // A map: lines whose axes may share a unit, with zoom, pan and a reading of the nearest point.
 "use strict";
+// Where a mover is at a time; nothing before it starts, and its last place when it has ended.
+function NtgAt(line, t) {
+  const n = line.t.length;
+  if (!n || t < line.t[0]) return null;
+  let low = 0, high = n - 1;
+  while (high - low > 1) { const middle = (low + high) >> 1; if (line.t[middle] <= t) low = middle; else high = middle; }
+  const span = line.t[high] - line.t[low], share = span > 0 ? Math.min(Math.max((t - line.t[low]) / span, 0), 1) : 1;
+  const of = (values) => values && values[low] + share * (values[high] - values[low]);
+  const at = { x: of(line.x), y: of(line.y), z: of(line.z) };
+  return isFinite(at.x) && isFinite(at.y) ? at : null;
+}
 function NtgMap(place, chart, { colour, dash, number }) {
   const NS = "http://www.w3.org/2000/svg";
   const make = (name, attributes, parent) => {
@@ -14,12 +25,16 @@ function NtgMap(place, chart, { colour, dash, number }) {
   legend.className = "maplegend";
   const margin = { left: 62, right: 14, top: 10, bottom: 44 };
   const all = chart.lines.flatMap((line) => line.x.map((x, i) => [x, line.y[i]])).filter(([x, y]) => x != null && y != null);
+  // What is passed belongs to the picture as far as it is no further away than the tracks are long.
+  const spans = [0, 1].map((k) => { const v = all.map((p) => p[k]); return [Math.min(...v), Math.max(...v)]; });
+  const near = ([x, y]) => [x, y].every((v, k) => { const [low, high] = spans[k], room = chart.equal ? Math.max(...spans.map(([a, b]) => b - a)) / 2 : high - low; return v >= low - room && v <= high + room; });
+  for (const [kind, , xs, ys] of chart.shapes) if (kind === "place" || kind === "area" || kind === "ground") xs.forEach((x, i) => { const p = [x, ys[i]]; if (x != null && p[1] != null && near(p)) all.push(p); });
   const home = () => {
     const xs = all.map((p) => p[0]), ys = all.map((p) => p[1]);
     const grow = (low, high) => { const pad = 0.06 * (high - low) || Math.max(1e-3, 0.1 * Math.abs(low)); return [low - pad, high + pad]; };
     return { x: grow(Math.min(...xs), Math.max(...xs)), y: grow(Math.min(...ys), Math.max(...ys)) };
   };
-  let view = home(), width = 0, height = 0;
+  let view = home(), width = 0, height = 0, movers = [], now = null;
 
   // Widens the shorter axis until a unit is as long on both.
   const fitted = () => {
@@ -43,12 +58,39 @@ function NtgMap(place, chart, { colour, dash, number }) {
     for (let v = Math.ceil(low / step) * step; v <= high; v += step) found.push(Math.abs(v) < step * 1e-9 ? 0 : v);
     return found;
   };
+  // Beneath the tracks: areas and borders that limit them, lines of equal height, the ground, and places.
+  const beneath = (f, inside, names) => {
+    for (const [kind, name, x, y] of chart.shapes) {
+      if (kind === "place") {
+        const [px, py] = [f.px(x[0]), f.py(y[0])];
+        make("path", { class: "place", d: `M${px} ${py - 5}l4.5 8h-9z` }, inside);
+        // Before its mark where the picture ends too soon.
+        const ends = px + 10 + 6.5 * name.length > margin.left + f.w;
+        const text = make("text", { class: "placename", x: px + (ends ? -7 : 7), y: py + 4, "text-anchor": ends ? "end" : "start" }, names);
+        text.textContent = name;
+        continue;
+      }
+      let d = path({ x, y }, f);
+      if (kind === "ground") d += `V${margin.top + f.h}H${f.px(x[0])}Z`;
+      const shape = make("path", { class: kind, d }, inside);
+      make("title", {}, shape).textContent = name;
+      if (!name || kind === "ground") continue;
+      // In the middle of an area; of other lines, at a point that is in the picture.
+      const seen = x.map((v, i) => [f.px(v), f.py(y[i])]).filter(([px, py]) => px > margin.left + 20 && px < margin.left + f.w - 60 && py > margin.top + 14 && py < margin.top + f.h - 6);
+      if (!seen.length || (kind === "contour" && seen.length < 6)) continue;
+      const middle = (k) => seen.reduce((sum, p) => sum + p[k], 0) / seen.length;
+      // An area's name is above its middle, where a place may have its own.
+      const [px, py] = kind === "area" ? [middle(0), middle(1) - 14] : seen[Math.floor(seen.length / 3)];
+      const text = make("text", { class: `${kind}name`, x: px, y: py, "text-anchor": kind === "area" ? "middle" : "start" }, names);
+      text.textContent = name;
+    }
+  };
   const path = (line, f) => {
     let text = "", pen = false;
     line.x.forEach((x, i) => {
       const y = line.y[i];
       if (x == null || y == null) { pen = false; return; }
-      text += `${pen ? "L" : "M"}${f.px(x).toFixed(1)} ${f.py(y).toFixed(1)}`;
+      text += `${pen ? "L" : "M"}${f.px(x).toFixed(2)} ${f.py(y).toFixed(2)}`;
       pen = true;
     });
     return text;
@@ -56,7 +98,9 @@ function NtgMap(place, chart, { colour, dash, number }) {
 
   function redraw() {
     width = Math.max(place.clientWidth - 14, 240);
-    height = Math.round(Math.min(Math.max(width * 0.62, 300), 640));
+    // As tall as what is shown is beside its width.
+    const first = home(), tall = chart.equal ? (first.y[1] - first.y[0]) / (first.x[1] - first.x[0]) : 0.36;
+    height = Math.round(Math.min(Math.max((width - margin.left - margin.right) * tall + margin.top + margin.bottom, 300), Math.max(320, Math.min(640, width))));
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.style.height = `${height}px`;
     svg.replaceChildren();
@@ -76,6 +120,9 @@ function NtgMap(place, chart, { colour, dash, number }) {
     const side = make("text", { transform: `translate(13 ${margin.top + f.h / 2}) rotate(-90)`, "text-anchor": "middle" }, svg);
     side.textContent = chart.y;
     const inside = make("g", { "clip-path": `url(#clip${place.dataset.chart})` }, svg);
+    const names = make("g", { "clip-path": `url(#clip${place.dataset.chart})` }, svg);
+    beneath(f, inside, names);
+    svg.append(inside, names);
     legend.replaceChildren();
     chart.lines.forEach((line, i) => {
       const dashes = dash(line.run);
@@ -92,6 +139,18 @@ function NtgMap(place, chart, { colour, dash, number }) {
     });
     const reading = make("circle", { r: 5, fill: "none", "stroke-width": 2, visibility: "hidden", class: "reading" }, inside);
     reading.setAttribute("stroke", "currentColor");
+    movers = chart.lines.map((line, i) => make("circle", { r: 6, fill: colour(i), stroke: "var(--paper)", "stroke-width": 2, visibility: "hidden" }, inside));
+    if (now != null) clock(now);
+  }
+  // Puts a dot where each mover is at a time.
+  function clock(t) {
+    now = t;
+    const f = fitted();
+    chart.lines.forEach((line, i) => {
+      const at = NtgAt(line, t);
+      movers[i].setAttribute("visibility", at ? "visible" : "hidden");
+      if (at) { movers[i].setAttribute("cx", f.px(at.x)); movers[i].setAttribute("cy", f.py(at.y)); }
+    });
   }
 
   const at = (event) => {
@@ -137,5 +196,5 @@ function NtgMap(place, chart, { colour, dash, number }) {
   svg.addEventListener("dblclick", () => { view = home(); redraw(); });
   new ResizeObserver(redraw).observe(place);
   redraw();
-  return { redraw };
+  return { redraw, clock };
 }

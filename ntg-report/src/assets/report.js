@@ -100,7 +100,7 @@
     const log = chart.kind === "log";
     const width = () => Math.max(place.clientWidth - 14, 240);
     const series = chart.lines.map((line, i) => ({
-      label: line.name || chart.title, stroke: () => colour(i), width: 2, dash: dash(line.run), spanGaps: false,
+      label: line.name || chart.title, stroke: () => colour(i), width: 2, pxAlign: 0, dash: dash(line.run), spanGaps: false,
       value: (u, v) => number(v), points: { show: (log || chart.y.startsWith("dJ*")) && line.x.length < 100, size: 5, fill: () => colour(i) },
     }));
     const u = new uPlot({
@@ -117,7 +117,9 @@
       legend: { live: true }, hooks: { draw: [marks(chart)] },
     }, joined(chart.lines), place);
     new ResizeObserver(() => u.setSize({ width: width(), height: 270 })).observe(place);
-    drawn.push({ redraw: () => u.redraw(false, true) });
+    // The clock moves the cursor of all charts over time.
+    const clock = (t) => { if (!log) u.setCursor({ left: u.valToPos(t, "x"), top: -10 }); };
+    drawn.push({ redraw: () => u.redraw(false, true), clock });
   };
 
   for (const place of document.querySelectorAll("[data-chart]")) {
@@ -126,15 +128,21 @@
     title.textContent = chart.title;
     const hint = place.appendChild(document.createElement("span"));
     hint.className = "hint";
-    hint.textContent = chart.kind === "map" ? "wheel zooms, drag moves, double click resets" : "drag zooms, double click resets";
+    const hints = { map: "wheel zooms, drag moves, double click resets", space: "drag turns, wheel zooms, double click resets" };
+    hint.textContent = hints[chart.kind] || "drag zooms, double click resets";
     place.classList.toggle("crowded", chart.lines.length > 6);
-    if (chart.kind === "map") {
+    if (chart.kind === "space") {
+      place.classList.add("wide");
+      drawn.push(NtgSpace(place, chart, { colour, dash, number, css }));
+    } else if (chart.kind === "map") {
       place.classList.add("wide");
       drawn.push(NtgMap(place, chart, { colour, dash, number }));
     } else {
       time(place, chart);
     }
   }
+
+  NtgClock(document.getElementById("clock"), charts, (t) => drawn.forEach((chart) => chart.clock && chart.clock(t)), number);
 
   // Tips beside the pointer or the focused constraint, within the window.
   for (const mark of document.querySelectorAll("pre.spec mark")) {

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::Page;
-use crate::figure::{self, Line, Panel, Runs};
+use crate::figure::{self, Kind, Line, Panel, Runs, Shape, Space};
 
 /// Numbers that all charts together may hold, so that a page stays below a megabyte.
 const BUDGET: usize = 60_000;
@@ -31,28 +31,34 @@ pub(super) fn charts(runs: &Runs<'_>, page: &Page) -> Result<Charts, String> {
     for (x, y) in &page.tracks {
         tracks.push(figure::track(runs, x, y)?);
     }
-    if let (true, Some((x, y))) = (tracks.is_empty(), figure::likely_track(runs[0].1)) {
-        tracks.extend(figure::track(runs, x, y));
+    if tracks.is_empty() {
+        tracks.extend(figure::tracks(runs));
+        tracks.extend(figure::side(runs));
     }
     let convergence = figure::convergence(runs);
     let convergence = if convergence.lines.iter().any(|l| !l.points.is_empty()) { vec![convergence] } else { vec![] };
     let sections = [
         tracks,
         figure::outputs(runs),
-        figure::lets(runs),
+        figure::lets(runs, page.all),
         figure::constraints(runs),
         figure::multipliers(runs),
         convergence,
     ];
+    let space = figure::space(runs);
     let lines: usize = sections.iter().flatten().map(|panel| panel.lines.len()).sum();
-    // Two numbers a point.
-    let points = (BUDGET / (2 * lines.max(1))).clamp(LEAST, MOST);
-    let mut all = vec![];
-    let ids = sections.map(|panels| {
+    let in_space = space.iter().map(|space| space.lines.len()).sum::<usize>();
+    // Two numbers a point, and four in space.
+    let points = (BUDGET / (2 * lines + 4 * in_space).max(1)).clamp(LEAST, MOST);
+    let mut all: Vec<Value> = space.iter().map(|space| self::space(space, points)).collect();
+    let mut ids = sections.map(|panels| {
         let first = all.len();
         all.extend(panels.iter().map(|panel| chart(panel, points)));
         (first..all.len()).collect::<Vec<usize>>()
     });
+    if space.is_some() {
+        ids[0].insert(0, 0);
+    }
     // `</script>` in a name would end the element.
     let json = Value::Array(all).to_string().replace('<', "\\u003c");
     let [tracks, outputs, lets, constraints, multipliers, convergence] = ids;
@@ -73,7 +79,63 @@ fn chart(panel: &Panel, points: usize) -> Value {
         "equal": panel.equal,
         "lines": panel.lines.iter().map(|line| self::line(line, points)).collect::<Vec<_>>(),
         "limits": panel.limits.iter().map(|(at, name)| json!([short(*at), name])).collect::<Vec<_>>(),
+        "shapes": panel.shapes.iter().map(shape).collect::<Vec<_>>(),
         "marks": panel.marks.iter().map(|(at, name)| json!([short(*at), name])).collect::<Vec<_>>(),
+    })
+}
+
+/// Kind, name, abscissas, ordinates.
+fn shape(shape: &Shape) -> Value {
+    let kind = match shape.kind {
+        Kind::Area => "area",
+        Kind::Border => "border",
+        Kind::Contour => "contour",
+        Kind::Ground => "ground",
+        Kind::Place => "place",
+    };
+    let keep = kept(shape.points.len(), MOST);
+    let of = |pick: fn(&(f64, f64)) -> f64| keep.iter().map(|i| short(pick(&shape.points[*i]))).collect::<Vec<_>>();
+    json!([kind, shape.name, of(|p| p.0), of(|p| p.1)])
+}
+
+/// Tracks in space with what lies there, the third coordinate up.
+fn space(space: &Space, points: usize) -> Value {
+    let [a, b, up] = space.order;
+    let turned = |at: &[f64]| [a, b, up].map(|axis| short(at.get(axis).copied().unwrap_or(f64::NAN)));
+    let lines = space.lines.iter().map(|line| {
+        let keep = kept(line.points.len(), points);
+        let of = |axis: usize| keep.iter().map(|i| short(line.points[*i][axis])).collect::<Vec<_>>();
+        json!({
+            "name": line.name,
+            "run": line.run,
+            "x": of(0),
+            "y": of(1),
+            "z": of(2),
+            "t": keep.iter().map(|i| short(line.times[*i])).collect::<Vec<_>>(),
+            "events": line.events.iter().map(|at| at.map(short)).collect::<Vec<_>>(),
+        })
+    });
+    let many = |values: &[f64]| values.iter().map(|value| short(*value)).collect::<Vec<_>>();
+    let scene = &space.scene;
+    json!({
+        "kind": "space",
+        "title": space.title,
+        "axes": space.axes,
+        "equal": space.equal,
+        "lines": lines.collect::<Vec<_>>(),
+        "places": scene.places.iter().map(|place| json!([place.name, turned(&place.at)])).collect::<Vec<_>>(),
+        "surfaces": scene.surfaces.iter().map(|surface| json!({
+            "name": surface.name, "floor": surface.floor,
+            "x": many(&surface.x), "y": many(&surface.y), "z": many(&surface.z),
+        })).collect::<Vec<_>>(),
+        "outlines": scene.outlines.iter().map(|outline| json!({
+            "name": outline.name, "out": outline.keep_out,
+            "lines": outline.lines.iter().map(|line| line.iter().map(|at| at.map(short)).collect::<Vec<_>>()).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "balls": scene.balls.iter().map(|ball| json!({
+            "name": ball.name, "out": ball.keep_out, "centre": turned(&ball.centre),
+            "half": ball.half_axes.iter().map(|half| turned(half)).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
     })
 }
 

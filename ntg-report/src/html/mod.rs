@@ -4,6 +4,7 @@
 //! small one of ours for maps) and its data.
 
 mod data;
+mod extremes;
 mod spec;
 mod study;
 mod tables;
@@ -18,12 +19,16 @@ const UPLOT_STYLE: &str = include_str!("../assets/uPlot.min.css");
 const UPLOT: &str = include_str!("../assets/uPlot.iife.min.js");
 const PROGRAM: &str = include_str!("../assets/report.js");
 const MAP: &str = include_str!("../assets/map.js");
+const SPACE: &str = include_str!("../assets/space.js");
+const CLOCK: &str = include_str!("../assets/clock.js");
 
 /// What stands in a page beside the runs.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
-    /// Pairs of quantities to draw as maps; empty for the likely one.
+    /// Pairs of quantities to draw as maps; empty for positions, where there are any.
     pub tracks: Vec<(String, String)>,
+    /// Whether named expressions that only serve others are shown, too.
+    pub all: bool,
 }
 
 /// The page about runs, each with its name. The first is shown in full, the others are compared.
@@ -52,8 +57,10 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                     (study::minima(first))
                     @if runs.len() > 1 { (tables::comparison(runs)) }
                     (charts("tracks", "Tracks", &data.tracks))
+                    (extremes::section(runs, page.all))
                     (charts("outputs", "Outputs", &data.outputs))
                     (charts("lets", "Named expressions", &data.lets))
+                    (helpers(first, page.all))
                     (charts("constraints", "Constraints and their bounds", &data.constraints))
                     (charts("multipliers", "Multipliers", &data.multipliers))
                     @for (name, run) in runs { (spec::section(name, run, runs.len() > 1)) }
@@ -67,7 +74,7 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                 footer { "Made by ntg " (env!("CARGO_PKG_VERSION")) ". Charts by uPlot (MIT licence, Leon Sorokin). This page needs no network." }
                 script type="application/json" id="data" { (PreEscaped(data.json)) }
                 script { (PreEscaped(UPLOT)) }
-                script { (PreEscaped(MAP)) (PreEscaped(PROGRAM)) }
+                script { (PreEscaped(MAP)) (PreEscaped(SPACE)) (PreEscaped(CLOCK)) (PreEscaped(PROGRAM)) }
             }
         }
     };
@@ -79,13 +86,13 @@ fn head(run: &Run) -> Markup {
         header {
             div.bar {
                 h1 { (run.problem) }
-                span.status.good[run.is_sound()].warned[run.has_solution() && !run.is_sound()].bad[!run.has_solution()] { (run.status) }
+                (spec::status(run))
                 button #theme type="button" title="light or dark" { "◐" }
             }
             @let doc = run.doc.split("\n\n").next().unwrap_or("");
             @if !doc.is_empty() { p.doc { (tables::prose(doc)) } }
             nav {
-                @for (anchor, name) in [("minima", "Local minima"), ("tracks", "Tracks"), ("outputs", "Outputs"), ("constraints", "Constraints"), ("spec", "Spec"), ("table", "Table"), ("convergence", "Convergence"), ("discretisation", "Discretisation")] {
+                @for (anchor, name) in [("minima", "Local minima"), ("tracks", "Tracks"), ("extremes", "Extremes"), ("outputs", "Outputs"), ("constraints", "Constraints"), ("spec", "Spec"), ("table", "Table"), ("convergence", "Convergence"), ("discretisation", "Discretisation")] {
                     a href={ "#" (anchor) } { (name) }
                 }
             }
@@ -98,6 +105,7 @@ fn summary(run: &Run) -> Markup {
     let unit = &run.objective_unit;
     html! {
         section #summary {
+            (spec::missed(run))
             @if !run.advice.is_empty() { p.advice { "Try: " (tables::prose(&run.advice)) } }
             dl.cards {
                 (card("objective", &tables::with_unit(run.objective, unit), "as discretised"))
@@ -116,12 +124,32 @@ fn card(name: &str, value: &str, note: &str) -> Markup {
     html! { div.card title=(note) { dt { (name) } dd { (value) } } }
 }
 
+/// Which named expressions are not drawn.
+fn helpers(run: &Run, all: bool) -> Markup {
+    let mut names: Vec<&str> = vec![];
+    for (path, _) in run.lets.iter().filter(|(_, series)| series.helper && !all) {
+        if !names.contains(&figure::base(path)) {
+            names.push(figure::base(path));
+        }
+    }
+    html! {
+        @if !names.is_empty() {
+            p.quiet {
+                "Not drawn, because they only serve other expressions: "
+                @for (number, name) in names.iter().enumerate() { @if number > 0 { ", " } code { (name) } }
+                ". " code { "ntg report --all" } " draws them, too; so does a comment " code { "///" } " before one of them."
+            }
+        }
+    }
+}
+
 /// Places where the page's program draws; nothing where there is nothing to draw.
 fn charts(anchor: &str, title: &str, ids: &[usize]) -> Markup {
     html! {
         @if !ids.is_empty() {
             section id=(anchor) {
                 h2 { (title) }
+                @if anchor == "tracks" { div #clock data-unit="s" {} }
                 div.charts { @for id in ids { figure.chart data-chart=(id) {} } }
             }
         }

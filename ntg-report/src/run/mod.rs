@@ -5,11 +5,14 @@
 
 mod layout;
 mod numbers;
+mod reading;
 mod record;
+mod scene;
 mod study;
 
 pub use layout::layout;
 pub use record::Recording;
+pub use scene::{Ball, Coordinate, Moving, Outline, Place, Scene, Surface};
 pub use study::{Explanation, Minimum, Part, Refinement, Round, Starts};
 
 use indexmap::IndexMap;
@@ -91,6 +94,9 @@ pub struct Run {
     pub convergence: Vec<Iteration>,
     /// The optimisation problem's size.
     pub discretisation: Discretisation,
+    /// What moves where, and what it passes.
+    #[serde(skip_serializing_if = "Scene::is_empty")]
+    pub scene: Scene,
     /// The spec.
     pub spec: Option<Spec>,
 }
@@ -134,6 +140,9 @@ pub struct Series {
     /// Its documentation in the spec.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub doc: String,
+    /// Whether it is a named expression that only serves others: pictures leave it out unless asked.
+    #[serde(skip_serializing_if = "is_false")]
+    pub helper: bool,
     /// Seconds of mission time, increasing.
     #[serde(with = "numbers::many", skip_serializing_if = "Vec::is_empty")]
     pub t: Vec<f64>,
@@ -400,6 +409,11 @@ pub struct Finding {
     pub line: usize,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn is_false(value: &bool) -> bool {
+    !*value
+}
+
 impl Run {
     /// Reads a saved run.
     ///
@@ -413,7 +427,12 @@ impl Run {
         if value["version"] != VERSION {
             return Err(format!("has version {}; this program reads version {VERSION}", value["version"]));
         }
-        serde_json::from_value(value).map_err(|e| format!("is damaged: {e}"))
+        let mut run: Self = serde_json::from_value(value).map_err(|e| format!("is damaged: {e}"))?;
+        if run.scene.is_empty() {
+            // A file of an earlier version knows no vectors, but names.
+            run.scene = crate::scene::named(&run);
+        }
+        Ok(run)
     }
 
     /// The run as a JSON document.

@@ -9,8 +9,8 @@ use ntg_runtime::settings::Progress;
 use ntg_runtime::structure::{Block, Points, Structure, Unit};
 
 use super::{
-    Constraint, Discretisation, FORMAT, Finding, Grid, Iteration, Member, Multiplier, Phase, Quantity, Run, Series,
-    Spec, Step, Term, VERSION, Values, Violation, Worst, layout,
+    Constraint, Discretisation, FORMAT, Finding, Grid, Iteration, Member, Multiplier, Phase, Quantity, Run, Scene,
+    Series, Spec, Step, Term, VERSION, Values, Violation, Worst, layout, reading,
 };
 
 /// Samples of each output and named expression.
@@ -41,6 +41,16 @@ pub struct Recording<'a> {
 impl Recording<'_> {
     /// Everything about the solve as plain data.
     pub fn run(&self) -> Run {
+        let reading = reading::read(self.source);
+        let mut run = self.numbers();
+        for (path, series) in &mut run.lets {
+            series.helper = !series.t.is_empty() && reading.helpers.contains(crate::figure::base(path));
+        }
+        run.scene = crate::scene::find(&run, self.problem, &reading.vectors);
+        run
+    }
+
+    fn numbers(&self) -> Run {
         let (report, solution) = (self.report, &self.report.solution);
         let structure = solution.structure();
         Run {
@@ -73,6 +83,7 @@ impl Recording<'_> {
             history: report.history.iter().map(step).collect(),
             convergence: iterations(self.iterations, report),
             discretisation: self.discretisation(),
+            scene: Scene::default(),
             spec: Some(Spec {
                 name: self.source.name.clone(),
                 text: self.source.text.clone(),
@@ -153,7 +164,7 @@ impl Recording<'_> {
 }
 
 fn over(unit: &Unit, doc: String, t: Vec<f64>, value: Vec<f64>) -> Series {
-    Series { unit: unit.symbol.clone(), factor: unit.factor, doc, t, value, bands: vec![] }
+    Series { unit: unit.symbol.clone(), factor: unit.factor, doc, t, value, ..Series::default() }
 }
 
 fn quantity(value: f64, unit: &Unit) -> Quantity {

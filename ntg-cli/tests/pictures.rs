@@ -1,0 +1,186 @@
+//! What reports, plots and tables of samples hold, as a user gets them.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Over a hill, past a mast, round a balloon, to a pad: everything that a track may pass.
+const SPEC: &str = "/// Past all kinds of things.
+problem Tour {
+    duration T in 5 .. 60 [s];
+    output r[3] [m]: spline(order = 5, intervals = 6, smoothness = 3);
+    collocation gauss(points = 3);
+    param pad[3] = (100, 20, 30) [m];
+    param mast_place[2] = (30, -10) [m];
+    let far [m] = norm(r - pad);
+    let low = r[3] - 10 [m];
+    let turned = atan2(der(r[2]), der(r[1]));
+    minimize time [s]: T;
+    minimize effort [s]: 1e-3 [s^4/m^2] * integral(norm(der(r, 2))^2);
+    initial { r == (0, 0, 30) [m]; }
+    trajectory {
+        balloon: norm(r - (60, 10, 40) [m]) >= 15 [m];
+        mast: (r[1] - mast_place[1])^2 + (r[2] - mast_place[2])^2 >= (8 [m])^2;
+        ground: r[3] >= 10 [m] + 0.1 * r[1];
+        box: r[2] in -50 .. 50 [m];
+        speed: norm(der(r))^2 <= (20 [m/s])^2;
+    }
+    final { r == pad; }
+    guess { r through (0, 0, 30), (60, 40, 40), (100, 20, 30) [m];  T = 20 [s]; }
+}
+";
+
+fn ntg(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_ntg")).current_dir(folder).args(arguments).output().expect("the command starts")
+}
+
+#[track_caller]
+fn done(folder: &Path, arguments: &[&str]) {
+    let output = ntg(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name)).expect("it was written")
+}
+
+fn tour() -> (TempDir, Value) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("tour.ntg"), SPEC).expect("writable");
+    done(folder.path(), &["solve", "tour.ntg", "--save", "tour.json", "--csv", "tour.csv", "--every", "100ms"]);
+    let run = serde_json::from_str(&read(folder.path(), "tour.json")).expect("JSON");
+    (folder, run)
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+fn named<'v>(list: &'v Value, name: &str) -> &'v Value {
+    let found: Vec<&Value> = list.as_array().expect("a list").iter().filter(|one| one["name"] == name).collect();
+    assert_eq!(found.len(), 1, "`{name}` stands once in {list}");
+    found[0]
+}
+
+#[test]
+fn what_a_track_passes_is_found_from_the_constraints_alone() {
+    let (_folder, run) = tour();
+    let scene = &run["scene"];
+    assert_eq!(scene["tracks"][0]["paths"], serde_json::json!(["r[1]", "r[2]", "r[3]"]));
+    assert_eq!(scene["up"], 2);
+
+    let pad = named(&scene["places"], "pad");
+    assert_eq!(pad["at"], serde_json::json!([100.0, 20.0, 30.0]));
+    let balloon = named(&scene["balls"], "balloon");
+    assert_eq!(balloon["keep_out"], true);
+    for (axis, wanted) in [60.0, 10.0, 40.0].into_iter().enumerate() {
+        assert!((number(&balloon["centre"][axis]) - wanted).abs() < 1e-6);
+        assert!((number(&balloon["half_axes"][axis][axis]) - 15.0).abs() < 1e-6);
+    }
+    let mast = named(&scene["outlines"], "mast");
+    assert_eq!(mast["keep_out"], true);
+    for at in mast["lines"][0].as_array().expect("points") {
+        let away = (number(&at[0]) - 30.0).hypot(number(&at[1]) + 10.0);
+        assert!((away - 8.0).abs() < 1e-6, "{away}");
+    }
+    let ground = named(&scene["surfaces"], "ground");
+    assert_eq!(ground["floor"], true);
+    let (x, y, z) = (&ground["x"], &ground["y"], &ground["z"]);
+    let across = y.as_array().expect("grid lines").len();
+    for (i, x) in x.as_array().expect("grid lines").iter().enumerate() {
+        assert!((number(&z[i * across]) - 10.0 - 0.1 * number(x)).abs() < 1e-9);
+    }
+    // Both sides of the box are borders, one of them in the picture of the track at least.
+    let borders = scene["outlines"].as_array().expect("a list").iter().filter(|one| one["name"] == "box");
+    assert!(borders.clone().count() >= 1 && borders.clone().all(|one| one["keep_out"] == false));
+    // What depends on the velocity is nowhere.
+    assert!(!scene.to_string().contains("speed"));
+}
+
+#[test]
+fn samples_are_equally_spaced_and_end_at_the_end() {
+    let (folder, run) = tour();
+    let text = read(folder.path(), "tour.csv");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let heads: Vec<String> = reader.headers().expect("a header").iter().map(str::to_owned).collect();
+    assert_eq!(heads[..4], ["t [s]", "r[1] [m]", "r[2] [m]", "r[3] [m]"]);
+    assert!(heads.contains(&"far [m]".to_owned()));
+    let rows: Vec<Vec<f64>> = reader
+        .records()
+        .map(|row| row.expect("a row").iter().map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+    for (step, row) in rows.iter().enumerate().take(rows.len() - 1) {
+        assert!((row[0] - 0.1 * step as f64).abs() < 1e-12);
+    }
+    let last = rows.last().expect("rows");
+    assert!((last[0] - number(&run["times"]["T"])).abs() < 1e-12);
+    assert!((last[1] - 100.0).abs() < 1e-6 && (last[2] - 20.0).abs() < 1e-6);
+
+    for (arguments, words) in [
+        (&["--every", "1s"][..], "--csv FILE"),
+        (&["--csv", "b.csv", "--every", "-1s"], "one positive time"),
+        (&["--csv", "b.csv", "--every", "1 m"], "--every 1 m"),
+        (&["--csv", "b.csv", "--every", "soon"], "write a number"),
+        (&["--csv", "tour.csv"], "--force"),
+    ] {
+        let output = ntg(folder.path(), &[&["solve", "tour.ntg"], arguments].concat());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains(words), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn a_report_shows_tracks_extremes_and_helpers_on_demand() {
+    let (folder, run) = tour();
+    assert_eq!((&run["lets"]["low"]["helper"], &run["lets"]["far"]["helper"]), (&Value::Bool(true), &Value::Null));
+    done(folder.path(), &["report", "tour.json", "-o", "tour.html"]);
+    let page = read(folder.path(), "tour.html");
+    assert!(page.len() < 1_500_000, "{}", page.len());
+    assert!(!page.contains("http://") || !page.contains("src=\"http"), "no network");
+    for part in ["\"kind\":\"space\"", "id=\"extremes\"", "id=\"clock\"", "Not drawn, because they only serve"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let title = "\"title\":\"low\"";
+    assert!(!page.contains(title));
+    done(folder.path(), &["report", "tour.json", "-o", "all.html", "--all"]);
+    assert!(read(folder.path(), "all.html").contains(title));
+
+    done(folder.path(), &["plot", "tour.json", "-o", "tour.svg"]);
+    let picture = read(folder.path(), "tour.svg");
+    assert!(picture.contains("balloon") && picture.contains("pad"), "what is passed is drawn");
+    // A line over time has points between whole pixels.
+    assert!(
+        picture.starts_with("<svg width=\"1600\"") && picture.contains("viewBox=\"0 0 16000 "),
+        "{}",
+        &picture[..99]
+    );
+}
+
+#[test]
+fn five_commands_lead_from_nothing_to_a_picture_of_a_descent_that_turns() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    done(folder, &["new", "lander", "--three-dimensional"]);
+    done(folder, &["check", "lander.ntg"]);
+    done(folder, &["solve", "lander.ntg", "--save", "lander.json"]);
+    done(folder, &["plot", "lander.json", "-o", "lander.svg"]);
+    done(folder, &["report", "lander.json", "-o", "lander.html"]);
+
+    done(folder, &["fmt", "--check", "lander.ntg"]);
+    let run: Value = serde_json::from_str(&read(folder, "lander.json")).expect("JSON");
+    assert_eq!(
+        (&run["status"], &run["warnings"]),
+        (&Value::from("solved"), &Value::Null),
+        "a newcomer sees no warning"
+    );
+    let scene = &run["scene"];
+    assert!(
+        named(&scene["balls"], "clear")["keep_out"] == true
+            && named(&scene["surfaces"], "glide_slope")["floor"] == true
+    );
+    let page = read(folder, "lander.html");
+    assert!(page.contains("\"kind\":\"space\"") && page.contains("status good"), "solved, in green");
+}

@@ -1,0 +1,82 @@
+//! What the text of a spec says of its quantities and the compiled problem does not: which arrays are vectors, and
+//! which named expressions only serve others.
+
+use std::collections::BTreeSet;
+
+use indexmap::IndexMap;
+use ntg_compiler::source::Source;
+use ntg_compiler::syntax::{self, ast};
+
+/// What was read.
+#[derive(Debug, Default)]
+pub(crate) struct Reading {
+    /// Arrays whose last index counts elements of a vector, with their number.
+    pub(crate) vectors: IndexMap<String, usize>,
+    /// Named expressions that nobody asked to see: without documentation and unit, and in no constraint or objective.
+    pub(crate) helpers: BTreeSet<String>,
+}
+
+/// Reads a spec; nothing where it cannot be read.
+pub(crate) fn read(source: &Source) -> Reading {
+    let Ok(spec) = syntax::parse(source) else { return Reading::default() };
+    let mut found = Found::default();
+    found.items(&spec.problem.items, &source.text);
+    let helpers = found.plain.iter().filter(|name| !found.wanted.contains(*name)).cloned().collect();
+    Reading { vectors: found.vectors, helpers }
+}
+
+#[derive(Default)]
+struct Found {
+    vectors: IndexMap<String, usize>,
+    /// Named expressions without documentation and unit.
+    plain: BTreeSet<String>,
+    /// Words of constraints and objectives.
+    wanted: BTreeSet<String>,
+}
+
+impl Found {
+    fn items(&mut self, items: &[ast::Item], text: &str) {
+        for item in items {
+            match &item.kind {
+                ast::ItemKind::Output(output) => {
+                    for name in &output.names {
+                        self.shape(&name.name.text, name.shape.as_ref());
+                    }
+                }
+                ast::ItemKind::Let(declared) => {
+                    self.shape(&declared.name.text, declared.shape.as_ref());
+                    if let ast::ExprKind::Tuple(elements) = &declared.value.kind
+                        && declared.shape.is_none()
+                    {
+                        self.vectors.insert(declared.name.text.clone(), elements.len());
+                    }
+                    if item.doc.is_none() && declared.unit.is_none() {
+                        self.plain.insert(declared.name.text.clone());
+                    }
+                }
+                ast::ItemKind::Agent(agent) => self.items(&agent.items, text),
+                ast::ItemKind::Phase(phase) => self.items(&phase.items, text),
+                ast::ItemKind::Objective(_) | ast::ItemKind::Block(_) | ast::ItemKind::At(_) => {
+                    let words = text.get(item.span.start as usize..item.span.end as usize).unwrap_or_default();
+                    let words = words.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+                    self.wanted.extend(words.filter(|word| !word.is_empty()).map(str::to_owned));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn shape(&mut self, name: &str, shape: Option<&ast::Shape>) {
+        let Some(last) = shape.and_then(|shape| shape.axes.last()) else { return };
+        let number = |expr: &ast::Expr| match &expr.kind {
+            ast::ExprKind::Number(number) => Some(number.value),
+            _ => None,
+        };
+        let begins = last.first.as_ref().is_none_or(|first| number(first) == Some(1.0));
+        for size in [2, 3] {
+            if begins && number(&last.last) == Some(size as f64) {
+                self.vectors.insert(name.to_owned(), size);
+            }
+        }
+    }
+}

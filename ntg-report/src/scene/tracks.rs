@@ -1,0 +1,140 @@
+//! Which quantities are the coordinates of positions.
+//!
+//! Takes the names of a run's quantities and which arrays are vectors; gives coordinates and everything that has them.
+//! Positions are known by their names: `x, y, z`, `x, h`, `east, north`, or a vector `r`.
+
+use indexmap::IndexMap;
+
+use crate::figure::base;
+use crate::run::{Coordinate, Moving, Run, Scene, Series};
+
+/// Names of coordinates that make a position together, the better known first, and which of them points up.
+const NAMED: [(&[&str], Option<usize>); 18] = [
+    (&["x", "y", "z"], Some(2)),
+    (&["x", "y", "h"], Some(2)),
+    (&["rx", "ry", "rz"], Some(2)),
+    (&["px", "py", "pz"], Some(2)),
+    (&["east", "north", "up"], Some(2)),
+    (&["north", "east", "down"], None),
+    (&["lon", "lat", "h"], Some(2)),
+    (&["h", "y", "z"], Some(0)),
+    (&["x", "h"], Some(1)),
+    (&["x", "y"], None),
+    (&["x", "z"], Some(1)),
+    (&["rx", "ry"], None),
+    (&["px", "py"], None),
+    (&["east", "north"], None),
+    (&["lon", "lat"], None),
+    (&["r", "h"], Some(1)),
+    (&["range", "altitude"], Some(1)),
+    (&["X", "Y"], None),
+];
+/// Names of vectors that are positions.
+const VECTORS: [&str; 8] = ["r", "p", "pos", "position", "x", "place", "tip", "s"];
+
+/// Coordinates and tracks of a run; an empty scene where nothing is known to have a position. `vectors` says of each
+/// array whose last index counts two or three elements how many these are.
+pub(crate) fn find(run: &Run, vectors: &IndexMap<String, usize>) -> Scene {
+    let along: IndexMap<&str, &Series> = run.outputs.iter().filter(|(_, s)| is_along(s)).map(short).collect();
+    // Named expressions are positions where no output is.
+    let all = || along.clone().into_iter().chain(run.lets.iter().filter(|(_, s)| is_along(s)).map(short)).collect();
+    let scene = named(&along, 3)
+        .or_else(|| vector(&along, vectors, 3))
+        .or_else(|| named(&along, 2))
+        .or_else(|| vector(&along, vectors, 2))
+        .or_else(|| named(&all(), 2))
+        .unwrap_or_default();
+    upright(scene, run)
+}
+
+fn is_along(series: &Series) -> bool {
+    !series.t.is_empty()
+}
+
+fn short<'a>((path, series): (&'a String, &'a Series)) -> (&'a str, &'a Series) {
+    (path, series)
+}
+
+fn named(quantities: &IndexMap<&str, &Series>, dimension: usize) -> Option<Scene> {
+    let systems = NAMED.iter().filter(|(names, _)| names.len() == dimension);
+    let scenes = systems.map(|(names, up)| {
+        let firsts = quantities.keys().filter(|path| base(path) == names[0]);
+        let tracks = firsts.filter_map(|first| {
+            let paths: Vec<String> = names.iter().map(|name| sibling(first, names[0], name)).collect();
+            let known = paths.iter().all(|path| quantities.contains_key(path.as_str()));
+            known.then(|| Moving { name: owner(first), paths })
+        });
+        scene(quantities, names.iter().map(ToString::to_string).collect(), tracks.collect(), *up)
+    });
+    let mut scenes = scenes.filter(|scene| !scene.tracks.is_empty() && is_position(scene));
+    scenes.next()
+}
+
+/// A first coordinate in a unit of mass or time is none; latitude and longitude are angles.
+fn is_position(scene: &Scene) -> bool {
+    scene.axes.iter().all(|axis| !matches!(axis.unit.as_str(), "kg" | "s" | "K" | "t") && !axis.unit.contains("/s"))
+}
+
+fn vector(quantities: &IndexMap<&str, &Series>, vectors: &IndexMap<String, usize>, dimension: usize) -> Option<Scene> {
+    let known = VECTORS.iter().filter(|name| vectors.get(**name) == Some(&dimension));
+    let scenes = known.map(|name| {
+        let elements: Vec<&&str> = quantities.keys().filter(|path| base(path) == *name).collect();
+        let agents = elements.iter().map(|path| owner_of_array(path)).collect::<indexmap::IndexSet<_>>();
+        let mut tracks = vec![];
+        for agent in agents {
+            let own: Vec<String> =
+                elements.iter().filter(|p| owner_of_array(p) == agent).map(ToString::to_string).collect();
+            let several = own.len() > dimension;
+            for (member, paths) in own.chunks_exact(dimension).enumerate() {
+                let name = if several { format!("{agent}[{}]", member + 1) } else { agent.clone() };
+                tracks.push(Moving { name, paths: paths.to_vec() });
+            }
+        }
+        scene(quantities, (1..=dimension).map(|k| format!("{name}[{k}]")).collect(), tracks, None)
+    });
+    let mut scenes = scenes.filter(|scene| !scene.tracks.is_empty() && is_position(scene));
+    scenes.next()
+}
+
+fn scene(quantities: &IndexMap<&str, &Series>, names: Vec<String>, tracks: Vec<Moving>, up: Option<usize>) -> Scene {
+    let unit = |k: usize| {
+        let path = tracks.first().and_then(|track| track.paths.get(k));
+        path.and_then(|path| quantities.get(path.as_str())).map_or_else(String::new, |series| series.unit.clone())
+    };
+    let axes = names.into_iter().enumerate().map(|(k, name)| Coordinate { name, unit: unit(k) }).collect();
+    Scene { axes, up, tracks, ..Scene::default() }
+}
+
+/// The upward coordinate of a vector is the one along which gravity pulls, or else the last.
+fn upright(mut scene: Scene, run: &Run) -> Scene {
+    if scene.axes.len() == 3 && scene.up.is_none() && !scene.axes[2].name.starts_with("down") {
+        let pulls = run
+            .parameters
+            .iter()
+            .filter(|(name, values)| matches!(base(name), "g" | "gravity" | "g0" | "grav") && values.value.len() == 3);
+        let along = pulls.filter_map(|(_, values)| {
+            let mut pulled = values.value.iter().enumerate().filter(|(_, value)| **value != 0.0);
+            pulled.next().filter(|_| pulled.next().is_none()).map(|(axis, _)| axis)
+        });
+        scene.up = Some(along.last().unwrap_or(2));
+    }
+    scene
+}
+
+/// `uav[1].y[2]` from `uav[1].x[2]`.
+fn sibling(path: &str, first: &str, other: &str) -> String {
+    let (agent, own) = path.rsplit_once('.').map_or(("", path), |(agent, own)| (agent, own));
+    let own = format!("{other}{}", own.strip_prefix(first).unwrap_or_default());
+    if agent.is_empty() { own } else { format!("{agent}.{own}") }
+}
+
+/// `uav[1][2]` of `uav[1].x[2]`; empty where there is neither agent nor index.
+fn owner(path: &str) -> String {
+    let index = path.rsplit('.').next().and_then(|own| own.find('[').map(|at| &own[at..]));
+    format!("{}{}", owner_of_array(path), index.unwrap_or_default())
+}
+
+/// `uav[1]` of `uav[1].x[2]`.
+fn owner_of_array(path: &str) -> String {
+    path.rsplit_once('.').map_or_else(String::new, |(agent, _)| agent.to_owned())
+}
