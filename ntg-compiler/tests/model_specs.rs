@@ -25,6 +25,8 @@ fn every_spec_of_the_repository_has_a_meaning() {
             let found = findings_with(&text, &Folder);
             println!("{}:\n{found}\n", path.display());
             assert!(!found.contains("error"), "{}:\n{found}", path.display());
+            let notes = found.matches("note[").count();
+            assert!(notes <= 3, "{}: {notes} notes\n{found}", path.display());
             seen += 1;
         }
     }

@@ -269,24 +269,31 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Leaves out the derivatives that stand only in equations at Gauss points: nothing jumps there.
+    /// Leaves out the derivatives that are only needed at Gauss points, in equations, integrals, and inequalities that
+    /// leave the ends of intervals out: these points lie inside the intervals, where nothing jumps.
     fn seen_to_jump(&self, jumps: Vec<Jump>) -> Vec<Jump> {
         if jumps.is_empty() {
             return jumps;
         }
-        let (mut equations, mut others) = (Vec::new(), Vec::new());
+        let (mut inside, mut others) = (Vec::new(), Vec::new());
         for constraint in &self.problem.constraints {
             let is_equation = constraint.bounds.lower.is_some() && constraint.bounds.lower == constraint.bounds.upper;
-            match &constraint.domain {
-                Domain::Path(at, _) if is_equation && self.is_gauss(at.phase) => equations.push(constraint.body),
-                _ => others.push(constraint.body),
-            }
+            let is_inside = match &constraint.domain {
+                Domain::Path(at, _) => match self.problem.phases[at.phase].collocation {
+                    Collocation::Gauss { ends, .. } => is_equation || !ends,
+                    Collocation::Uniform { .. } => false,
+                },
+                _ => false,
+            };
+            if is_inside { &mut inside } else { &mut others }.push(constraint.body);
         }
         others.extend(self.problem.objective.iter().map(|term| term.body));
-        let (equations, others) = (self.rates_in(equations), self.rates_in(others));
+        inside.extend(&others);
+        let anywhere = self.rates_in(inside, |_| true);
+        let others = self.rates_in(others, |phase| !self.is_gauss(phase));
         let is_seen = |jump: &Jump| {
             let place = (jump.place.0, jump.place.1, jump.order);
-            others.contains(&place) || !equations.contains(&place)
+            others.contains(&place) || !anywhere.contains(&place)
         };
         jumps.into_iter().filter(is_seen).collect()
     }
@@ -295,19 +302,24 @@ impl<'a> Elaborator<'a> {
         matches!(self.problem.phases[phase].collocation, Collocation::Gauss { .. })
     }
 
-    /// The derivatives of outputs that occur in nodes, integrands included: phase, output, order.
-    fn rates_in(&self, mut open: Vec<NodeId>) -> HashSet<(usize, usize, usize)> {
+    /// The derivatives of outputs that occur in nodes: phase, output, order; of those that occur in integrands only where
+    /// their phase counts.
+    fn rates_in(&self, mut open: Vec<NodeId>, counts: impl Fn(usize) -> bool) -> HashSet<(usize, usize, usize)> {
         let mut rates = HashSet::new();
         let mut seen: HashSet<NodeId> = HashSet::new();
+        let mut in_integrand = false;
         while !open.is_empty() {
             let roots = std::mem::take(&mut open);
             for input in self.problem.dag.inputs_of(&roots) {
                 match self.problem.leaves.leaf(input) {
-                    Leaf::Flat { phase, output, order, .. } => _ = rates.insert((phase.phase, *output, *order)),
+                    Leaf::Flat { phase, output, order, .. } if !in_integrand || counts(phase.phase) => {
+                        rates.insert((phase.phase, *output, *order));
+                    }
                     Leaf::Integral { integrand, .. } if seen.insert(*integrand) => open.push(*integrand),
                     _ => {}
                 }
             }
+            in_integrand = true;
         }
         rates
     }

@@ -5,6 +5,7 @@
 //! All findings are told at once: a name that is wrong does not hide the next.
 //! Afterwards: no names are left in expressions, every dimension is right, and everything is in SI units.
 
+mod acknowledged;
 mod arguments;
 mod check;
 mod collocated;
@@ -84,7 +85,7 @@ pub trait Loader {
 pub fn build(spec: &ast::Spec, source: &Source, loader: &dyn Loader) -> (Option<Problem>, Vec<Diagnostic>) {
     let libraries = Libraries::load(&spec.uses, source, loader);
     let (mut problem, found) = elaborated(spec, &libraries, loader);
-    let mut found = libraries.told(found, None);
+    let mut found = acknowledged::left(spec, libraries.told(found, None));
     let failed = found.iter().any(|finding| finding.severity == Severity::Error);
     found.sort_by_key(|finding| (finding.span.start, finding.span.end));
     problem.notes = found.iter().filter(|finding| finding.severity != Severity::Error).cloned().collect();

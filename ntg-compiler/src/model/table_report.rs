@@ -80,9 +80,15 @@ impl Elaborator<'_> {
         }
         let unit = if table.unit.symbol.is_empty() { String::new() } else { format!(" [{}]", table.unit.symbol) };
         let shown = |value: f64| format!("{}{unit}", significant(value / table.unit.factor));
-        let (error, overshoot) = (shown(report.largest_error), shown(report.largest_overshoot));
-        let message =
-            format!("`{}` misses its values by at most {error} and overshoots them by at most {overshoot}", table.name);
+        // What is rounding is not worth a word.
+        let told = |amount: f64, verb: &str| {
+            (amount > NEGLIGIBLE * (high - low)).then(|| format!("{verb} by at most {}", shown(amount)))
+        };
+        let misses = told(report.largest_error, "misses its values");
+        let overshoots =
+            told(report.largest_overshoot, if misses.is_some() { "overshoots them" } else { "overshoots its values" });
+        let amounts: Vec<String> = misses.into_iter().chain(overshoots).collect();
+        let message = format!("`{}` {}", table.name, amounts.join(" and "));
         let finding = Diagnostic::new(Code::FitReport, declared.method.span, message);
         self.report(finding.help("`monotone` meets every value and never overshoots"));
     }
@@ -93,6 +99,7 @@ impl Elaborator<'_> {
             return;
         }
         let (low, high) = range(table);
+        let mut jumping: Vec<usize> = vec![];
         for (k, axis) in table.axes.iter().enumerate() {
             let ends: &[usize] = match axis.symmetry {
                 TableSymmetry::Plain => &[0, axis.nodes.len() - 1],
@@ -103,14 +110,18 @@ impl Elaborator<'_> {
             let least = NEGLIGIBLE * (high - low) / width;
             let steep = ends.iter().any(|end| steepest(table, made, k, axis.nodes[*end]) > least);
             if steep {
-                let message = format!("the gradient of `{}` jumps where `{}` leaves its nodes", table.name, axis.name);
-                let finding = Diagnostic::new(Code::GradientJumps, declared.axes[k].span, message);
-                self.report(
-                    finding
-                        .help("the table keeps its end value there; `extrapolate = linear` goes on with the end slope"),
-                );
+                jumping.push(k);
             }
         }
+        // One note for a table: all its axes are mended by one word.
+        let Some(first) = jumping.first() else { return };
+        let names: Vec<String> = jumping.iter().map(|k| format!("`{}`", table.axes[*k].name)).collect();
+        let (names, verb) = (names.join(" or "), if jumping.len() > 1 { "leave their" } else { "leaves its" });
+        let message = format!("the gradient of `{}` jumps where {names} {verb} nodes", table.name);
+        let finding = Diagnostic::new(Code::GradientJumps, declared.axes[*first].span, message);
+        self.report(
+            finding.help("the table keeps its end value there; `extrapolate = linear` goes on with the end slope"),
+        );
     }
 }
 
