@@ -105,9 +105,10 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
     const depth = (x, y) => project([x, y, z0])[2];
     const ynear = depth(x0, y0) < depth(x0, y1) ? y0 : y1, xnear = depth(x0, y0) < depth(x1, y0) ? x0 : x1;
     const below = (p, label) => { const [x, y] = project(p); words(label, [x, y + 12], quiet, "center"); };
-    const short = width < 520 ? 4 : 7;
-    for (const x of steps(x0, x1, short)) below([x, ynear, z0], number(x));
-    for (const y of steps(y0, y1, short)) below([xnear, y, z0], number(y));
+    // As many numbers as have room.
+    const room = (p, q) => { const [a, b] = [project(p), project(q)]; return Math.max(1, Math.min(7, Math.hypot(a[0] - b[0], a[1] - b[1]) / 48)); };
+    for (const x of steps(x0, x1, room([x0, ynear, z0], [x1, ynear, z0]))) below([x, ynear, z0], number(x));
+    for (const y of steps(y0, y1, room([xnear, y0, z0], [xnear, y1, z0]))) below([xnear, y, z0], number(y));
     const beside = (p, label) => { const [x, y] = project(p); words(label, [Math.min(Math.max(x, 40), width - 40), Math.min(y + 28, tallness - 8)], css("--ink"), "center"); };
     beside([(x0 + x1) / 2, ynear, z0], chart.axes[0]);
     beside([xnear, (y0 + y1) / 2, z0], chart.axes[1]);

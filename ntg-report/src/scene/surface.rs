@@ -77,12 +77,15 @@ fn crossing(column: &[f64], heights: &[f64], level: f64) -> Crossing {
     if straight {
         return Crossing::Linear(low + (level - first) / slope, slope > 0.0);
     }
-    let Some(found) = column.windows(2).position(|pair| (pair[0] > level) != (pair[1] > level)) else {
-        return Crossing::None;
-    };
-    let (a, b) = (column[found], column[found + 1]);
-    let height = heights[found] + (level - a) / (b - a) * (heights[found + 1] - heights[found]);
-    if height.is_finite() { Crossing::Bracketed(height, b > a) } else { Crossing::None }
+    // Of several crossings, as of a cone with two halves, the one that is nearest to the tracks.
+    let crossed = column.windows(2).enumerate().filter(|(_, pair)| (pair[0] > level) != (pair[1] > level));
+    let heights = crossed.map(|(found, pair)| {
+        let share = (level - pair[0]) / (pair[1] - pair[0]);
+        (heights[found] + share * (heights[found + 1] - heights[found]), pair[1] > pair[0])
+    });
+    let off = |height: f64| (height - 0.5 * (low + high)).abs();
+    let nearest = heights.filter(|(height, _)| height.is_finite()).min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
+    nearest.map_or(Crossing::None, |(height, grows)| Crossing::Bracketed(height, grows))
 }
 
 #[cfg(test)]
@@ -110,6 +113,9 @@ mod tests {
     fn a_nonlinear_height_is_found_and_a_ball_is_none() {
         let heights = found(|x, _, z| (z - x) * (z + 20.0), 60.0).expect("there is one");
         assert!(heights.z.iter().all(|z| z.is_finite()) && heights.grows);
+        // The upper half of what opens both ways from a height of 3: the tracks are around a height of 5.
+        let upper = found(|x, y, z| (z - 3.0).powi(2) - x * x - y * y, 1.0).expect("it is a height");
+        assert!(upper.grows && upper.z.iter().all(|z| *z > 3.9), "not the lower half");
         assert!(found(|x, y, _| x + y, 1.0).is_none(), "it does not depend on the height");
         assert!(found(|x, y, z| x * x + (y - 2.0).powi(2) + (z - 5.0).powi(2), -1.0).is_none());
     }

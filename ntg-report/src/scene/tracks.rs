@@ -12,8 +12,8 @@ use crate::run::{Coordinate, Moving, Run, Scene, Series};
 const NAMED: [(&[&str], Option<usize>); 18] = [
     (&["x", "y", "z"], Some(2)),
     (&["x", "y", "h"], Some(2)),
-    (&["rx", "ry", "rz"], Some(2)),
-    (&["px", "py", "pz"], Some(2)),
+    (&["rx", "ry", "rz"], None),
+    (&["px", "py", "pz"], None),
     (&["east", "north", "up"], Some(2)),
     (&["north", "east", "down"], None),
     (&["lon", "lat", "h"], Some(2)),
@@ -105,20 +105,33 @@ fn scene(quantities: &IndexMap<&str, &Series>, names: Vec<String>, tracks: Vec<M
     Scene { axes, up, tracks, ..Scene::default() }
 }
 
-/// The upward coordinate of a vector is the one along which gravity pulls, or else the last.
+/// The upward coordinate of numbered or unnamed directions is the one along which gravity pulls, or else the only one
+/// that has a limit below and none above, or else the last.
 fn upright(mut scene: Scene, run: &Run) -> Scene {
-    if scene.axes.len() == 3 && scene.up.is_none() && !scene.axes[2].name.starts_with("down") {
+    if scene.axes.len() == 3 && scene.up.is_none() && scene.axes[2].name != "down" {
         let pulls = run
             .parameters
             .iter()
             .filter(|(name, values)| matches!(base(name), "g" | "gravity" | "g0" | "grav") && values.value.len() == 3);
-        let along = pulls.filter_map(|(_, values)| {
+        let mut along = pulls.filter_map(|(_, values)| {
             let mut pulled = values.value.iter().enumerate().filter(|(_, value)| **value != 0.0);
             pulled.next().filter(|_| pulled.next().is_none()).map(|(axis, _)| axis)
         });
-        scene.up = Some(along.last().unwrap_or(2));
+        let mut floored = (0..3).filter(|axis| has_floor(run, &scene.axes[*axis].name));
+        let only = floored.next().filter(|_| floored.next().is_none());
+        scene.up = along.next_back().or(only).or(Some(2));
     }
     scene
+}
+
+/// Whether `rx >= 0` or the like holds along the way and nothing such above.
+fn has_floor(run: &Run, name: &str) -> bool {
+    let along = run.constraints.iter().filter(|constraint| constraint.block == "trajectory");
+    let mut own = along.filter(|constraint| {
+        let text = constraint.text.rsplit(':').next().unwrap_or(&constraint.text);
+        text.split(['<', '>', '=']).any(|side| side.trim() == name)
+    });
+    own.next().is_some_and(|c| c.members.iter().all(|member| member.lower.is_some() && member.upper.is_none()))
 }
 
 /// `uav[1].y[2]` from `uav[1].x[2]`.
