@@ -11,11 +11,16 @@ use ntg_compiler::diagnostic::Code;
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
 
-struct NoFiles;
+/// The files that specs of the manual name.
+struct ManualFiles;
 
-impl Loader for NoFiles {
+impl Loader for ManualFiles {
     fn load(&self, path: &str) -> Result<String, String> {
-        Err(format!("the manual's specs have no file `{path}`"))
+        match path {
+            "gates.csv" => Ok("# x, y, z in m\n4, 2, 1.5\n8, 0, 3\n10, 5, 2\n".to_owned()),
+            "run.csv" => Ok("# time s, place m\n0, 1.01\n0.5, 0.55\n1, -0.35\n1.5, -0.75\n2.5, 0.1\n".to_owned()),
+            _ => Err(format!("the manual's specs have no file `{path}`")),
+        }
     }
 }
 
@@ -56,7 +61,7 @@ fn read(path: &str) -> String {
 /// The codes of everything that is wrong with a spec, and how a person would read it.
 fn errors(text: &str) -> (Vec<Code>, String) {
     let source = Source::new("manual.ntg", text);
-    match compile(&source, &NoFiles) {
+    match compile(&source, &ManualFiles) {
         Ok(_) => (vec![], String::new()),
         Err(found) => {
             let words: Vec<String> = found.iter().map(|finding| finding.render(&source)).collect();
@@ -110,7 +115,7 @@ fn the_pictures_that_documents_show_exist() {
 fn the_cart_of_those_who_come_from_elsewhere_takes_two_seconds() {
     let blocks = blocks(&read("docs/coming-from.md"));
     let source = Source::new("cart.ntg", &blocks[0].text);
-    let compiled = compile(&source, &NoFiles).expect("the page's spec");
+    let compiled = compile(&source, &ManualFiles).expect("the page's spec");
     let problem = ntg_interp::Interpreted::new(&compiled.program);
     let report = ntg::runtime::solve(&problem, &ntg::prelude::Settings::default()).expect("a solve");
     assert!(report.is_solved(), "{report}");

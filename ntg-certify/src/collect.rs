@@ -301,7 +301,8 @@ impl<'a> Collector<'a> {
                 let flat = self.flat(spline, derivative);
                 match at {
                     At::Here => Input::Flat(flat),
-                    At::Start => Input::Start(flat),
+                    // What is meant is about one member, whose place was looked up.
+                    At::Start | At::Among { .. } => Input::Start(flat),
                     At::End => Input::End(flat),
                     At::Inside(instant) => {
                         let phase = self.out.splines[spline].phase;
@@ -350,7 +351,7 @@ fn cell_from(cuts: &[f64], instant: Instant) -> usize {
 
 /// All places inside phases that a structure names.
 fn places(structure: &Structure) -> BTreeSet<Instant> {
-    let mut found = BTreeSet::new();
+    let mut found: BTreeSet<Instant> = structure.places.iter().flat_map(|places| &places.instants).copied().collect();
     let named = structure.named.iter().map(|named| (&named.domain, &named.call, None));
     let groups = structure.groups.iter().map(|group| (&group.domain, &group.call, group.bounds.as_ref()));
     for (domain, call, bounds) in named.chain(groups) {

@@ -113,6 +113,9 @@ pub(crate) enum Command {
 pub(crate) struct Expand {
     /// The spec file.
     pub(crate) spec: PathBuf,
+    /// Set a number that the spec declares by `const`, in its unit or with a unit: `n=50`.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub(crate) set: Vec<String>,
     /// What to print.
     #[arg(long, value_enum, default_value_t = What::Rust)]
     pub(crate) what: What,
@@ -135,7 +138,8 @@ pub(crate) struct Solve {
     /// The spec file.
     pub(crate) spec: PathBuf,
     /// Set a parameter in its declared unit, or with a unit: `v_max=0.2`, `v_max="200 [m/s]"`,
-    /// one member `start_x[2]=-97`, a whole array `start_x=-100,-97`.
+    /// one member `start_x[2]=-97`, a whole array `start_x=-100,-97`; or a number that the spec declares by `const`,
+    /// such as a size: `n=50`.
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) set: Vec<String>,
     /// How many points of the solution to print.

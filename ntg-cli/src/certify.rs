@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::Format;
 use crate::watch::Interrupt;
-use crate::{Exit, files, setup, values, write};
+use crate::{Exit, files, setup, write};
 
 /// Solve a spec and prove its constraints for all times, not only at points.
 ///
@@ -50,11 +50,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     if let Some(path) = &arguments.output {
         write::may_write(path, arguments.force)?;
     }
-    let Some((source, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
+    let Some(spec) = files::compile(&arguments.spec, &arguments.set) else { return Err(String::new()) };
+    let files::Spec { source, compiled, set } = spec;
     let mut problem = Interpreted::new(&compiled.program);
-    for assignment in &arguments.set {
-        values::set(&mut problem, assignment)?;
-    }
+    set.put(&mut problem)?;
     let mut settings = Settings::default();
     let interrupt = Interrupt::install();
     interrupt.over(&mut settings);

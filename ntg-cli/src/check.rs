@@ -3,13 +3,14 @@
 mod json;
 
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
+use ntg_compiler::model::Given;
 use ntg_compiler::source::Source;
 use ntg_compiler::syntax::{self, FileKind};
 use serde_json::Value;
 
 use crate::arguments::{self, Format};
 use crate::files::{self, Failure};
-use crate::{Exit, files::BesideSpec};
+use crate::{Exit, files::BesideSpec, values};
 
 /// What became of a spec.
 struct Checked {
@@ -33,7 +34,11 @@ pub(crate) fn run(arguments: &arguments::Check) -> Exit {
             return Exit::Bad;
         }
     };
-    let checked: Vec<Checked> = specs.iter().map(|spec| check(files::read(spec))).collect();
+    if let Some(wrong) = arguments.set.iter().find(|set| !set.contains('=')) {
+        eprintln!("error: --set {wrong}: write NAME=VALUE, such as `n=50`");
+        return Exit::Bad;
+    }
+    let checked: Vec<Checked> = specs.iter().map(|spec| check(files::read(spec), &arguments.set)).collect();
     match arguments.format {
         Format::Text => checked.iter().for_each(text),
         Format::Json => files::print(&format!("{:#}", json::document(&checked))),
@@ -48,7 +53,7 @@ impl Checked {
     }
 }
 
-fn check(read: Result<(Source, BesideSpec), Failure>) -> Checked {
+fn check(read: Result<(Source, BesideSpec), Failure>, set: &[String]) -> Checked {
     match read {
         Ok((source, loader)) if syntax::file_kind(&source) == FileKind::Library => {
             let found = ntg_compiler::check_library(&source, &loader);
@@ -56,7 +61,9 @@ fn check(read: Result<(Source, BesideSpec), Failure>) -> Checked {
             Checked { name: source.name.clone(), problem: None, is_library, found: Some((source, found)), unread: None }
         }
         Ok((source, loader)) => {
-            let (problem, found) = match ntg_compiler::compile(&source, &loader) {
+            // What is no constant here is told of by the compiler.
+            let given: Vec<Given> = set.iter().filter_map(|set| values::given(set)).collect();
+            let (problem, found) = match ntg_compiler::compile_with(&source, &loader, &given) {
                 Ok(compiled) => (Some(compiled.program.structure.name), compiled.notes),
                 Err(found) => (None, found.into_iter().collect()),
             };

@@ -13,7 +13,13 @@ use crate::arguments::{self, What};
 use crate::{Exit, files};
 
 pub(crate) fn run(arguments: &arguments::Expand) -> Exit {
-    let Some((_, compiled)) = files::compile(&arguments.spec) else { return Exit::Bad };
+    let Some(files::Spec { compiled, set, .. }) = files::compile(&arguments.spec, &arguments.set) else {
+        return Exit::Bad;
+    };
+    if let Some(other) = set.parameters.first() {
+        eprintln!("error: --set {other}: only constants change what a spec becomes");
+        return Exit::Bad;
+    }
     let program = &compiled.program;
     let text = match arguments.what {
         What::Rust => rust(program),

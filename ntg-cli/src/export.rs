@@ -17,7 +17,7 @@ use ntg_runtime::transcribe::{SetupError, Transcription};
 use serde_json::json;
 
 use crate::arguments::Format;
-use crate::{Exit, files, guess, setup, values};
+use crate::{Exit, files, guess, setup};
 
 /// How many violations are listed.
 const LISTED: usize = 10;
@@ -101,11 +101,10 @@ struct Read {
 
 impl Problem {
     fn read(&self) -> Result<Read, String> {
-        let Some((source, compiled)) = files::compile(&self.spec) else { return Err(String::new()) };
+        let Some(spec) = files::compile(&self.spec, &self.set) else { return Err(String::new()) };
+        let files::Spec { source, compiled, set } = spec;
         let mut problem = Interpreted::new(&compiled.program);
-        for assignment in &self.set {
-            values::set(&mut problem, assignment)?;
-        }
+        set.put(&mut problem)?;
         let guess = self.guess.as_deref().map(|path| guess::read(path, &problem)).transpose()?;
         Ok(Read { source, program: compiled.program, problem, guess })
     }

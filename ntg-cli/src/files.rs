@@ -9,6 +9,8 @@ use ntg_compiler::diagnostic::{Code, Diagnostic};
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::{Source, Span};
 
+use crate::values::Assignments;
+
 /// Share of letters in place from which a file's name is taken for a slip of the pen.
 const LIKE: f64 = 0.6;
 
@@ -144,13 +146,22 @@ fn not_text(name: String, error: &FromUtf8Error) -> Failure {
     Failure::NotText(source, Box::new(finding))
 }
 
-/// Reads and compiles a spec. Findings go to standard error; `None` when there are errors.
-pub(crate) fn compile(path: &Path) -> Option<(Source, Compiled)> {
+/// A spec that is compiled.
+pub(crate) struct Spec {
+    pub(crate) source: Source,
+    pub(crate) compiled: Compiled,
+    pub(crate) set: Assignments,
+}
+
+/// Reads and compiles a spec with the constants that are set. Findings go to standard error; `None` when there are
+/// errors.
+pub(crate) fn compile(path: &Path, set: &[String]) -> Option<Spec> {
     let (source, loader) = read(path).map_err(|failure| failure.show()).ok()?;
-    match ntg_compiler::compile(&source, &loader) {
+    let (given, set) = Assignments::of(&source, set);
+    match ntg_compiler::compile_with(&source, &loader, &given) {
         Ok(compiled) => {
             show(&source, compiled.notes.iter());
-            Some((source, compiled))
+            Some(Spec { source, compiled, set })
         }
         Err(found) => {
             show(&source, found.iter());

@@ -14,7 +14,7 @@ use ntg_runtime::settings::{Progress, Settings};
 
 use crate::solve::explained;
 use crate::watch::{Interrupt, Watch};
-use crate::{arguments, files, setup, starts, values};
+use crate::{arguments, files, setup, starts};
 
 /// What can be read as a run.
 pub(crate) const SAVED: &str = "give a file that `ntg solve --save` has written";
@@ -62,11 +62,9 @@ impl Inputs {
 
     fn solved(&self, path: &Path, interrupt: &Interrupt) -> Result<Vec<(String, Run)>, String> {
         // Findings have been said.
-        let (source, compiled) = files::compile(path).ok_or_else(String::new)?;
+        let files::Spec { source, compiled, set } = files::compile(path, &self.set).ok_or_else(String::new)?;
         let mut problem = Interpreted::new(&compiled.program);
-        for assignment in &self.set {
-            values::set(&mut problem, assignment)?;
-        }
+        set.put(&mut problem)?;
         let spec = Spec { path, problem, source, notes: compiled.notes };
         match starts::solve(&spec.problem, &Guess::new(), (&self.starts, interrupt), &Settings::default()) {
             None => Ok(vec![(name(path), spec.one(interrupt)?)]),

@@ -23,7 +23,7 @@ use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
-use crate::{Exit, certify, files, guess, route, setup, values, write};
+use crate::{Exit, certify, files, guess, route, setup, write};
 
 pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
     crate::said(solve(arguments))
@@ -57,11 +57,10 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         write::may_write(path, arguments.force)?;
     }
     let every = arguments.sampled.checked(arguments.force)?;
-    let Some((source, compiled)) = files::compile(&arguments.spec) else { return Err(String::new()) };
+    let Some(spec) = files::compile(&arguments.spec, &arguments.set) else { return Err(String::new()) };
+    let files::Spec { source, compiled, set } = spec;
     let mut problem = Interpreted::new(&compiled.program);
-    for assignment in &arguments.set {
-        values::set(&mut problem, assignment)?;
-    }
+    set.put(&mut problem)?;
     let guess = first_guess(arguments, &problem)?;
     let compile_seconds = began.elapsed().as_secs_f64();
 

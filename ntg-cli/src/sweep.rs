@@ -83,9 +83,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         write::may_write(&arguments.output, arguments.force)?;
     }
     // Findings have been said.
-    let (source, compiled) = files::compile(&arguments.spec).ok_or_else(String::new)?;
+    let spec = files::compile(&arguments.spec, &arguments.set).ok_or_else(String::new)?;
+    let files::Spec { source, compiled, set } = spec;
     let mut problem = Interpreted::new(&compiled.program);
-    let sets = inputs::sets(&mut problem, (&arguments.set, arguments.from.as_deref()), &arguments.dispersion)?;
+    let sets = inputs::sets(&mut problem, (&set, arguments.from.as_deref()), &arguments.dispersion)?;
     let structure = problem.structure();
     let wanted = arguments.value.iter().map(|text| Wanted::parse(text, &structure)).collect::<Result<Vec<_>, _>>()?;
     let settings = settings(arguments)?;

@@ -19,7 +19,7 @@ pub mod standard;
 pub mod syntax;
 
 use diagnostic::{Diagnostic, Diagnostics, Severity};
-use model::Loader;
+use model::{Given, Loader};
 use program::Program;
 use source::Source;
 
@@ -42,8 +42,16 @@ pub fn check_library(source: &Source, loader: &dyn Loader) -> Vec<Diagnostic> {
 /// # Errors
 /// Everything that is wrong with it, in source order.
 pub fn compile(source: &Source, loader: &dyn Loader) -> Result<Compiled, Diagnostics> {
+    compile_with(source, loader, &[])
+}
+
+/// As [`compile`], with other values of some constants.
+///
+/// # Errors
+/// Everything that is wrong with the spec or with the values, in source order.
+pub fn compile_with(source: &Source, loader: &dyn Loader, given: &[Given]) -> Result<Compiled, Diagnostics> {
     let spec = syntax::parse(source)?;
-    let (problem, found) = model::build(&spec, source, loader);
+    let (problem, found) = model::build_with(&spec, source, loader, given);
     let (errors, notes) = found.into_iter().partition(|d: &Diagnostic| d.severity == Severity::Error);
     Diagnostics::or(errors)?;
     let problem = problem.expect("a problem is missing only where there are errors");

@@ -312,7 +312,7 @@ fn a_boundary_value_in_a_boundary_block_makes_a_constraint_of_the_mission() {
     let ends = |_: &str, _: Option<i64>, _: usize, at: At| match at {
         At::Start => 2.0,
         At::End => 7.0,
-        At::Here | At::Inside(_) => f64::NAN,
+        At::Here | At::Inside(_) | At::Among { .. } => f64::NAN,
     };
     close(value(&p, p.constraints[0].body, World { flat: &ends, other: &other }), 7.0 - 3.0);
     assert!(matches!(p.constraints[1].domain, Domain::End(_)));

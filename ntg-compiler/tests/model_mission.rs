@@ -45,7 +45,7 @@ fn flat(name: &str, _: Option<i64>, order: usize, at: At) -> f64 {
         At::Here => 0.0,
         At::Start => 100.0,
         At::End => 200.0,
-        At::Inside(_) => 300.0,
+        At::Inside(_) | At::Among { .. } => 300.0,
     };
     end + name.len() as f64 + 10.0 * order as f64
 }

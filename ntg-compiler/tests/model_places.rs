@@ -126,20 +126,35 @@ fn an_agent_is_named_first() {
     assert_eq!(found.iter().filter(|place| **place == (0, inside(0.5))).count(), 2);
 }
 
+/// As [`places`], with those that differ from member to member one by one.
+fn member_places(program: &Program) -> Vec<(usize, At)> {
+    let all = places(program).into_iter().flat_map(|(phase, at)| match at {
+        At::Among { places, .. } => {
+            let instants = program.structure.places[places].instants.iter();
+            instants.map(|instant| (phase, inside(instant.tau()))).collect()
+        }
+        other => vec![(phase, other)],
+    });
+    all.collect()
+}
+
 #[test]
-fn times_from_a_list_are_looked_up_member_by_member() {
+fn times_from_a_list_are_places_of_one_formula() {
     let list = "const when[3] = (0.5, 1, 2) [s]; param seen[3] = (1, 2, 3) [m];";
-    let common = format!("{FIXED} {list}");
-    same(
-        &common,
-        "temporal { for i in 1 .. 3 { at(when[i], x) >= seen[i]; } }",
-        "temporal { at(0.5 [s], x) >= seen[1];  at(1 [s], x) >= seen[2];  at(2 [s], x) >= seen[3]; }",
-    );
-    same(
-        FIXED,
-        "temporal { for i in 1 .. 2 { at(i * 1.5 [s], x) >= 1 [m]; } }",
-        "temporal { at(1.5 [s], x) >= 1 [m];  at(3 [s], x) >= 1 [m]; }",
-    );
+    let of = |text: &str| program(&format!("problem P {{ {FIXED} {list} temporal {{ {text} }} }}"));
+    for (short, long) in [
+        (
+            "for i in 1 .. 3 { at(when[i], x) >= seen[i]; }",
+            "at(0.5 [s], x) >= seen[1];  at(1 [s], x) >= seen[2];  at(2 [s], x) >= seen[3];",
+        ),
+        ("for i in 1 .. 2 { at(i * 1.5 [s], x) >= 1 [m]; }", "at(1.5 [s], x) >= 1 [m];  at(3 [s], x) >= 1 [m];"),
+    ] {
+        let (short, long) = (of(short), of(long));
+        assert_eq!(member_places(&short), member_places(&long));
+        let held =
+            |program: &Program| program.structure.groups.iter().filter(|group| group.domain == Domain::Mission).count();
+        assert_eq!(held(&short), 1);
+    }
 }
 
 #[test]

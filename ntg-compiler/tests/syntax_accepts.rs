@@ -83,6 +83,11 @@ fn brackets(expr: &Expr) -> String {
             });
             format!("({}{})", branches.collect::<String>(), brackets(&conditional.otherwise))
         }
+        ExprKind::Rows(name) => format!("rows({})", name.path),
+        ExprKind::File(file) => {
+            let columns = file.columns.iter().flat_map(|c| [&c.first].into_iter().chain(&c.last));
+            format!("{}:{}", file.name.path, columns.map(brackets).collect::<Vec<_>>().join(".."))
+        }
         ExprKind::Steps(steps) => {
             let lets = steps.lets.iter().map(|step| format!("{}={};", step.name.text, brackets(&step.value)));
             format!("{{{}{}}}", lets.collect::<String>(), brackets(&steps.value))

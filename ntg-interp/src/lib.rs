@@ -14,7 +14,7 @@ mod text;
 
 pub use finding::finding;
 pub use parameters::{Place, SetError};
-pub use text::{quantity, target};
+pub use text::{bracketed, quantity, target};
 
 use std::sync::{Arc, Mutex, OnceLock};
 

@@ -68,7 +68,7 @@ pub fn quantity(text: &str, unit: &Unit) -> Result<Vec<f64>, String> {
 }
 
 /// `240 m/s` and `240m/s` as the language writes them: `240 [m/s]`.
-fn bracketed(text: &str) -> String {
+pub fn bracketed(text: &str) -> String {
     let trimmed = text.trim();
     // The longest beginning that is a number: `1e3m` is a thousand metres.
     let cuts = trimmed.char_indices().map(|(at, _)| at).rev();

@@ -31,7 +31,11 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
     } else {
         items.extend(EXPRESSION_WORDS.iter().map(|word| keyword(word)));
         items.extend(
-            ["else", "smooth", "spline", "held", "gauss", "uniform", "after", "through", "from", "except"].map(keyword),
+            [
+                "else", "smooth", "spline", "held", "gauss", "uniform", "after", "through", "from", "except", "rows",
+                "sigma",
+            ]
+            .map(keyword),
         );
     }
     for used in analysis.uses() {
@@ -239,8 +243,11 @@ pub fn explained(word: &str) -> Option<String> {
         "soft" => "`soft(200 [1/s]): c;`: a constraint that may be missed, at a price",
         "except" => "`trajectory except final { ... }`: everywhere but at that end",
         "from" => {
-            "`trajectory from a to b { ... }`: a part of the trajectory; `table f(u) = linear from \"f.csv\";`: data"
+            "`trajectory from a to b { ... }`: a part of the trajectory; `param a[n, 3] [m] from \"a.csv\" columns 1 .. 3;`: data"
         }
+        "measure" => "`measure { at(2 [s], x) == 3 [m] sigma 0.1 [m]; }`: what was measured, by least squares",
+        "sigma" => "`at(2 [s], x) == 3 [m] sigma 0.1 [m];` in `measure`: the standard deviation",
+        "rows" => "`const n = rows(\"a.csv\");`: how many rows a file has",
         "jump" => "`jump m;`: an output that is not continuous at the start of the phase",
         "der" => "`der(e)`, `der(e, 2)`: derivative in real time, by the chain rule",
         "partial" => "`partial(f(s, w), s)`: partial derivative of a function or table",

@@ -124,6 +124,7 @@ impl Writer<'_> {
                     At::Here => value,
                     At::Start => format!("initial({value})"),
                     At::End => format!("final({value})"),
+                    At::Among { .. } => format!("at(.., {value})"),
                     At::Inside(instant) => format!("at({} * {}, {value})", instant.tau(), self.duration(phase)),
                 }
             }

@@ -4,9 +4,9 @@
 //! make cargo watch every file that was read: a build that failed is repeated when one is mended.
 
 use ntg_compiler::codegen;
-use ntg_compiler::model::Loader;
+use ntg_compiler::model::{Given, Loader};
 use ntg_compiler::source::Source;
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
 use crate::include::Files;
@@ -29,15 +29,12 @@ pub(crate) fn inline(spec: TokenStream) -> TokenStream {
     quote! { #items #watch }
 }
 
-/// `ntg_file!("specs/x.ntg")`
+/// `ntg_file!("specs/x.ntg")`, `ntg_file!("specs/x.ntg", n = 50)`
 pub(crate) fn file(argument: TokenStream) -> TokenStream {
-    let place = argument.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
-    let Ok(literal) = syn::parse2::<syn::LitStr>(argument) else {
-        let message = "expected the path of a spec file\nhelp: write `ntg_file!(\"specs/name.ntg\")`, \
-                       relative to the crate's Cargo.toml";
-        return report::error(message, (place, place));
+    let Called { path, place, given } = match Called::of(argument) {
+        Ok(called) => called,
+        Err((message, place)) => return report::error(message, (place, place)),
     };
-    let (path, place) = (literal.value(), literal.span());
     let files = match Files::of_crate() {
         Ok(files) => files,
         Err(message) => return here(&message),
@@ -51,12 +48,59 @@ pub(crate) fn file(argument: TokenStream) -> TokenStream {
     };
     let source = Source::new(path, text);
     let tables = files.beside(&source.name);
-    let items = match ntg_compiler::compile(&source, &tables) {
+    let items = match ntg_compiler::compile_with(&source, &tables, &given) {
         Ok(compiled) => codegen::generate_at(&compiled.program, &|_| Span::call_site()),
         Err(found) => report::in_file(&found, &source, place),
     };
     let (watch, watch_tables) = (files.watch(), tables.watch());
     quote! { #items #watch #watch_tables }
+}
+
+/// What stands between the parentheses of `ntg_file!`.
+struct Called {
+    path: String,
+    place: Span,
+    given: Vec<Given>,
+}
+
+impl Called {
+    /// The path, and the constants behind it; or what is wrong, and where.
+    fn of(argument: TokenStream) -> Result<Self, (&'static str, Span)> {
+        const PATH: &str = "expected the path of a spec file\nhelp: write `ntg_file!(\"specs/name.ntg\")`, \
+                            relative to the crate's Cargo.toml";
+        const CONSTANT: &str = "expected a constant and its value\nhelp: write `ntg_file!(\"specs/name.ntg\", n = 50)`, \
+                                or with a unit `g = 3.7 [m/s^2]`";
+        let mut tokens = argument.into_iter();
+        let first = tokens.next();
+        let place = first.as_ref().map_or_else(Span::call_site, TokenTree::span);
+        let literal = syn::parse2::<syn::LitStr>(first.into_iter().collect()).map_err(|_| (PATH, place))?;
+        let mut called = Self { path: literal.value(), place: literal.span(), given: vec![] };
+        let mut last = tokens.next();
+        while let Some(comma) = last.take() {
+            if !is_mark(&comma, ',') {
+                return Err((if called.given.is_empty() { PATH } else { CONSTANT }, comma.span()));
+            }
+            let Some(name) = tokens.next() else { break };
+            let place = name.span();
+            let is_set = matches!(name, TokenTree::Ident(_)) && tokens.next().is_some_and(|token| is_mark(&token, '='));
+            let value: TokenStream = tokens
+                .by_ref()
+                .take_while(|token| {
+                    last = is_mark(token, ',').then(|| token.clone());
+                    last.is_none()
+                })
+                .collect();
+            if !is_set || value.is_empty() {
+                return Err((CONSTANT, place));
+            }
+            called.given.push(Given { name: name.to_string(), text: value.to_string() });
+        }
+        Ok(called)
+    }
+}
+
+fn is_mark(token: &TokenTree, mark: char) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == mark)
 }
 
 /// An error that belongs to no token.

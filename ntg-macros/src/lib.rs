@@ -48,6 +48,12 @@ pub fn ntg(spec: proc_macro::TokenStream) -> proc_macro::TokenStream {
 /// gives what [`ntg!`] would give for the file's text. Errors name the file, line and column, with
 /// a picture of the place. cargo rebuilds the crate when the file changes, or a table that it reads
 /// (those are relative to the spec file).
+///
+/// Numbers that the spec declares by `const`, sizes among them, may have other values, in their unit or with a unit:
+///
+/// ```text
+/// ntg::ntg_file!("specs/chain.ntg", links = 50, gravity = 3.7 [m/s^2]);
+/// ```
 #[proc_macro]
 pub fn ntg_file(path: proc_macro::TokenStream) -> proc_macro::TokenStream {
     expand::file(path.into()).into()

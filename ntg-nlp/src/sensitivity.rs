@@ -287,7 +287,10 @@ impl<W> Sensitivity<W> {
         }
         buffers.rows.fill(0.0);
         assembly.jacobian.add_product(1.0, &buffers.unscaled, &mut buffers.rows);
-        let mut moved = 0.0_f64;
+        // Where no bound moves, what changes in an active row is nothing: the measure is what it is the sum of, and
+        // scaled slopes are about 1.
+        let is_still = right.y.iter().all(|rate| *rate == 0.0);
+        let mut moved = if is_still { step.x.iter().fold(0.0_f64, |most, x| most.max(x.abs())) } else { 0.0 };
         for &f in active.iter() {
             let change = if f < rows.len() { buffers.rows[f] * rows[f] } else { step.x[f - first] };
             left.y[f] = right.y[f] - change;

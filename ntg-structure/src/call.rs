@@ -24,6 +24,13 @@ pub enum At {
     End,
     /// At a place inside the phase, from the right where intervals meet.
     Inside(Instant),
+    /// At a place for each value of one index.
+    Among {
+        /// Index into `Structure::places`.
+        places: usize,
+        /// Which of the surrounding loops, counted from the outermost.
+        index: usize,
+    },
 }
 
 /// An input with respect to which a kernel is differentiated.

@@ -114,6 +114,22 @@ pub struct Term {
     pub unit: Unit,
 }
 
+/// Measured values with their standard deviations: half the sum of squared ratios is part of a term of the objective
+/// (docs/maths.md, section 17).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// Index into `Structure::terms`.
+    pub term: usize,
+    /// The unit in which residuals are reported.
+    pub unit: Unit,
+    /// Nested loops, the outermost first: one residual for each of their members.
+    pub loops: Vec<Loop>,
+    /// A call of a kernel with one row: the left side without the right one.
+    pub residual: Call,
+    /// A call of a kernel with one row and no slots: the standard deviation.
+    pub sigma: Call,
+}
+
 /// An integral that enters some function nonlinearly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Integral {

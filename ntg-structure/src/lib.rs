@@ -23,7 +23,7 @@ mod part;
 mod quantity;
 
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
-pub use group::{Block, Constraint, Domain, Group, Integral, Named, Row, Term};
+pub use group::{Block, Constraint, Domain, Group, Integral, Measurement, Named, Row, Term};
 pub use guess::{Continuation, Guess, GuessKind, GuessScope};
 pub use index::{Affine, Family, Loop};
 pub use kernel::{Degree, Kernel};
@@ -31,7 +31,7 @@ pub use mission::{
     Agent, Bounds, Duration, Output, Parameter, Phase, Points, Spline, Start, Table, TableAxis, TableExtrapolation,
     TableMethod, TableSymmetry, Variable,
 };
-pub use part::{Instant, Part};
+pub use part::{Instant, Part, Places};
 pub use quantity::{Place, Unit};
 
 /// A whole problem, without its formulas.
@@ -57,12 +57,16 @@ pub struct Structure {
     pub agents: Vec<Agent>,
     /// Phases of all agents, each agent's in order of time.
     pub phases: Vec<Phase>,
+    /// Places that differ from member to member of a loop.
+    pub places: Vec<Places>,
     /// The shapes of the kernels.
     pub kernels: Vec<Kernel>,
     /// Which kernel is called where, and what becomes of its rows.
     pub groups: Vec<Group>,
     /// Terms of the objective, for reports.
     pub terms: Vec<Term>,
+    /// What was measured: parts of terms whose residuals are reported.
+    pub measurements: Vec<Measurement>,
     /// Constraints as the user wrote them, for reports.
     pub constraints: Vec<Constraint>,
     /// Integrals that enter a function nonlinearly: each is a variable with a defining row.

@@ -22,6 +22,22 @@ impl Instant {
     }
 }
 
+/// Places in a phase, one for each value of an index.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Places {
+    /// The first value of the index.
+    pub first: i64,
+    /// The places of this value and the following ones.
+    pub instants: Vec<Instant>,
+}
+
+impl Places {
+    /// The place for a value of the index, if there is one.
+    pub fn at(&self, index: i64) -> Option<Instant> {
+        usize::try_from(index.checked_sub(self.first)?).ok().and_then(|k| self.instants.get(k)).copied()
+    }
+}
+
 /// A stretch of a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Part {

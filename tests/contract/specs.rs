@@ -33,6 +33,7 @@ macro_rules! specs {
 }
 
 specs! {
+    gate_race: "specs/gate_race.ntg" => GateRace,
     gates: "specs/gates.ntg" => Gates,
     halo_orbit: "specs/halo_orbit.ntg" => HaloOrbit,
     kinematic_car: "specs/kinematic_car.ntg" => KinematicCar,
@@ -52,6 +53,7 @@ specs! {
     multi_vehicle_separated: "specs/multi_vehicle_separated.ntg" => MultiVehicleSeparated,
     multi_vehicle_simultaneous: "specs/multi_vehicle_simultaneous.ntg" => MultiVehicleSimultaneous,
     powered_descent_6dof: "specs/powered_descent_6dof.ntg" => PoweredDescent6dof,
+    probe: "specs/probe.ntg" => Probe,
     radar_net: "specs/radar_net.ntg" => RadarNet,
     strike_and_look: "specs/strike_and_look.ntg" => StrikeAndLook,
     round_the_mast: "specs/round_the_mast.ntg" => RoundTheMast,

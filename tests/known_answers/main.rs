@@ -6,6 +6,7 @@
 
 mod car;
 mod constructs;
+mod data;
 mod degenerate;
 mod fleet;
 mod flight;

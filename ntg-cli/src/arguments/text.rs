@@ -12,6 +12,9 @@ pub(crate) struct Check {
     /// Spec files, folders (all `.ntg` files below them), or `-`: standard input.
     #[arg(required = true, value_name = "SPEC")]
     pub(crate) specs: Vec<PathBuf>,
+    /// Check them with another value of a number that they declare by `const`: `n=50`.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub(crate) set: Vec<String>,
     /// How to print: pictures for people, or one JSON document (docs/check-format.md).
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,

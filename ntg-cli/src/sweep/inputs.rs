@@ -9,7 +9,7 @@ use ntg_sweep::{Range, grid};
 
 use super::dispersion;
 use crate::files;
-use crate::values;
+use crate::values::Assignments;
 
 /// How a range is written.
 const FORM: &str = "a range is NAME=FIRST:LAST:COUNT, such as `v_max=0.2:0.3:11` or `v_max=\"200:300:11 [m/s]\"`";
@@ -29,11 +29,12 @@ pub(super) fn fixed(set: &[String]) -> Vec<String> {
 /// dispersed. The problem takes the values that hold for all rows.
 pub(super) fn sets(
     problem: &mut Interpreted,
-    (set, from): (&[String], Option<&Path>),
+    (assignments, from): (&Assignments, Option<&Path>),
     dispersion: &dispersion::Dispersed,
 ) -> Result<Sets, String> {
+    let set = &assignments.parameters;
     for assignment in fixed(set) {
-        values::set(problem, &assignment).map_err(|message| match assignment.contains("..") {
+        assignments.put_one(problem, &assignment).map_err(|message| match assignment.contains("..") {
             true => format!("{message}; {FORM}"),
             false => message,
         })?;

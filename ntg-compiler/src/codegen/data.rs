@@ -13,9 +13,9 @@
 
 use ntg_structure::{
     Affine, Agent, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family, Group,
-    Guess, GuessKind, GuessScope, Instant, Integral, Kernel, Loop, Named, Output, Parameter, Part, Phase, PhaseRef,
-    Place, Points, ReduceOp, Reduction, Row, Slot, Spline, Start, Table, TableAxis, TableExtrapolation, TableMethod,
-    TableSymmetry, Term, Unit, Variable,
+    Guess, GuessKind, GuessScope, Instant, Integral, Kernel, Loop, Measurement, Named, Output, Parameter, Part, Phase,
+    PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Slot, Spline, Start, Table, TableAxis,
+    TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -110,6 +110,7 @@ structs! {
     Guess { loops, scope, kind }
     Integral { loops, place }
     Loop { first, last }
+    Measurement { term, unit, loops, residual, sigma }
     Named { name, doc, unit, family, agent, loops, domain, call }
     Output { name, doc, unit, family, spline }
     Parameter { name, doc, unit, array, value }
@@ -143,6 +144,15 @@ impl ToRust for Instant {
     }
 }
 
+impl ToRust for Places {
+    fn to_rust(&self) -> TokenStream {
+        let Self { first, instants } = self;
+        let taus = instants.iter().map(|instant| instant.tau().to_rust());
+        let first = first.to_rust();
+        quote! { Places { first: #first, instants: [#(#taus),*].map(Instant::new).into() } }
+    }
+}
+
 impl ToRust for Part {
     fn to_rust(&self) -> TokenStream {
         if self.is_whole() {
@@ -155,7 +165,7 @@ impl ToRust for Part {
 }
 
 enums! {
-    At { Here Start End; Inside(instant); }
+    At { Here Start End; Inside(instant); Among { places, index } }
     Block { Initial Trajectory Final Temporal Continuity;; }
     Data { Tau; Index(index) Duration(phase) Start(phase); Parameter { parameter, index } }
     Degree { Constant Linear Quadratic Nonlinear;; }

@@ -112,8 +112,9 @@ codes! {
     StateWithoutRate "E069" "a state without a derivative in `dynamics`";
     NodesNotIncreasing "E070" "table nodes that do not increase";
     RaggedTable "E071" "rows of a table with different lengths";
-    UnreadableTable "E072" "a table file that cannot be read";
+    UnreadableTable "E072" "a file of numbers that cannot be read";
     WrongTable "E073" "a table that has no interpolant";
+    FileSize "E074" "a file that has another size than the array that it fills";
     UnknownPhase "E080" "a phase or agent that does not exist";
     PhaseCircle "E081" "phases that follow one another in a circle";
     PhaseFork "E082" "two phases after one";
@@ -128,6 +129,7 @@ codes! {
     TooDeepMeaning "E092" "definitions nested too deeply in one another";
     UnknownPlace "E093" "a place in time that is not known before the solve, or outside";
     Delay "E094" "an expression at another time than that at which it stands";
+    WrongMeasurement "E095" "something in `measure` that is no measurement";
 
     GradientJumps "N001" "a gradient that may jump";
     DerivativeJumps "N002" "a derivative that jumps at the knots";

@@ -20,6 +20,7 @@ use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident, IndexRange, MulOp, Sign};
 
 /// A number that the compiler knows, in SI units.
+#[derive(Clone)]
 pub(super) struct Constant {
     pub(super) value: f64,
     pub(super) dimension: Option<Dimension>,
@@ -58,6 +59,13 @@ impl Form {
         }
         terms.retain(|(_, coefficient)| *coefficient != 0);
         Some(Self { constant, terms })
+    }
+
+    /// The same where an index has a value.
+    pub(super) fn with(&self, index: IndexId, value: i64) -> Self {
+        let factor = self.terms.iter().find(|(own, _)| *own == index).map_or(0, |(_, factor)| *factor);
+        let constant = self.constant.saturating_add(factor.saturating_mul(value));
+        Self { constant, terms: self.terms.iter().copied().filter(|(own, _)| *own != index).collect() }
     }
 
     /// The same divided by a number that divides it.

@@ -78,6 +78,8 @@ impl<'a> Elaborator<'a> {
                 let site = Site { block: Block::Temporal, agent, phase, part: Part::WHOLE };
                 self.statements(&cx, &block.statements, &site);
             }
+            // Terms of the objective.
+            (BlockPlace::Measure, _) => {}
             (_, None) => {} // Told of as standing at the wrong level.
             (BlockPlace::Trajectory | BlockPlace::Dynamics, Some(agent)) => {
                 let phases = phase.map_or_else(|| self.agents[agent].phases.clone(), |phase| vec![phase]);

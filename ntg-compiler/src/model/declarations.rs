@@ -233,7 +233,9 @@ fn allowed(kind: &ItemKind, level: Level) -> bool {
         ItemKind::Let(_) | ItemKind::Output(_) | ItemKind::Duration(_) | ItemKind::Periodic(_) | ItemKind::At(_) => {
             level != Level::AboveAgents
         }
-        ItemKind::Block(block) => level != Level::AboveAgents || block.place == ast::BlockPlace::Temporal,
+        ItemKind::Block(block) => {
+            level != Level::AboveAgents || matches!(block.place, ast::BlockPlace::Temporal | ast::BlockPlace::Measure)
+        }
         ItemKind::Start(_) | ItemKind::Phase(_) => matches!(level, Level::Problem | Level::Agent),
         ItemKind::Agent(_) => level == Level::AboveAgents,
         ItemKind::Jump(_) | ItemKind::Continuous(_) => level == Level::Phase,
@@ -275,6 +277,7 @@ fn keyword(kind: &ItemKind) -> &'static str {
             ast::BlockPlace::Final => "final",
             ast::BlockPlace::Temporal => "temporal",
             ast::BlockPlace::Dynamics => "dynamics",
+            ast::BlockPlace::Measure => "measure",
         },
         ItemKind::Guess(_) => "guess",
     }

@@ -112,7 +112,7 @@ impl<'a> Elaborator<'a> {
         if is_const {
             let what = format!("the constant `{}`", name.text);
             match self.settle_constant(value, &what).and_then(|value| self.finite(value)) {
-                Some(settled) => value = settled,
+                Some(settled) => value = self.as_given(definition, name, settled),
                 None => return self.poison(expr.span),
             }
         }

@@ -288,6 +288,7 @@ impl<'a> Elaborator<'a> {
             if is_inside { &mut inside } else { &mut others }.push(constraint.body);
         }
         others.extend(self.problem.objective.iter().map(|term| term.body));
+        others.extend(self.problem.measurements.iter().map(|measurement| measurement.cost));
         inside.extend(&others);
         let anywhere = self.rates_in(inside, |_| true);
         let others = self.rates_in(others, |phase| !self.is_gauss(phase));

@@ -153,6 +153,8 @@ impl<'a> Elaborator<'a> {
             | ExprKind::Pi
             | ExprKind::Time
             | ExprKind::ScaledTime
+            | ExprKind::File(_)
+            | ExprKind::Rows(_)
             | ExprKind::Integral { .. }
             | ExprKind::Boundary { .. }
             | ExprKind::Event { .. } => {}

@@ -7,13 +7,16 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use ntg_structure::Unit;
 
 use super::Loader;
+use super::constants::Constant;
 use super::definitions::{Memo, MemoKey};
 use super::derivatives::{Jump, Lacking};
 use super::dimension::Dimension;
+use super::files::Contents;
 use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
 use super::scope::{Context, Declared, Entity, Scope, ScopeId};
@@ -113,6 +116,10 @@ pub(super) struct Elaborator<'a> {
     /// The folder of each library's scope, for the files that its tables name.
     pub(super) folders: HashMap<ScopeId, String>, // Looked up, never iterated.
     pub(super) loader: &'a dyn Loader,
+    /// The constants that are set where the spec is compiled.
+    pub(super) given: HashMap<usize, Constant>, // Looked up, never iterated.
+    /// The numbers of files that arrays are read from; none of a file that was told of.
+    pub(super) files: HashMap<String, Option<Rc<Contents>>>, // Looked up, never iterated.
     pub(super) problem: Problem,
     pub(super) scopes: Vec<Scope<'a>>,
     /// The items of each scope.
@@ -192,6 +199,8 @@ impl<'a> Elaborator<'a> {
             main: None,
             folders: HashMap::new(),
             loader,
+            given: HashMap::new(),
+            files: HashMap::new(),
             problem: Problem::default(),
             scopes: Vec::new(),
             items: Vec::new(),

@@ -62,6 +62,8 @@ impl<'a> Elaborator<'a> {
             ExprKind::Boundary { boundary, path, of } => self.boundary(cx, *boundary, path.as_ref(), (of, at), span),
             ExprKind::Event { event, path } => self.event_time(cx, *event, path, span),
             ExprKind::Reduce(reduction) => self.reduction(cx, reduction, at, span),
+            ExprKind::File(file) => self.file_element(cx, file, at, span),
+            ExprKind::Rows(name) => self.count_of_rows(cx, name, span),
         }
     }
 

@@ -47,6 +47,8 @@ pub(super) fn mentioned(expr: &Expr) -> Vec<&str> {
             | ExprKind::Pi
             | ExprKind::Time
             | ExprKind::ScaledTime
+            | ExprKind::File(_)
+            | ExprKind::Rows(_)
             | ExprKind::Integral { .. }
             | ExprKind::Boundary { .. }
             | ExprKind::Event { .. }

@@ -21,11 +21,13 @@ mod dynamics;
 mod elaborator;
 mod element;
 mod expression;
+mod files;
 mod functions;
 mod given;
 mod guess;
 mod kinds;
 mod library;
+mod measure;
 mod mention;
 mod mission;
 mod named;
@@ -67,7 +69,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::Source;
 use crate::syntax::{self, ast};
 use elaborator::{Elaborator, doc_text};
-pub use given::given;
+pub use given::{Given, constants, given};
 use library::Libraries;
 use problem::Problem;
 
@@ -83,8 +85,18 @@ pub trait Loader {
 /// The meaning of a spec, and everything found on the way: errors, then there is no problem, and
 /// notes, which are in `Problem::notes` too.
 pub fn build(spec: &ast::Spec, source: &Source, loader: &dyn Loader) -> (Option<Problem>, Vec<Diagnostic>) {
+    build_with(spec, source, loader, &[])
+}
+
+/// As [`build`], with other values of some constants.
+pub fn build_with(
+    spec: &ast::Spec,
+    source: &Source,
+    loader: &dyn Loader,
+    given: &[Given],
+) -> (Option<Problem>, Vec<Diagnostic>) {
     let libraries = Libraries::load(&spec.uses, source, loader);
-    let (mut problem, found) = elaborated(spec, &libraries, loader);
+    let (mut problem, found) = elaborated(spec, &libraries, loader, given);
     let mut found = acknowledged::left(spec, libraries.told(found, None));
     let failed = found.iter().any(|finding| finding.severity == Severity::Error);
     found.sort_by_key(|finding| (finding.span.start, finding.span.end));
@@ -93,9 +105,14 @@ pub fn build(spec: &ast::Spec, source: &Source, loader: &dyn Loader) -> (Option<
 }
 
 /// What a spec means with its libraries, and what was found, in places of the joined text.
-fn elaborated(spec: &ast::Spec, libraries: &Libraries, loader: &dyn Loader) -> (Problem, Vec<Diagnostic>) {
+fn elaborated(
+    spec: &ast::Spec,
+    libraries: &Libraries,
+    loader: &dyn Loader,
+    given: &[Given],
+) -> (Problem, Vec<Diagnostic>) {
     let mut pass = Elaborator::new(&libraries.joined, loader);
-    pass.elaborate(&spec.problem, libraries, &spec.uses);
+    pass.elaborate(&spec.problem, (libraries, &spec.uses), given);
     let Elaborator { found, problem, .. } = pass;
     (problem, found)
 }
@@ -110,7 +127,7 @@ pub fn check_library(source: &Source, loader: &dyn Loader) -> Vec<Diagnostic> {
     let mut found = match syntax::parse(&around) {
         Ok(spec) => {
             let libraries = Libraries::of_library(source, &around, loader);
-            let (_, found) = elaborated(&trial::using(spec), &libraries, loader);
+            let (_, found) = elaborated(&trial::using(spec), &libraries, loader, &[]);
             libraries.told(found, Some(0))
         }
         Err(_) => vec![], // A name that makes no spec was told of.
@@ -121,7 +138,12 @@ pub fn check_library(source: &Source, loader: &dyn Loader) -> Vec<Diagnostic> {
 
 impl<'a> Elaborator<'a> {
     /// The pass, step by step; each needs what the ones before it have found.
-    fn elaborate(&mut self, problem: &'a ast::Problem, libraries: &'a Libraries, uses: &'a [ast::Use]) {
+    fn elaborate(
+        &mut self,
+        problem: &'a ast::Problem,
+        (libraries, uses): (&'a Libraries, &'a [ast::Use]),
+        given: &[Given],
+    ) {
         self.problem.name.clone_from(&problem.name.text);
         self.problem.doc = doc_text(&problem.doc);
         self.problem.span = problem.name.span;
@@ -132,7 +154,9 @@ impl<'a> Elaborator<'a> {
         if !libraries.files.is_empty() {
             self.libraries(libraries, uses);
         }
+        self.constants_from_outside(given);
         self.order_phases();
+        self.file_sizes();
         self.parameters();
         self.continuations();
         self.all_tables();

@@ -16,7 +16,7 @@ use super::units;
 use super::value::{Flaw, Value};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::Ident;
+use crate::syntax::ast::{ExprKind, Ident};
 use ntg_structure::Unit;
 
 /// The most elements of a vector written one by one that results show: a formula for each is part of every one.
@@ -64,7 +64,8 @@ impl<'a> Elaborator<'a> {
     fn checked_axes(&mut self, cx: &Context<'a>, definition: usize) -> Option<Vec<Ends>> {
         let axes = self.definition_axes(cx, definition)?;
         let declared = &self.definitions[definition];
-        if !declared.is_sized() {
+        // The size of a file was held against its own.
+        if !declared.is_sized() || matches!(declared.value.kind, ExprKind::File(_)) {
             return Some(axes);
         }
         let (name, is_const) = (declared.name, declared.is_const);

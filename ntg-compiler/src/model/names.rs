@@ -239,6 +239,7 @@ impl<'a> Elaborator<'a> {
             Point::MissionInside(Instant::START) => At::Start,
             Point::MissionInside(Instant::END) => At::End,
             Point::MissionInside(instant) => At::Inside(instant),
+            Point::MissionAmong { places, index } => At::Among { places, index: index.0 as usize },
             Point::Nowhere => {
                 let text = self.text(span);
                 return self.misplaced_value(What::Trajectory, span, &text, Some(dimension));

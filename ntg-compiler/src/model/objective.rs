@@ -1,6 +1,7 @@
 //! The objective: terms that add up, all minimised or all maximised.
 //!
-//! Takes the `minimize` and `maximize` items of all scopes, fills `Problem::objective`.
+//! Takes the `minimize` and `maximize` items of all scopes, and `measure` blocks (`measure.rs`), fills
+//! `Problem::objective`.
 //! Finds: both senses in one problem, terms of different dimensions.
 
 use ntg_structure::Unit;
@@ -13,7 +14,7 @@ use super::units;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{self, ItemKind, Sense};
+use crate::syntax::ast::{self, BlockPlace, ItemKind, Sense};
 
 impl<'a> Elaborator<'a> {
     /// All terms, scope by scope.
@@ -23,6 +24,22 @@ impl<'a> Elaborator<'a> {
         let mut declared: Option<Unit> = None;
         for scope in 0..self.scopes.len() {
             for item in self.items[scope] {
+                if let ItemKind::Block(block) = &item.kind
+                    && block.place == BlockPlace::Measure
+                {
+                    let (sense, before) = *first.get_or_insert((Sense::Minimize, item.span));
+                    if sense == Sense::Maximize {
+                        self.both_senses(item.span, before);
+                        continue;
+                    }
+                    for value in self.measure_block(scope, block) {
+                        sum = Some(match sum {
+                            Some(first) => self.alike("add", first, &value, value.node),
+                            None => value,
+                        });
+                    }
+                    continue;
+                }
                 let ItemKind::Objective(objective) = &item.kind else { continue };
                 let (sense, before) = *first.get_or_insert((objective.sense, item.span));
                 if sense != objective.sense {

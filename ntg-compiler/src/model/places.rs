@@ -7,7 +7,7 @@
 
 use super::elaborator::Elaborator;
 use super::mention::mentions_time;
-use super::problem::{Duration, Form, IndexId, Instant, Leaf, PhaseAt, Start};
+use super::problem::{Duration, Form, IndexId, Instant, Leaf, PhaseAt, Places, Start};
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
 use super::time::Stretch;
@@ -68,6 +68,9 @@ impl Moment {
 /// The largest difference of a scaled time from one that is meant: that of some roundings.
 const ROUNDING: f64 = 1e-12;
 
+/// The most places that one formula may have, one for each value of an index.
+const MOST_PLACES: i64 = 1_000_000;
+
 /// The scaled time of what lies `since` after the start of something that lasts `lasting`.
 fn scaled(since: &Moment, lasting: &Moment) -> Option<f64> {
     let tau = match (since.as_number(), lasting.as_number(), lasting.multiples.as_slice()) {
@@ -99,11 +102,14 @@ impl<'a> Elaborator<'a> {
         }
         let Some(stretches) = self.stretches_of(cx, path, span) else { return self.poison(span) };
         let stretches = self.members_of(stretches);
-        let spot = match self.spot(cx, time, &stretches) {
-            Ok(spot) => spot,
-            Err(flawed) => return flawed,
+        let (stretch, point) = match self.spot(cx, time, &stretches) {
+            Ok(spot) => (spot.stretch, Point::MissionInside(spot.instant)),
+            Err(flawed) => match self.spots(cx, time, &stretches, flawed) {
+                Ok(spots) => spots,
+                Err(flawed) => return flawed,
+            },
         };
-        let inner = self.on(cx, &spot.stretch, Point::MissionInside(spot.instant));
+        let inner = self.on(cx, &stretch, point);
         let value = self.element_or_zero(&inner, of, at);
         self.mark_event(span, self.text(span), false);
         value.map(value.node, value.dimension, span).shown_in(value.unit.clone())
@@ -172,6 +178,45 @@ impl<'a> Elaborator<'a> {
             });
         };
         self.spot_of(&moment, stretches).ok_or_else(|| self.no_spot(time, &moment, stretches))
+    }
+
+    /// The places of a time that depends on the index of a loop, one for each of its values: so the members of the loop
+    /// stay one formula. `flawed` says which index it is; where there is no such formula it comes back.
+    #[expect(clippy::result_large_err, reason = "the error is the value that is returned in place of the places")]
+    fn spots(
+        &mut self,
+        cx: &Context<'a>,
+        time: &'a Expr,
+        stretches: &[Stretch],
+        flawed: Value,
+    ) -> Result<(Stretch, Point), Value> {
+        let Some(Flaw::Open(open)) = &flawed.flaw else { return Err(flawed) };
+        let index = open.index;
+        let ends = cx.loops.iter().find(|over| over.index == index);
+        let ends = ends.and_then(|over| over.first.as_number().zip(over.last.as_number()));
+        let Some((first, last)) = ends.filter(|(first, last)| last - first < MOST_PLACES) else { return Err(flawed) };
+        let mut instants = Vec::new();
+        let mut found: Option<Spot> = None;
+        for k in first..=last {
+            let known = cx.knowing(index, k);
+            let spot = self.spot(&known, time, stretches)?;
+            match &found {
+                // The formula changes with the phase: the loop is parted there.
+                Some(before) if before.number != spot.number => {
+                    return Err(self.open(OpenIndex { index, cut: Some(k), span: time.span }));
+                }
+                Some(_) => {}
+                None => found = Some(spot.clone()),
+            }
+            instants.push(spot.instant);
+        }
+        let Some(Spot { stretch, .. }) = found else { return Err(flawed) };
+        let wanted = Places { first, instants };
+        let places = self.problem.places.iter().position(|known| *known == wanted).unwrap_or_else(|| {
+            self.problem.places.push(wanted);
+            self.problem.places.len() - 1
+        });
+        Ok((stretch, Point::MissionAmong { places, index }))
     }
 
     /// The place of a moment: in the later of two stretches that meet there, at the end of the last one.

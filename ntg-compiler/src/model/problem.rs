@@ -48,8 +48,8 @@ pub struct PhaseAt {
     pub index: Option<Form>,
 }
 
-/// At which point of a phase, and which part of it.
-pub use ntg_structure::{At, Instant, Part};
+/// At which point of a phase, and which part of it. The index of [`At::Among`] is the number of an [`IndexId`] here.
+pub use ntg_structure::{At, Instant, Part, Places};
 
 /// What an input of the expression graph means.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -296,6 +296,25 @@ pub struct Term {
     pub body: NodeId,
 }
 
+/// What was measured: a part of a term of the objective.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// Index into `Problem::objective`; the body of that term is 0.
+    pub term: usize,
+    /// Where it stands.
+    pub span: Span,
+    /// The unit in which residuals are reported.
+    pub unit: Unit,
+    /// The loops around it.
+    pub loops: Vec<Loop>,
+    /// The left side without the right one.
+    pub residual: NodeId,
+    /// Its standard deviation, which nothing that is solved for changes.
+    pub sigma: NodeId,
+    /// Half the square of their ratio.
+    pub cost: NodeId,
+}
+
 /// A `let`.
 #[derive(Clone, Debug)]
 pub struct Named {
@@ -410,6 +429,10 @@ pub struct Problem {
     pub phases: Vec<Phase>,
     /// Terms of the objective.
     pub objective: Vec<Term>,
+    /// What was measured.
+    pub measurements: Vec<Measurement>,
+    /// Places that differ from member to member of a loop.
+    pub places: Vec<Places>,
     /// Constraints, continuity between phases included.
     pub constraints: Vec<Constraint>,
     /// Named expressions.

@@ -14,13 +14,13 @@ use super::elaborator::{Elaborator, Steps, doc_text};
 use super::problem::{Bounds, Continuation, Form, Loop, Variable};
 use super::scope::{Allow, Context, Entity, PROBLEM};
 use super::settle::Use;
-use super::shape::{Ends, Shape};
+use super::shape::{Ends, Shape, whole_axes};
 use super::units;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::NodeId;
 use crate::source::Span;
-use crate::syntax::ast::{self, Expr, ItemKind, Values};
+use crate::syntax::ast::{self, Expr, ExprKind, ItemKind, Values};
 
 /// A list of constants of one dimension.
 struct Numbers {
@@ -95,16 +95,24 @@ impl<'a> Elaborator<'a> {
         let cx = Context::of(PROBLEM, Allow::Constants);
         let name = &param.name.text;
         let what = format!("the default of `{name}`");
-        let axes = param.shape.as_ref().map(|shape| (self.declared_axes(&cx, shape), shape.span));
-        if let Some((axes, _)) = &axes {
+        let mut axes = param.shape.as_ref().map(|shape| (self.declared_axes(&cx, shape), shape.span));
+        let file = file_of(&param.default);
+        if let (None, Some(file)) = (&axes, file) {
+            // Without a size the file tells it.
+            axes = self.file_shape(&cx, file).map(|shape| (whole_axes(&shape), param.name.span));
+        }
+        if let Some((axes, span)) = &axes {
             self.parameter_axes[k] = axes.iter().map(|ends| Ends::to(ends.extent().unwrap_or(0))).collect();
+            if file.is_some_and(|file| !self.fits_file(&cx, name, (axes, *span), file)) {
+                return;
+            }
         }
         let size = axes.as_ref().map(|(axes, span)| {
             let sizes: Option<Vec<i64>> = axes.iter().map(Ends::extent).collect();
             (sizes.map(|sizes| sizes.iter().copied().fold(1, i64::saturating_mul)), *span)
         });
         let Some(numbers) = self.numbers(&cx, &param.default, &what) else { return };
-        if let (Some((axes, span)), Shape::Of(given)) = (&axes, &numbers.shape)
+        if let (Some((axes, span)), Shape::Of(given), None) = (&axes, &numbers.shape, file)
             && axes.len() > 1
             && !given.is_empty()
         {
@@ -143,12 +151,16 @@ impl<'a> Elaborator<'a> {
         let dimension = numbers.dimension.unwrap_or(Dimension::NONE);
         let unit = numbers.unit.map_or_else(|| units::si(&dimension), |unit| (*unit).clone());
         self.parameters[k].1 = Some(dimension);
-        self.problem.parameters[k] =
-            Parameter { name: name.clone(), doc, unit, array: param.shape.is_some(), value: values };
+        self.problem.parameters[k] = Parameter { name: name.clone(), doc, unit, array: axes.is_some(), value: values };
     }
 
     /// Constants of one dimension, in SI units.
     fn numbers(&mut self, cx: &Context<'a>, values: &'a Values, what: &str) -> Option<Numbers> {
+        if let Some(file) = file_of(values) {
+            let (values, dimension, unit) = self.file_numbers_of(cx, file)?;
+            let shape = self.file_shape(cx, file)?;
+            return Some(Numbers { values, dimension: Some(dimension), unit: unit.map(Rc::new), shape });
+        }
         let mut all: Vec<f64> = Vec::new();
         let mut joined: Option<Value> = None;
         let mut sound = true;
@@ -371,3 +383,11 @@ fn places(axes: &[i64]) -> Vec<Vec<Form>> {
 
 /// The largest number of members that one default may stand for.
 const MAX_MEMBERS: i64 = 1_000_000;
+
+/// The file that values come from.
+fn file_of(values: &Values) -> Option<&ast::File> {
+    match values.elements.first().map(|value| &value.kind) {
+        Some(ExprKind::File(file)) => Some(file),
+        _ => None,
+    }
+}

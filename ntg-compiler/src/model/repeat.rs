@@ -17,6 +17,7 @@ struct Mark {
     guesses: usize,
     named: usize,
     objective: usize,
+    measurements: usize,
     variables: usize,
     outputs: Vec<usize>,
     slacks: usize,
@@ -33,6 +34,7 @@ impl<'a> Elaborator<'a> {
             guesses: problem.guesses.len(),
             named: problem.named.len(),
             objective: problem.objective.len(),
+            measurements: problem.measurements.len(),
             variables: problem.variables.len(),
             outputs: problem.phases.iter().map(|phase| phase.outputs.len()).collect(),
             slacks: self.slacks.len(),
@@ -44,6 +46,7 @@ impl<'a> Elaborator<'a> {
         self.problem.guesses.truncate(mark.guesses);
         self.problem.named.truncate(mark.named);
         self.problem.objective.truncate(mark.objective);
+        self.problem.measurements.truncate(mark.measurements);
         self.problem.variables.truncate(mark.variables);
         for (phase, outputs) in mark.outputs.iter().enumerate() {
             self.problem.phases[phase].outputs.truncate(*outputs);

@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::element::Lazy;
-use super::problem::{Form, Instant, Loop, PhaseAt};
+use super::problem::{Form, IndexId, Instant, Loop, PhaseAt};
 use super::shape::Shape;
 use super::value::Value;
 use crate::source::Span;
@@ -108,6 +108,13 @@ pub(super) enum Point {
     MissionEnd,
     /// At a place inside the phase, seen from the mission.
     MissionInside(Instant),
+    /// At a place for each value of an index, seen from the mission.
+    MissionAmong {
+        /// Index into `Problem::places`.
+        places: usize,
+        /// The index.
+        index: IndexId,
+    },
 }
 
 /// What an expression may depend on.
@@ -204,6 +211,27 @@ impl<'a> Context<'a> {
     pub(super) fn with(&self, name: &'a str, meaning: Meaning<'a>) -> Self {
         let next = self.locals.clone();
         Self { locals: Some(Rc::new(Local { name, meaning, next })), ..self.clone() }
+    }
+
+    /// The same context where an index has a value.
+    pub(super) fn knowing(&self, index: IndexId, value: i64) -> Self {
+        let mut locals = Vec::new();
+        let mut next = self.locals.as_deref();
+        while let Some(local) = next {
+            let meaning = match &local.meaning {
+                Meaning::Index(form) => Meaning::Index(form.with(index, value)),
+                other => other.clone(),
+            };
+            locals.push((local.name, meaning));
+            next = local.next.as_deref();
+        }
+        let loops = self.loops.iter().filter(|over| over.index != index).map(|over| Loop {
+            index: over.index,
+            first: over.first.with(index, value),
+            last: over.last.with(index, value),
+        });
+        let bare = Self { locals: None, loops: Rc::new(loops.collect()), ..self.clone() };
+        locals.into_iter().rev().fold(bare, |context, (name, meaning)| context.with(name, meaning))
     }
 
     /// The same context inside one more loop.

@@ -155,7 +155,8 @@ impl<'a> Elaborator<'a> {
             ExprKind::If(conditional) => self.conditional_shape(cx, conditional),
             ExprKind::Steps(steps) => self.steps_shape(cx, steps),
             ExprKind::Der { of, .. } => self.shape(cx, of),
-            ExprKind::Partial { .. } => Some(Shape::NUMBER),
+            ExprKind::Partial { .. } | ExprKind::Rows(_) => Some(Shape::NUMBER),
+            ExprKind::File(file) => self.file_shape(cx, file),
             ExprKind::Integral { path, of } | ExprKind::Boundary { path, of, .. } => {
                 // What is wrong with a path is told of here, and must not hide what else is wrong.
                 let stretches = self.stretches_of(cx, path.as_ref(), expr.span).unwrap_or_default();

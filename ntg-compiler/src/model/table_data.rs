@@ -38,33 +38,39 @@ pub(super) enum FileFault {
 }
 
 /// A line of a file: its number and its cells.
-struct Line {
-    number: usize,
-    cells: Vec<f64>,
+pub(super) struct Line {
+    pub(super) number: usize,
+    pub(super) cells: Vec<f64>,
 }
 
-/// Reads a comma-separated file: `#` starts a comment, blank lines do not count.
+/// Reads the file of a table.
 ///
 /// One argument: rows `node, value`. Two: the first row holds the nodes of the second argument
 /// (after an empty or any first cell, or without one), the others a node of the first and the values
 /// there. More: rows of all arguments and the value, every combination once, in any order.
 pub(super) fn read(text: &str, arguments: usize) -> Result<Numbers, FileFault> {
-    let mut lines = Vec::new();
-    for (k, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-        let content = line.split('#').next().unwrap_or_default().trim();
-        if content.is_empty() {
-            continue;
-        }
-        // The first cell of the first row of two arguments belongs to no node and may be anything.
-        let corner = lines.is_empty() && arguments == 2;
-        lines.push(Line { number: k + 1, cells: cells(content, k + 1, corner)? });
-    }
+    // The first cell of the first row of two arguments belongs to no node and may be anything.
+    let lines = lines(text, arguments == 2)?;
     match (arguments, lines.as_slice()) {
         (_, []) => Err(FileFault::Empty),
         (1, rows) => one(rows),
         (2, [header, rows @ ..]) => two(header, rows),
         (_, rows) => many(rows, arguments),
     }
+}
+
+/// The rows of a comma-separated file: `#` starts a comment, blank lines do not count. The first cell of the first row
+/// may be anything where it is a corner.
+pub(super) fn lines(text: &str, corner: bool) -> Result<Vec<Line>, FileFault> {
+    let mut lines = Vec::new();
+    for (k, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        let content = line.split('#').next().unwrap_or_default().trim();
+        if !content.is_empty() {
+            let corner = corner && lines.is_empty();
+            lines.push(Line { number: k + 1, cells: cells(content, k + 1, corner)? });
+        }
+    }
+    Ok(lines)
 }
 
 fn cells(content: &str, number: usize, corner: bool) -> Result<Vec<f64>, FileFault> {

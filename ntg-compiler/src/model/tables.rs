@@ -187,7 +187,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A path that a file names, from the folder of the spec.
-    fn beside(&self, scope: ScopeId, path: &str) -> String {
+    pub(super) fn beside(&self, scope: ScopeId, path: &str) -> String {
         self.folders.get(&scope).map_or_else(|| path.to_owned(), |folder| super::library::joined(folder, path))
     }
 
@@ -199,16 +199,7 @@ impl<'a> Elaborator<'a> {
         span: Span,
         units: &[(Dimension, Unit)],
     ) -> Option<Numbers> {
-        let text = match self.loader.load(path) {
-            Ok(text) => text,
-            Err(why) => {
-                let finding = Diagnostic::new(Code::UnreadableTable, span, format!("`{path}` cannot be read: {why}"));
-                self.report(
-                    finding.help("paths are relative to the spec file, or to Cargo.toml for a spec inside Rust"),
-                );
-                return None;
-            }
-        };
+        let text = self.text_of(path, span)?;
         let mut numbers = match read(&text, table.axes.len()) {
             Ok(numbers) => numbers,
             Err(fault) => {
@@ -222,6 +213,20 @@ impl<'a> Elaborator<'a> {
         }
         numbers.values.iter_mut().for_each(|v| *v *= value.1.factor);
         Some(numbers)
+    }
+
+    /// The text of a file.
+    pub(super) fn text_of(&mut self, path: &str, span: Span) -> Option<String> {
+        match self.loader.load(path) {
+            Ok(text) => Some(text),
+            Err(why) => {
+                let finding = Diagnostic::new(Code::UnreadableTable, span, format!("`{path}` cannot be read: {why}"));
+                self.report(
+                    finding.help("paths are relative to the spec file, or to Cargo.toml for a spec inside Rust"),
+                );
+                None
+            }
+        }
     }
 
     fn file_fault(&mut self, path: &str, span: Span, fault: &FileFault) {

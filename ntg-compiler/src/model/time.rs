@@ -10,7 +10,7 @@ use super::dimension::Dimension;
 use super::elaborator::{Elaborator, EventMark};
 use super::problem::{Form, Leaf, Loop, PhaseAt};
 use super::scope::{Allow, Context, Point, ScopeId};
-use super::value::{Value, What};
+use super::value::{OpenIndex, Value, What};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Fold, NodeId};
 use crate::source::Span;
@@ -43,6 +43,9 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding.help("make it an argument of the function"), span);
         }
         let phase = self.scopes[cx.scope].phase.map(|phase| cx.phase_at(phase));
+        if let (Allow::All, Point::MissionAmong { index, .. }) = (cx.allow, cx.point) {
+            return self.open(OpenIndex { index, cut: None, span }); // Each member has a time of its own.
+        }
         let node = match (cx.allow, cx.point, phase) {
             (Allow::Guess, Point::Nowhere, None) => self.guessed_time(cx),
             (Allow::Guess, _, Some(phase)) => Some(self.leaf(Leaf::Time(phase))),
@@ -86,6 +89,9 @@ impl<'a> Elaborator<'a> {
             (Allow::All, Point::Start | Point::MissionStart) => self.problem.dag.constant(0.0),
             (Allow::All, Point::End | Point::MissionEnd) => self.problem.dag.constant(1.0),
             (Allow::All, Point::MissionInside(instant)) => self.problem.dag.constant(instant.tau()),
+            (Allow::All, Point::MissionAmong { index, .. }) => {
+                return self.open(OpenIndex { index, cut: None, span });
+            }
             _ => return self.misplaced_value(What::ScaledTime, span, "tau", Some(Dimension::NONE)),
         };
         Value::new(node, Dimension::NONE, span)

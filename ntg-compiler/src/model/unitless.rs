@@ -104,6 +104,7 @@ impl Look {
         if let Some(softness) = &constraint.softness {
             softness.linear.iter().chain(&softness.square).for_each(|price| self.expr(price));
         }
+        constraint.sigma.iter().for_each(|sigma| self.expr(sigma));
         match &constraint.relation {
             Relation::Compare { left, right, .. } => [left, right].into_iter().for_each(|e| self.expr(e)),
             Relation::Between { first, middle, last, .. } => {
@@ -157,7 +158,13 @@ impl Look {
                     open.extend(steps.lets.iter().map(|step| &step.value));
                     open.push(&steps.value);
                 }
-                ExprKind::Pi | ExprKind::Time | ExprKind::ScaledTime | ExprKind::Path(_) | ExprKind::Event { .. } => {}
+                ExprKind::File(file) => self.unit(&file.unit),
+                ExprKind::Pi
+                | ExprKind::Time
+                | ExprKind::ScaledTime
+                | ExprKind::Path(_)
+                | ExprKind::Event { .. }
+                | ExprKind::Rows(_) => {}
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Which loop binds which index: turns the model's index forms into positions.
 
-use ntg_structure::{Affine, Loop as OutLoop, PhaseRef};
+use ntg_structure::{Affine, At, Loop as OutLoop, PhaseRef};
 
 use crate::model::problem::{Form, IndexId, Loop, PhaseAt};
 
@@ -27,6 +27,14 @@ impl Environment {
             .collect();
         terms.sort_unstable();
         Affine { constant: form.constant, terms }
+    }
+
+    /// A point with the position of its index in place of the index itself.
+    pub(super) fn at(&self, at: At) -> At {
+        let At::Among { places, index } = at else { return at };
+        let position = self.indices.iter().rposition(|i| i.0 as usize == index);
+        debug_assert!(position.is_some(), "the model binds every index it uses");
+        At::Among { places, index: position.unwrap_or_default() }
     }
 
     pub(super) fn range(&self, range: &Loop) -> OutLoop {

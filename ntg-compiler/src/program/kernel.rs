@@ -114,7 +114,7 @@ impl Copy<'_, '_> {
             Leaf::Flat { phase, at, output, index, order } => {
                 let slot = Slot::Flat {
                     phase: environment.phase(phase),
-                    at: *at,
+                    at: environment.at(*at),
                     output: *output,
                     index: index.as_ref().map(|form| environment.affine(form)),
                     derivative: *order,
@@ -124,7 +124,7 @@ impl Copy<'_, '_> {
                     At::Here => String::new(),
                     At::Start => "_start".to_owned(),
                     At::End => "_end".to_owned(),
-                    At::Inside(_) => "_at".to_owned(),
+                    At::Inside(_) | At::Among { .. } => "_at".to_owned(),
                 };
                 let name = identifier(&format!("{name}{place}_{order}"));
                 let scaled = self.inputs.slot(slot, &name);

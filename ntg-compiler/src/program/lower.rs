@@ -35,6 +35,7 @@ pub fn lower(problem: Problem, source: &Source) -> Program {
     };
     let mut structure = mission::structure(&mut lowering);
     structure.named = mission::named(&mut lowering);
+    structure.measurements = mission::measurements(&mut lowering);
     let pieces = lowering.pieces();
     lowering.gather(pieces, &mut structure);
     while !lowering.pending.is_empty() {
@@ -71,7 +72,15 @@ impl Lowering<'_> {
     /// All functions of the optimisation problem.
     fn pieces(&mut self) -> Vec<Piece> {
         let mut pieces = Vec::new();
+        for m in self.problem.measurements.clone() {
+            let cost = || Role::Cost { term: m.term };
+            pieces.extend(split(&mut self.problem, &m.loops, m.cost, m.span, cost(), &cost));
+        }
+        let measured: Vec<usize> = self.problem.measurements.iter().map(|m| m.term).collect();
         for (term, t) in self.problem.objective.clone().into_iter().enumerate() {
+            if measured.contains(&term) {
+                continue;
+            }
             let cost = || Role::Cost { term };
             pieces.extend(split(&mut self.problem, &t.loops, t.body, t.span, cost(), &cost));
         }

@@ -20,6 +20,7 @@ pub(super) fn structure(lowering: &mut Lowering<'_>) -> Structure {
         objective_unit: problem.objective_unit.clone(),
         parameters: problem.parameters.clone(),
         tables: problem.tables.clone(),
+        places: problem.places.clone(),
         ..Structure::default()
     };
     structure.terms = terms(lowering);
@@ -115,6 +116,23 @@ fn phases(lowering: &mut Lowering<'_>) -> Vec<out::Phase> {
                 outputs: p.outputs.into_iter().map(output).collect(),
                 points: Vec::new(),
                 place: lowering.place(p.span),
+            }
+        })
+        .collect()
+}
+
+/// Residuals and standard deviations with their kernels.
+pub(super) fn measurements(lowering: &mut Lowering<'_>) -> Vec<out::Measurement> {
+    let list = lowering.problem.measurements.clone();
+    list.into_iter()
+        .map(|m| {
+            let root = Root { body: m.residual, loops: &m.loops, label: "residual".to_owned() };
+            out::Measurement {
+                term: m.term,
+                unit: m.unit,
+                loops: positions(&m.loops),
+                residual: call(lowering, "residual", Mode::Show, &[root]),
+                sigma: setup(lowering, "sigma", &[m.sigma], &m.loops),
             }
         })
         .collect()

@@ -6,7 +6,7 @@
 //!
 //! Afterwards: behind the declared variables of the structure stand one for each parameter, in their order, and
 //! one for the scaled time at which a named expression is evaluated; bounds and named expressions have first
-//! derivatives; there are no guesses, no continuations and no probes.
+//! derivatives; there are no guesses, no continuations, no measurements and no probes.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -93,7 +93,7 @@ impl Promotion<'_> {
             bounds: Bounds::default(),
             place: Place::default(),
         });
-        (out.guesses, out.continuations) = (vec![], vec![]);
+        (out.guesses, out.continuations, out.measurements) = (vec![], vec![], vec![]);
         out
     }
 

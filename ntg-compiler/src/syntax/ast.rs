@@ -135,7 +135,7 @@ pub enum ItemKind {
     Collocation(Collocation),
     /// `minimize fuel [kg]: m0;`
     Objective(Objective),
-    /// `trajectory { ... }` and its three sisters.
+    /// `trajectory { ... }` and its sisters.
     Block(Block),
     /// `at 2.5 [s] { ... }`
     At(AtBlock),

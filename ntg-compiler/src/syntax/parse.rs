@@ -10,6 +10,7 @@ mod conditions;
 mod constraints;
 mod declarations;
 mod expressions;
+mod files;
 mod guesses;
 mod items;
 mod lists;

@@ -236,7 +236,7 @@ impl Walk<'_> {
             ("for", Body::Constraints | Body::Guess) => (Rule::whole_for_head, body),
             ("phase", Body::Items(_)) => (Rule::whole_phase_head, Body::Items(Scope::Phase)),
             ("agent", Body::Items(_)) => (Rule::whole_agent_head, Body::Items(Scope::Agent)),
-            ("initial" | "trajectory" | "final" | "temporal" | "dynamics", Body::Items(_)) => {
+            ("initial" | "trajectory" | "final" | "temporal" | "dynamics" | "measure", Body::Items(_)) => {
                 (Rule::whole_block_head, Body::Constraints)
             }
             ("at", Body::Items(_)) => (Rule::whole_at_head, Body::Constraints),

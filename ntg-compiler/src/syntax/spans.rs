@@ -120,6 +120,9 @@ structures! {
     Conditional { branches, otherwise }
     Branch { condition, smooth, value, span }
     Steps { lets, value }
+    File { name, unit, columns }
+    FileName { path, span }
+    Columns { first, last, span }
     Let { name, shape, unit, value }
     Table { is_param, name, axes, unit, method, data }
     Axis { name, symmetry, unit, span }
@@ -137,7 +140,7 @@ structures! {
     Objective { sense, name, unit, value }
     Block { place, part, statements }
     AtBlock { time, statements }
-    Constraint { doc, softness, name, relation, span }
+    Constraint { doc, softness, name, relation, sigma, span }
     Softness { linear, square, span }
     Guess { statements }
     Assign { target, value, span }
@@ -219,6 +222,8 @@ impl Erase for ExprKind {
             Self::Reduce(x) => x.erase(),
             Self::If(x) => x.erase(),
             Self::Steps(x) => x.erase(),
+            Self::File(x) => x.erase(),
+            Self::Rows(x) => x.erase(),
             Self::Power(base, exponent) => {
                 base.erase();
                 exponent.erase();

@@ -35,7 +35,7 @@ pub(crate) const NEVER_NAMES: &[&str] = &["Self", "crate", "self", "super"];
 
 /// Words that begin a declaration though they are reserved for expressions, or not at all.
 pub const OTHER_ITEM_WORDS: &[&str] =
-    &["at", "duration", "dynamics", "final", "initial", "input", "jump", "periodic", "start", "state"];
+    &["at", "duration", "dynamics", "final", "initial", "input", "jump", "measure", "periodic", "start", "state"];
 
 /// Whether no name may be so.
 pub(crate) fn is_reserved(word: &str) -> bool {

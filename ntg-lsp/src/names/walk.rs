@@ -382,7 +382,7 @@ impl Walk {
         if let Some(softness) = &constraint.softness {
             softness.linear.iter().chain(&softness.square).for_each(|price| self.expr(scope, price));
         }
-        constraint.relation.sides().into_iter().for_each(|side| self.expr(scope, side));
+        constraint.relation.sides().into_iter().chain(&constraint.sigma).for_each(|side| self.expr(scope, side));
     }
 
     fn guess(&mut self, scope: usize, guess: &GuessKind) {
@@ -405,7 +405,11 @@ impl Walk {
 
     fn expr(&mut self, scope: usize, expr: &Expr) {
         match &expr.kind {
-            ExprKind::Number(_) | ExprKind::Pi | ExprKind::Time | ExprKind::ScaledTime => {}
+            ExprKind::Number(_) | ExprKind::Pi | ExprKind::Time | ExprKind::ScaledTime | ExprKind::Rows(_) => {}
+            ExprKind::File(file) => {
+                let columns = file.columns.iter();
+                columns.flat_map(|c| [&c.first].into_iter().chain(&c.last)).for_each(|end| self.expr(scope, end));
+            }
             ExprKind::Path(path) => _ = self.path(scope, path),
             ExprKind::Tuple(elements) => elements.iter().for_each(|element| self.expr(scope, element)),
             ExprKind::Neg(inner) => self.expr(scope, inner),

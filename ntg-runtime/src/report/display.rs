@@ -1,6 +1,6 @@
 //! A report as a person reads it.
 
-use super::{ConstraintReport, Report, Warning};
+use super::{ConstraintReport, Estimate, Report, Warning};
 use crate::transcribe::names::brief;
 use ntg_structure::Unit;
 use std::fmt;
@@ -39,9 +39,16 @@ impl fmt::Display for Report {
         for time in self.solution.event_times().iter().filter(|(name, _)| !name.contains('(')) {
             write!(f, "\n  {:<11} {} s", time.0, brief(time.1))?;
         }
-        for variable in self.solution.variables() {
+        let deviations = self.estimate.as_ref().map_or(&[][..], |estimate| &estimate.deviations);
+        for (k, variable) in self.solution.variables().into_iter().enumerate() {
+            if let Some(deviation) = deviations.get(k) {
+                let (sigma, unit) = (brief(deviation.sigma), symbol(&variable.unit));
+                write!(f, "\n  {:<11} {} +- {sigma}{unit}", variable.name, brief(variable.value))?;
+                continue;
+            }
             write!(f, "\n  {:<11} {}{}", variable.name, brief(variable.value), symbol(&variable.unit))?;
         }
+        self.estimate.iter().try_for_each(|estimate| estimated(f, estimate))?;
         // What refinement has to say stands above.
         let is_new = |warning: &&Warning| !warning.place.text.is_empty() || !warning.constraint.is_empty();
         self.warnings().iter().filter(is_new).try_for_each(|warning| write!(f, "\n  warning: {warning}"))?;
@@ -49,6 +56,26 @@ impl fmt::Display for Report {
         let is_told = |constraint: &ConstraintReport| told.iter().any(|other| std::ptr::eq(*other, constraint));
         self.constraints.iter().try_for_each(|constraint| violated(f, constraint, is_told(constraint)))
     }
+}
+
+/// How well the measurements are met: all together, then each statement.
+fn estimated(f: &mut fmt::Formatter<'_>, estimate: &Estimate) -> fmt::Result {
+    write!(f, "\n  chi^2       {} of {} measured numbers", brief(estimate.chi2), estimate.count)?;
+    for measurement in &estimate.measurements {
+        let count = measurement.residuals.len();
+        let mean = (measurement.chi2 / count.max(1) as f64).sqrt();
+        let worst = measurement.residuals.iter().max_by(|a, b| a.ratio.abs().total_cmp(&b.ratio.abs()));
+        let share = 100.0 * measurement.share;
+        write!(f, "\n    {:<24} {share:.0} %, {count} of {} sigma in the mean", measurement.name, brief(mean))?;
+        if let Some(worst) = worst.filter(|_| count > 1) {
+            let indices: Vec<String> = worst.indices.iter().map(i64::to_string).collect();
+            write!(f, ", at most {} at [{}]", brief(worst.ratio), indices.join(", "))?;
+        }
+    }
+    if let Some(why) = &estimate.unknown {
+        write!(f, "\n    no standard deviations: {why}")?;
+    }
+    Ok(())
 }
 
 /// A line for a constraint that is violated noticeably; a warning has told of some what is between the points.

@@ -6,6 +6,7 @@
 mod constraints;
 mod cost;
 mod display;
+mod estimate;
 pub(crate) mod fine;
 mod multipliers;
 mod refined;
@@ -13,6 +14,7 @@ pub(crate) mod status;
 mod traces;
 mod warnings;
 
+pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
 pub use refined::{RefineStatus, Refined, Round};
 pub use traces::Trace;
 pub use warnings::Warning;
@@ -73,6 +75,8 @@ pub struct Report {
     pub objective_unit: Unit,
     /// The objective's terms; they add up to it.
     pub terms: Vec<TermReport>,
+    /// How well what was measured is met, where the spec says `measure`.
+    pub estimate: Option<Estimate>,
     /// The constraints, in the order of the spec.
     pub constraints: Vec<ConstraintReport>,
     /// Largest relative violation at the points of the transcription and on the finer grid.
@@ -250,6 +254,7 @@ impl Report {
             }),
         };
         let status = status::in_words(nlp, outcome.status);
+        let estimate = estimate::estimate(nlp, &solution, status.has_solution())?;
         Ok(Self {
             problem: structure.name.clone(),
             advice: status.advice(),
@@ -258,6 +263,7 @@ impl Report {
             objective_fine: user(nlp, fine_terms.iter().sum()),
             objective_unit: structure.objective_unit.clone(),
             terms,
+            estimate,
             constraints,
             violation,
             between_tolerance: Settings::default().between_tolerance,

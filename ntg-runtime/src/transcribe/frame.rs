@@ -6,7 +6,7 @@
 
 use super::batch::evaluators;
 use super::error::SetupError;
-use super::instances::index_at;
+use super::instances::{index_at, members};
 use super::layout::Layout;
 use super::node::{Node, Site};
 use super::points::Point;
@@ -15,7 +15,7 @@ use super::slots::Source;
 use super::times::Clock;
 use crate::problem::Problem;
 use ntg_splines::Table;
-use ntg_structure::{At, Call, Data, Place, Slot, Structure};
+use ntg_structure::{At, Call, Data, Instant, Loop, Place, Slot, Structure};
 
 /// Everything that gives calls their meaning.
 #[derive(Clone, Copy)]
@@ -74,6 +74,27 @@ impl Frame<'_> {
         Ok(values)
     }
 
+    /// The first result of a call that belongs to no point, for known variables: the indices of each member of its
+    /// loops, in their order, and the number.
+    pub(crate) fn evaluate_members(
+        &self,
+        call: &Call,
+        loops: &[Loop],
+        x: &[f64],
+    ) -> Result<Vec<(Vec<i64>, f64)>, SetupError> {
+        let sites = members(loops).into_iter().map(|indices| Site { indices, point: Point::NONE }).collect();
+        let mut found = vec![];
+        for batch in evaluators(self, call, sites)? {
+            let mut work = batch.work();
+            batch.values(self.problem, self.tables, x, &mut work);
+            let values = work.node.values[..batch.sites.len()].iter();
+            found.extend(batch.sites.iter().zip(values).map(|(site, value)| (site.indices.clone(), *value)));
+        }
+        // Members of another shape stand behind the others.
+        found.sort_by(|a, b| a.0.cmp(&b.0));
+        Ok(found)
+    }
+
     /// What a slot stands for.
     pub(crate) fn source(&self, slot: &Slot, site: &Site) -> Result<Source, SetupError> {
         let (structure, layout, indices) = (self.structure, self.layout, &site.indices);
@@ -84,6 +105,15 @@ impl Frame<'_> {
                 let at = match at {
                     At::Here if site.point.phase != Some(phase) => {
                         return Err(SetupError::malformed("an output is used at a point of another phase"));
+                    }
+                    At::Among { places, index } => {
+                        let place = structure.places.get(*places).zip(indices.get(*index));
+                        match place.and_then(|(places, index)| places.at(*index)) {
+                            Some(Instant::START) => At::Start,
+                            Some(Instant::END) => At::End,
+                            Some(instant) => At::Inside(instant),
+                            None => return Err(SetupError::malformed("a place for a value of an index is missing")),
+                        }
                     }
                     at => *at,
                 };

@@ -57,6 +57,8 @@ impl Layout {
                     At::Start => Point::start(phase),
                     At::End => Point::end(phase),
                     At::Inside(instant) => Point::inside(phase, instant, &self.phases[phase].breakpoints),
+                    // Sources are about one member; the frame has looked its place up.
+                    At::Among { .. } => Point::NONE,
                 };
                 map.terms = self.basis(phase, output, derivative, point.tau, point.side);
             }

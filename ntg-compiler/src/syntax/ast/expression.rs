@@ -167,8 +167,43 @@ pub enum ExprKind {
     Reduce(Box<Reduction>),
     /// `if a <= b smooth w { ... } else { ... }`
     If(Box<Conditional>),
+    /// `from "gates.csv" columns 1 .. 3`: the numbers of a file, as the value of a `const` or `param`.
+    File(Box<File>),
+    /// `rows("gates.csv")`: how many rows a file has.
+    Rows(FileName),
     /// `{ let a = ...; value }`: a value with names for its steps, as the body of a function or a branch.
     Steps(Box<Steps>),
+}
+
+/// `from "gates.csv" columns 1 .. 3`
+#[derive(Clone, Debug, PartialEq)]
+pub struct File {
+    /// The file.
+    pub name: FileName,
+    /// The unit of its numbers, which stands behind the size.
+    pub unit: Option<Unit>,
+    /// Which columns; all where none are written.
+    pub columns: Option<Columns>,
+}
+
+/// A path as written between quotes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileName {
+    /// The path.
+    pub path: String,
+    /// The string with its quotes.
+    pub span: Span,
+}
+
+/// `column 1`, `columns 1 .. 3`: which columns of a file, counted from 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns {
+    /// The first one.
+    pub first: Expr,
+    /// The last one, included; none where one column is meant.
+    pub last: Option<Expr>,
+    /// All of it.
+    pub span: Span,
 }
 
 /// `if a <= b smooth w { ... } else if c <= d { ... } else { ... }`

@@ -29,6 +29,8 @@ pub enum BlockPlace {
     Temporal,
     /// All the way: the equations of motion.
     Dynamics,
+    /// Nowhere exactly: what was measured.
+    Measure,
 }
 
 /// Which part of a trajectory a block is about.
@@ -102,6 +104,8 @@ pub struct Constraint {
     pub name: Option<Ident>,
     /// What must hold.
     pub relation: Relation,
+    /// The standard deviation of what was measured.
+    pub sigma: Option<Expr>,
     /// From its first word to before its `;`, the doc comment excluded.
     pub span: Span,
 }

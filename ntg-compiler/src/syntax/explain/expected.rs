@@ -175,6 +175,7 @@ fn kind(rule: Rule) -> Kind {
         | R::branch
         | R::kw_if
         | R::condition
+        | R::rows_of
         | R::call
         | R::callee
         | R::word
@@ -242,6 +243,11 @@ fn mark(rule: Rule) -> Kind {
         R::part => Kind::Keyword("from".into()),
         R::end_word => Kind::Keyword("initial` or `final".into()),
         R::spline => Kind::Keyword("spline".into()),
+        // A list may come from a file; who has begun to write one is told of the list.
+        R::file => Kind::Minor("from"),
+        R::columns | R::kw_columns => Kind::Minor("columns"),
+        R::kw_column => Kind::Minor("column"),
+        R::deviation => Kind::Minor("sigma"),
         R::smoothness => Kind::Keyword("smooth".into()),
         R::course => Kind::Keyword("held".into()),
         R::method => Kind::Name,

@@ -51,7 +51,7 @@ pub(super) struct Piece {
     end: u32,
     /// For a bracket, where its partner is; for the `if` of a conditional, its last brace.
     pub(super) partner: usize,
-    /// For an `if`, whether a conditional begins here; for `smooth`, whether it is the keyword.
+    /// For an `if`, whether a conditional begins here; for `smooth` and `sigma`, whether it is the keyword.
     pub(super) is_keyword: bool,
     /// For a `(`, whether it opens a parenthesis of an expression, and no list of arguments.
     pub(super) is_parenthesis: bool,
@@ -158,7 +158,7 @@ struct Roles {
     parentheses: HashSet<u32>,
     /// Where conditionals begin and end.
     conditionals: HashMap<u32, u32>,
-    /// Where `smooth` is the keyword.
+    /// Where `smooth` or `sigma` is the keyword.
     smooth: HashSet<u32>,
 }
 
@@ -174,7 +174,7 @@ impl Roles {
                     let end = span.start as usize + pair.as_str().trim_end().len();
                     roles.conditionals.insert(span.start, Span::new(end, end).end);
                 }
-                Rule::kw_smooth => _ = roles.smooth.insert(span.start),
+                Rule::kw_smooth | Rule::kw_sigma => _ = roles.smooth.insert(span.start),
                 Rule::parenthesis => _ = roles.parentheses.insert(span.start),
                 _ => {}
             }

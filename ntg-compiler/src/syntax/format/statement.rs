@@ -147,6 +147,7 @@ impl Stream<'_> {
         let piece = &self.pieces[at];
         match (piece.kind, piece.text.as_str()) {
             (Kind::Mark, "==" | "<=" | ">=") | (Kind::Word, "in") => Some(0),
+            (Kind::Word, "sigma") if piece.is_keyword => Some(0),
             (Kind::Mark, "..") => Some(1),
             (Kind::Mark, "+" | "-") => Some(2),
             (Kind::Mark, "*" | "/") => Some(3),

@@ -38,7 +38,7 @@ impl Build {
             return (Relation::In { value: first, bounds }, span);
         }
         let before = self.found.len();
-        let (relation, span) = self.chain(first, parts, "conditions");
+        let (relation, span) = self.chain(first, &mut parts, "conditions");
         if matches!(relation, Relation::Between { .. }) && self.found.len() == before {
             let help = "write `a in lo .. hi`";
             self.report(Code::MixedChain, span, "a condition is one relation", help);

@@ -21,6 +21,7 @@ impl Build {
             "trajectory" => BlockPlace::Trajectory,
             "final" => BlockPlace::Final,
             "dynamics" => BlockPlace::Dynamics,
+            "measure" => BlockPlace::Measure,
             _ => BlockPlace::Temporal,
         };
         let part = head.optional(Rule::part).map(|pair| self.part(pair));
@@ -31,7 +32,9 @@ impl Build {
             };
             self.report(Code::Misplaced, part.span(), "this block has no parts", help);
         }
-        Block { place, part, statements: parts.map(|pair| self.statement(pair)).collect() }
+        let statements: Vec<Statement<Constraint>> = parts.map(|pair| self.statement(pair)).collect();
+        self.deviations(&statements, place == BlockPlace::Measure);
+        Block { place, part, statements }
     }
 
     /// `except final`, `from a to b`.
@@ -53,7 +56,9 @@ impl Build {
     pub(super) fn at_block(&mut self, pair: Pair<'_>) -> AtBlock {
         let mut parts = Parts::of(pair);
         let time = self.expression(Parts::of(parts.required(Rule::at_head)).required(Rule::expression));
-        AtBlock { time, statements: parts.map(|pair| self.statement(pair)).collect() }
+        let statements: Vec<Statement<Constraint>> = parts.map(|pair| self.statement(pair)).collect();
+        self.deviations(&statements, false);
+        AtBlock { time, statements }
     }
 
     pub(in crate::syntax) fn statement(&mut self, pair: Pair<'_>) -> Statement<Constraint> {
@@ -80,14 +85,55 @@ impl Build {
         let name = parts.optional(Rule::constraint_name).map(|pair| self.name(&pair));
         let first = self.expression(parts.required(Rule::expression));
         let start = name.as_ref().map_or(first.span, |name| name.span);
-        let (relation, end) = if let Some(pair) = parts.optional(Rule::bounds) {
+        let (relation, mut end) = if let Some(pair) = parts.optional(Rule::bounds) {
             let bounds = self.bounds(pair);
             let end = bounds.span;
             (Relation::In { value: first, bounds }, end)
         } else {
-            self.chain(first, parts, "constraints")
+            self.chain(first, &mut parts, "constraints")
         };
-        Constraint { doc, softness, name, relation, span: start.to(end) }
+        let sigma = parts.optional(Rule::deviation);
+        let sigma = sigma.map(|pair| self.expression(Parts::of(pair).required(Rule::expression)));
+        end = sigma.as_ref().map_or(end, |sigma| sigma.span);
+        Constraint { doc, softness, name, relation, sigma, span: start.to(end) }
+    }
+
+    /// Every statement of `measure` has a standard deviation and is an equality; no other one has.
+    fn deviations(&mut self, statements: &[Statement<Constraint>], measured: bool) {
+        for statement in statements {
+            let constraint = match statement {
+                Statement::For(inner) => {
+                    self.deviations(&inner.body, measured);
+                    continue;
+                }
+                Statement::One(constraint) => constraint,
+            };
+            let help = "write `at(2 [s], x) == 3 [m] sigma 0.1 [m];`";
+            match (&constraint.sigma, measured) {
+                (Some(sigma), false) => {
+                    let help = "only `measure { ... }` has standard deviations; `soft(w): ...` may be missed";
+                    self.report(Code::Misplaced, sigma.span, "a constraint holds: it has no `sigma`", help);
+                }
+                (None, true) => {
+                    let message = "how uncertain is this measurement?";
+                    self.report(Code::WrongMeasurement, constraint.span, message, help);
+                }
+                _ => {}
+            }
+            if !measured {
+                continue;
+            }
+            if let Some(softness) = &constraint.softness {
+                let message = "what is measured is missed anyway, at the price of its `sigma`";
+                self.report(Code::WrongMeasurement, softness.span, message, "remove `soft(...):`");
+            }
+            let is_equality = matches!(constraint.relation, Relation::Compare { comparison: Comparison::Equal, .. });
+            if !is_equality {
+                let message = "a measurement is an equality";
+                let help = format!("{help} limits stand in `trajectory {{ }}` or in bounds");
+                self.report(Code::WrongMeasurement, constraint.span, message, help);
+            }
+        }
     }
 
     /// `soft(w)`, `soft(linear = w, square = v)`.
@@ -110,7 +156,7 @@ impl Build {
     }
 
     /// `a <= b`, `a <= b <= c`, and everything like it that must be refused.
-    pub(super) fn chain(&mut self, first: Expr, mut parts: Parts<'_>, of: &str) -> (Relation, Span) {
+    pub(super) fn chain(&mut self, first: Expr, parts: &mut Parts<'_>, of: &str) -> (Relation, Span) {
         let mut signs: Vec<Sign> = vec![];
         let mut others: Vec<Expr> = vec![];
         while let Some(pair) = parts.optional(Rule::relation) {

@@ -5,7 +5,7 @@ use super::parts::Parts;
 use super::shapes::Indices;
 use crate::syntax::ast::{
     Argument, Const, Continuation, Course, Function, Let, Objective, Output, OutputName, Param, Role, Sense, Spline,
-    Unit, Variable,
+    Unit, Values, Variable,
 };
 use crate::syntax::grammar::{Pair, Rule};
 
@@ -14,14 +14,34 @@ impl Build {
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
         let shape = parts.optional(Rule::array_size).map(|pair| self.shape(pair, Indices::Refused));
-        Const { name, shape, value: self.value_or_tuple(parts.required(Rule::values)) }
+        let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
+        let value = match parts.optional(Rule::file) {
+            Some(pair) => self.file(pair, unit),
+            None => {
+                self.unit_without_file(unit);
+                self.value_or_tuple(parts.required(Rule::values))
+            }
+        };
+        Const { name, shape, value }
     }
 
     pub(super) fn param(&mut self, pair: Pair<'_>) -> Param {
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
         let shape = parts.optional(Rule::array_size).map(|pair| self.shape(pair, Indices::Refused));
-        Param { name, shape, default: self.values(parts.required(Rule::values)) }
+        let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
+        let default = match parts.optional(Rule::file) {
+            Some(pair) => {
+                let value = self.file(pair, unit);
+                let span = value.span;
+                Values { elements: vec![value], is_tuple: false, span }
+            }
+            None => {
+                self.unit_without_file(unit);
+                self.values(parts.required(Rule::values))
+            }
+        };
+        Param { name, shape, default }
     }
 
     pub(super) fn variable(&mut self, pair: Pair<'_>) -> Variable {

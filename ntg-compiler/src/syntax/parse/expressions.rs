@@ -54,6 +54,7 @@ impl Build {
             Rule::number => ExprKind::Number(self.number(pair)),
             Rule::parenthesis => return self.parenthesis(pair),
             Rule::conditional => ExprKind::If(Box::new(self.conditional(pair))),
+            Rule::rows_of => self.rows_of(pair),
             Rule::call => self.call(pair),
             Rule::word => word(pair.as_str()),
             _ => ExprKind::Path(self.path(pair)),

@@ -82,6 +82,8 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_as
             | R::kw_at
             | R::kw_collocation
+            | R::kw_column
+            | R::kw_columns
             | R::kw_const
             | R::kw_continuation
             | R::kw_continuous
@@ -102,6 +104,8 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_periodic
             | R::kw_phase
             | R::kw_problem
+            | R::kw_rows
+            | R::kw_sigma
             | R::kw_smooth
             | R::kw_soft
             | R::kw_spline

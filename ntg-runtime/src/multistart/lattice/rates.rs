@@ -197,7 +197,7 @@ impl Rates<'_> {
             At::Here => true,
             At::Start => place == Where::Start,
             At::End => place == Where::End,
-            At::Inside(_) => false,
+            At::Inside(_) | At::Among { .. } => false,
         };
         let first = self.nlp.model.layout.agents[self.vehicle.agent].phases.start;
         let axis = self.vehicle.members[self.phase - first].iter().position(|member| *member == output)?;

@@ -1,0 +1,87 @@
+//! Constants that are set on the command line, and files beside a spec, as a user runs them.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const SPEC: &str = "problem P {
+    const n = rows(\"data/run.csv\");
+    const pieces = 2;
+    const time[n] [s] from \"data/run.csv\" column 1;
+    param seen[n] [m] from \"data/run.csv\" column 2;
+    param noise = 1 [m];
+    duration T = 4 [s];
+    output x [m]: spline(order = 2, intervals = pieces);
+    variable start [m];
+    temporal { initial(x) == start; }
+    measure { for i in 1 .. n { track: at(time[i], x) == seen[i] sigma noise; } }
+}
+";
+
+fn ntg(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ntg"));
+    command.current_dir(folder).args(arguments).output().expect("the command runs")
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::create_dir(folder.path().join("data")).expect("a folder can be made");
+    std::fs::write(folder.path().join("spec.ntg"), SPEC).expect("a file can be written");
+    let run = "# time s, place m\n0, 1\n1, 2\n2, 2\n3, 4\n4, 5\n";
+    std::fs::write(folder.path().join("data/run.csv"), run).expect("a file can be written");
+    folder
+}
+
+#[track_caller]
+fn said(output: &Output, status: i32) -> (String, String) {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let (out, err) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(status), "{out}\n{err}");
+    (out, err)
+}
+
+fn solved(folder: &Path, arguments: &[&str]) -> Value {
+    let all = [&["solve", "spec.ntg", "--format", "json"], arguments].concat();
+    let (out, _) = said(&ntg(folder, &all), 0);
+    serde_json::from_str(&out).expect("JSON")
+}
+
+#[test]
+fn constants_and_parameters_are_set_alike() {
+    let folder = folder();
+    let chi2 = |arguments: &[&str]| solved(folder.path(), arguments)["estimate"]["chi2"].as_f64().expect("a number");
+    // More pieces follow the points more closely: the last knots are the points themselves.
+    let (two, four) = (chi2(&[]), chi2(&["--set", "pieces=4"]));
+    assert!(two > 0.1 && four < 1e-12, "{two}, {four}");
+    let half = chi2(&["--set", "noise=50 cm"]);
+    assert!((half / two - 4.0).abs() < 1e-6, "{half}");
+}
+
+#[test]
+fn json_has_residuals_and_deviations() {
+    let document = solved(folder().path(), &[]);
+    let estimate = &document["estimate"];
+    let track = &estimate["measurements"][0];
+    let residuals = track["residuals"].as_array().expect("a list");
+    assert_eq!((estimate["count"].as_u64(), residuals.len(), track["name"].as_str()), (Some(5), 5, Some("track")));
+    let squares: f64 = residuals.iter().map(|r| r["ratio"].as_f64().expect("a number").powi(2)).sum();
+    assert!((squares / estimate["chi2"].as_f64().expect("a number") - 1.0).abs() < 1e-12);
+    assert!(estimate["deviations"]["start"]["sigma"].as_f64().is_some_and(|sigma| (0.5..1.0).contains(&sigma)));
+}
+
+#[test]
+fn names_that_are_no_constants_are_told_of() {
+    let folder = folder();
+    let (_, err) = said(&ntg(folder.path(), &["check", "spec.ntg", "--set", "peaces=4"]), 2);
+    assert!(err.contains("the problem has no constant `peaces`") && err.contains("did you mean `pieces`?"), "{err}");
+    let (_, err) = said(&ntg(folder.path(), &["expand", "spec.ntg", "--set", "noise=4"]), 2);
+    assert!(err.contains("--set noise=4: only constants change what a spec becomes"), "{err}");
+    let (_, err) = said(&ntg(folder.path(), &["solve", "spec.ntg", "--set", "q=4"]), 2);
+    assert!(err.contains("the parameters are: `seen`, `noise`; the constants are: `n`, `pieces`, `time`"), "{err}");
+    let (_, err) = said(&ntg(folder.path(), &["solve", "spec.ntg", "--set", "pieces=many"]), 2);
+    assert!(err.contains("error[E029]: `pieces = many`: `many` is no number"), "{err}");
+    let (_, err) = said(&ntg(folder.path(), &["check", "spec.ntg", "--set", "n=4"]), 2);
+    assert!(err.contains("error[E074]: \"data/run.csv\" has 5 rows, `time` has 4"), "{err}");
+    said(&ntg(folder.path(), &["check", "spec.ntg", "--set", "pieces=3"]), 0);
+}
