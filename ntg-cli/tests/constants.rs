@@ -13,8 +13,8 @@ const SPEC: &str = "problem P {
     param noise = 1 [m];
     duration T = 4 [s];
     output x [m]: spline(order = 2, intervals = pieces);
-    variable start [m];
-    temporal { initial(x) == start; }
+    variable offset [m];
+    temporal { initial(x) == offset; }
     measure { for i in 1 .. n { track: at(time[i], x) == seen[i] sigma noise; } }
 }
 ";
@@ -67,7 +67,7 @@ fn json_has_residuals_and_deviations() {
     assert_eq!((estimate["count"].as_u64(), residuals.len(), track["name"].as_str()), (Some(5), 5, Some("track")));
     let squares: f64 = residuals.iter().map(|r| r["ratio"].as_f64().expect("a number").powi(2)).sum();
     assert!((squares / estimate["chi2"].as_f64().expect("a number") - 1.0).abs() < 1e-12);
-    assert!(estimate["deviations"]["start"]["sigma"].as_f64().is_some_and(|sigma| (0.5..1.0).contains(&sigma)));
+    assert!(estimate["deviations"]["offset"]["sigma"].as_f64().is_some_and(|sigma| (0.5..1.0).contains(&sigma)));
 }
 
 #[test]

@@ -52,7 +52,10 @@ impl<'a> Elaborator<'a> {
 
     fn unused_constant(&mut self, cx: &Context<'a>, definition: usize, span: Span) {
         let Some(axes) = self.checked_axes(cx, definition) else { return };
-        let extents: Vec<i64> = axes.iter().filter_map(Ends::extent).collect();
+        // The numbers of a file are all alike: one of them tells.
+        let is_file = matches!(self.definitions[definition].value.kind, ExprKind::File(_));
+        let extents = axes.iter().filter_map(Ends::extent).map(|extent| if is_file { extent.min(1) } else { extent });
+        let extents: Vec<i64> = extents.collect();
         self.for_elements(cx, &extents, &[], &mut |this, cx, at| {
             let value = this.definition(cx, definition, at.to_vec(), span);
             this.settle(value, super::settle::Use::Point);

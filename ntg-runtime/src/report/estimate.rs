@@ -78,7 +78,7 @@ pub(super) fn estimate(
     }
     let count = measurements.iter().map(|measurement| measurement.residuals.len()).sum();
     let found = match is_solution {
-        true => covariance(nlp, solution),
+        true => covariance(nlp, solution).and_then(|covariance| determined(covariance, solution)),
         false => Err("there is no solution".to_owned()),
     };
     let (covariance, unknown) = match found {
@@ -124,6 +124,23 @@ fn residuals(nlp: &Transcription, x: &[f64]) -> Result<Vec<MeasurementReport>, S
         }
     }
     Ok(found.into_iter().map(|(_, report)| report).collect())
+}
+
+/// A correlation so near to 1 is one: what is left of the variances is rounding.
+const ONE: f64 = 1.0 - 1e-10;
+
+/// The covariance, unless only two variables together are known.
+fn determined(covariance: Vec<Vec<f64>>, solution: &Solution) -> Result<Vec<Vec<f64>>, String> {
+    let variables = solution.variables();
+    for (j, row) in covariance.iter().enumerate() {
+        for (k, shared) in row.iter().enumerate().take(j) {
+            if shared.abs() > ONE * (row[j] * covariance[k][k]).sqrt() && *shared != 0.0 {
+                let (one, other) = (&variables[k].name, &variables[j].name);
+                return Err(format!("what was measured tells `{one}` and `{other}` together, not apart"));
+            }
+        }
+    }
+    Ok(covariance)
 }
 
 /// The covariance of the declared variables, SI (docs/maths.md, equation 17.2).

@@ -176,6 +176,7 @@ fn kind(rule: Rule) -> Kind {
         | R::kw_if
         | R::condition
         | R::rows_of
+        | R::kw_rows
         | R::call
         | R::callee
         | R::word
