@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use ntg_report::figure::{self, Panel};
-use ntg_report::{Run, draw, png};
+use ntg_report::{Run, draw, html, png};
 
 use crate::runs::{self, Inputs};
 use crate::{Exit, write};
@@ -106,7 +106,7 @@ fn panels(arguments: &Arguments, runs: &figure::Runs<'_>) -> Result<Vec<Panel>, 
 fn sentence(runs: &figure::Runs<'_>) -> String {
     let one = |run: &Run| {
         let unit = if run.objective_unit.is_empty() { String::new() } else { format!(" {}", run.objective_unit) };
-        format!("{}, objective {:.6}{unit}", run.status, run.objective)
+        format!("{}, objective {:.6}{unit}", html::ending(run), run.objective)
     };
     if let [(_, best), others @ ..] = runs
         && let Some(found) = best.starts.as_ref().filter(|_| others.iter().all(|(_, run)| run.spec.is_none()))

@@ -17,6 +17,7 @@ problem Tour {
     param mast_place[2] = (30, -10) [m];
     let far [m] = norm(r - pad);
     let low = r[3] - 10 [m];
+    let wind [m/s] = 3 [m/s] * sin(r[1] / 40 [m]) + 0.01 [1/s] * r[2];
     let turned = atan2(der(r[2]), der(r[1]));
     minimize time [s]: T;
     minimize effort [s]: 1e-3 [s^4/m^2] * integral(norm(der(r, 2))^2);
@@ -24,6 +25,7 @@ problem Tour {
     trajectory {
         balloon: norm(r - (60, 10, 40) [m]) >= 15 [m];
         mast: (r[1] - mast_place[1])^2 + (r[2] - mast_place[2])^2 >= (8 [m])^2;
+        quiet: exp(-((r[1] - 80 [m])^2 + 4 * (r[2] + 30 [m])^2) / (20 [m])^2) <= 0.5;
         ground: r[3] >= 10 [m] + 0.1 * r[1];
         box: r[2] in -50 .. 50 [m];
         speed: norm(der(r))^2 <= (20 [m/s])^2;
@@ -86,12 +88,29 @@ fn what_a_track_passes_is_found_from_the_constraints_alone() {
         let away = (number(&at[0]) - 30.0).hypot(number(&at[1]) + 10.0);
         assert!((away - 8.0).abs() < 1e-6, "{away}");
     }
+    // No quadratic, so its line is found on a grid; closed, and forbidden inside.
+    let quiet = named(&scene["outlines"], "quiet");
+    assert_eq!(quiet["keep_out"], true);
+    for at in quiet["lines"][0].as_array().expect("points") {
+        let (x, y) = (number(&at[0]) - 80.0, number(&at[1]) + 30.0);
+        let value = (-(x * x + 4.0 * y * y) / 400.0).exp();
+        assert!((value - 0.5).abs() < 1e-3, "{value}");
+    }
     let ground = named(&scene["surfaces"], "ground");
     assert_eq!(ground["floor"], true);
     let (x, y, z) = (&ground["x"], &ground["y"], &ground["z"]);
     let across = y.as_array().expect("grid lines").len();
     for (i, x) in x.as_array().expect("grid lines").iter().enumerate() {
         assert!((number(&z[i * across]) - 10.0 - 0.1 * number(x)).abs() < 1e-9);
+    }
+    // What is named and depends on the place alone has lines of equal value.
+    let levels = scene["levels"].as_array().expect("lines of equal value");
+    assert!(levels.len() > 3 && levels.iter().all(|level| level["name"] == "wind"));
+    for level in levels {
+        for at in level["lines"].as_array().expect("lines").iter().flat_map(|line| line.as_array().expect("points")) {
+            let wind = 3.0 * (number(&at[0]) / 40.0).sin() + 0.01 * number(&at[1]);
+            assert!((wind - number(&level["value"])).abs() < 1e-3, "{wind}");
+        }
     }
     // Both sides of the box are borders, one of them in the picture of the track at least.
     let borders = scene["outlines"].as_array().expect("a list").iter().filter(|one| one["name"] == "box");

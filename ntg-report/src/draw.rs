@@ -203,7 +203,9 @@ fn draw_shape(chart: &mut Chart<'_>, shape: &Shape, (xs, ys): (&Range<f64>, &Ran
         Kind::Place => place,
     };
     if let Some(at) = at {
-        let label = Text::new(shape.name.clone(), (100, -80), font(200).color(&colour));
+        // Above the middle of an area, where a place may have its own name.
+        let offset = if shape.kind == Kind::Area { (-200, -400) } else { (100, -80) };
+        let label = Text::new(shape.name.clone(), offset, font(200).color(&colour));
         chart.draw_series([EmptyElement::at(at) + label])?;
     }
     Ok(())

@@ -4,9 +4,6 @@ use super::{Kind, Shape};
 use crate::run::{Scene, Surface};
 use crate::scene::{contour, ellipse};
 
-/// Lines of equal height of one surface, about.
-const LEVELS: f64 = 7.0;
-
 /// Zones, borders, places and heights in the plane of a map.
 pub(super) fn plan(scene: &Scene) -> Vec<Shape> {
     let mut shapes = vec![];
@@ -14,6 +11,9 @@ pub(super) fn plan(scene: &Scene) -> Vec<Shape> {
     // Of a limit that holds beneath another one there is nothing to see.
     for surface in &scene.surfaces {
         contours(surface, &mut shapes);
+    }
+    for level in &scene.levels {
+        shapes.extend(level.lines.iter().map(|line| contour_line(level.value, line)));
     }
     for outline in &scene.outlines {
         let kind = if outline.keep_out { Kind::Area } else { Kind::Border };
@@ -50,28 +50,20 @@ fn shadow(half: &[[f64; 3]; 3], [a, b]: [usize; 2]) -> [[f64; 3]; 2] {
 
 /// Lines of equal height at round numbers.
 fn contours(surface: &Surface, shapes: &mut Vec<Shape>) {
-    let finite = || surface.z.iter().copied().filter(|z| z.is_finite());
-    let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
     let (Some(left), Some(right)) = (surface.x.first(), surface.x.last()) else { return };
     let (Some(bottom), Some(top)) = (surface.y.first(), surface.y.last()) else { return };
-    let size = (right - left).max(top - bottom);
-    if high.is_nan() || high - low <= 1e-6 * size.max(high.abs()) {
-        return;
-    }
-    let raw = (high - low) / LEVELS;
-    let power = 10.0_f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= raw).unwrap_or(10.0) * power;
     let at = |points: &[[f64; 2]]| points.iter().map(|[x, y]| height(surface, *x, *y)).collect::<Vec<f64>>();
     let grid = contour::Grid::new([(*left, *right), (*bottom, *top)], at);
-    let mut level = (low / step).ceil() * step;
-    while level <= high {
-        for line in grid.lines(level, at) {
-            let name = format!("{}", (level / step).round() * step);
-            let points = line.into_iter().map(|[x, y]| (x, y)).collect();
-            shapes.push(Shape { kind: Kind::Contour, name, points });
-        }
-        level += step;
+    for level in contour::levels(surface.z.iter().copied()) {
+        shapes.extend(grid.lines(level, at).iter().map(|line| contour_line(level, line)));
     }
+}
+
+/// A line of a value, which is its name.
+fn contour_line(value: f64, line: &[[f64; 2]]) -> Shape {
+    // Round numbers are multiples of their step but for rounding.
+    let name = format!("{}", format!("{value:.9e}").parse::<f64>().unwrap_or(value));
+    Shape { kind: Kind::Contour, name, points: line.iter().map(|[x, y]| (*x, *y)).collect() }
 }
 
 /// The height of a surface between its grid lines; NaN beside them.

@@ -9,6 +9,8 @@ mod spec;
 mod study;
 mod tables;
 
+pub use spec::ending;
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::figure;

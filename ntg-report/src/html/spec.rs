@@ -65,13 +65,19 @@ fn missed_between(run: &Run) -> Vec<&Constraint> {
     run.constraints.iter().filter(|constraint| state(constraint) == State::Between).collect()
 }
 
+/// How the solve ended, in words: `solved at the points` where something is missed between them.
+pub fn ending(run: &Run) -> String {
+    let between = run.is_solved() && !missed_between(run).is_empty();
+    if between { format!("{} at the points", run.status) } else { run.status.clone() }
+}
+
 /// How the solve ended. What is missed between the points is no good end.
 pub(super) fn status(run: &Run) -> Markup {
     let between = run.is_solved() && !missed_between(run).is_empty();
     let good = run.is_sound() && !between;
     html! {
         span.status.good[good].warned[run.has_solution() && !good].bad[!run.has_solution()] {
-            (run.status) @if between { " at the points" }
+            (ending(run))
         }
     }
 }

@@ -12,7 +12,7 @@ mod study;
 
 pub use layout::layout;
 pub use record::Recording;
-pub use scene::{Ball, Coordinate, Moving, Outline, Place, Scene, Surface};
+pub use scene::{Ball, Coordinate, Level, Moving, Outline, Place, Scene, Surface};
 pub use study::{Explanation, Minimum, Part, Refinement, Round, Starts};
 
 use indexmap::IndexMap;

@@ -19,6 +19,8 @@ pub struct Scene {
     /// Limits that are lines in the plane of the coordinates that do not point up; in the plane of both where there are
     /// two.
     pub outlines: Vec<Outline>,
+    /// Lines in the same plane along which a named expression that depends on the place alone has a value.
+    pub levels: Vec<Level>,
     /// Limits that are heights over that plane.
     pub surfaces: Vec<Surface>,
     /// Limits that are balls and ellipsoids.
@@ -65,6 +67,18 @@ pub struct Outline {
     /// Whether its inside is forbidden. Otherwise its lines are borders.
     pub keep_out: bool,
     /// Points that are joined; the first one again at the end of what is closed.
+    pub lines: Vec<Vec<[f64; 2]>>,
+}
+
+/// Lines along which a function of the place has one value.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Level {
+    /// The named expression.
+    pub name: String,
+    /// Its value there, in its unit.
+    pub value: f64,
+    /// Points that are joined.
     pub lines: Vec<Vec<[f64; 2]>>,
 }
 

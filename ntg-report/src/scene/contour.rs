@@ -29,6 +29,11 @@ impl Grid {
         Self { values: function(&nodes), rectangle }
     }
 
+    /// Round values of which lines show how the function runs, about seven; none for a constant.
+    pub(crate) fn levels(&self) -> Vec<f64> {
+        levels(self.values.iter().copied())
+    }
+
     /// Lines of one value. The first point stands again at the end of a closed line.
     pub(crate) fn lines(&self, level: f64, function: impl Fn(&[[f64; 2]]) -> Vec<f64>) -> Vec<Vec<[f64; 2]>> {
         let mut neighbours: IndexMap<Edge, Vec<Edge>> = IndexMap::new();
@@ -88,6 +93,23 @@ impl Grid {
         }
         ends.iter().map(middle).collect()
     }
+}
+
+/// About this many lines of one function are drawn.
+const LINES: f64 = 7.0;
+
+/// Round numbers between the least and the greatest of some values.
+pub(crate) fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    if high.is_infinite() || high - low <= 1e-6 * high.abs().max(low.abs()) {
+        return vec![];
+    }
+    let raw = (high - low) / LINES;
+    let power = 10.0_f64.powf(raw.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= raw).unwrap_or(10.0) * power;
+    let first = (low / step).ceil();
+    (0..=LINES as usize).map(|k| (first + k as f64) * step).filter(|level| *level <= high).collect()
 }
 
 /// Where a node of the grid is.
@@ -172,6 +194,13 @@ mod tests {
         let found = lines(|x, y| x * y, 0.3);
         assert_eq!(found.len(), 2);
         assert!(found.iter().flatten().all(|[x, y]| (x * y - 0.3).abs() < 1e-3));
+    }
+
+    #[test]
+    fn levels_are_round_and_lie_within() {
+        assert_eq!(levels([0.3, 7.2, f64::NAN].into_iter()), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        assert_eq!(levels([-0.04, 0.11].into_iter()).len(), 3, "in steps of 0.05");
+        assert!(levels([2.0, 2.0].into_iter()).is_empty() && levels([f64::NAN].into_iter()).is_empty());
     }
 
     #[test]

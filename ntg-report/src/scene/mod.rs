@@ -18,7 +18,7 @@ use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::{Block, Domain, Group, Row, Structure};
 use ntg_runtime::transcribe::interpolants;
 
-use crate::run::{Ball, Outline, Place, Run, Scene, Surface};
+use crate::run::{Ball, Level, Outline, Place, Run, Scene, Surface};
 use contour::{Grid, Rectangle};
 use field::{Field, Space};
 use quadric::Quadric;
@@ -49,7 +49,7 @@ pub(crate) fn find(run: &Run, problem: &dyn Problem, vectors: &IndexMap<String, 
     for group in &structure.groups {
         found.group(&space, &view, group);
     }
-    let centres = centres(&space, &view);
+    let (centres, levels) = named_fields(run, &space, &view);
     let mut places = places::find(run, &scene, &found.bound);
     let near = |a: &Place, b: &Place| {
         let pairs = a.at.iter().zip(&b.at).filter(|(a, b)| a.is_finite() && b.is_finite());
@@ -60,7 +60,8 @@ pub(crate) fn find(run: &Run, problem: &dyn Problem, vectors: &IndexMap<String, 
             places.push(centre);
         }
     }
-    (scene.outlines, scene.surfaces, scene.balls, scene.places) = (found.outlines, found.surfaces, found.balls, places);
+    (scene.outlines, scene.surfaces, scene.balls) = (found.outlines, found.surfaces, found.balls);
+    (scene.places, scene.levels) = (places, levels);
     scene
 }
 
@@ -196,8 +197,20 @@ impl Found {
         if lines.is_empty() {
             return;
         }
+        // The inside of closed lines is forbidden where the limit is missed in their middles.
+        let is_closed = |line: &Vec<[f64; 2]>| line.len() > 3 && line.first() == line.last();
+        let middle = |line: &Vec<[f64; 2]>| {
+            let points = &line[1..];
+            [0, 1].map(|k| points.iter().map(|at| at[k]).sum::<f64>() / points.len() as f64)
+        };
+        let keep_out = limit.block == Block::Trajectory
+            && !limit.is_equality
+            && lines.iter().all(is_closed)
+            && function(&lines.iter().map(middle).collect::<Vec<_>>())
+                .into_iter()
+                .all(|value| (value < limit.level) == limit.is_lower && value != limit.level);
         let name = limit.name.clone();
-        self.outlines.push(Outline { name, keep_out: false, lines });
+        self.outlines.push(Outline { name, keep_out, lines });
     }
 
     fn surface(
@@ -267,9 +280,14 @@ pub(crate) fn ellipse(centre: [f64; 3], half: &[[f64; 3]], [a, b]: [usize; 2]) -
     (0..=AROUND).map(at).collect()
 }
 
-/// Places to which named expressions are distances.
-fn centres(space: &Space<'_>, view: &View) -> Vec<Place> {
-    let mut found: Vec<Place> = vec![];
+/// Named expressions that are drawn as lines of equal value at most: more of them cannot be told apart.
+const FIELDS: usize = 1;
+
+/// What named expressions say of the plane: places to which they are distances, and lines of equal value of the first
+/// that is none.
+fn named_fields(run: &Run, space: &Space<'_>, view: &View) -> (Vec<Place>, Vec<Level>) {
+    let (mut places, mut levels): (Vec<Place>, Vec<Level>) = (vec![], vec![]);
+    let mut drawn: Vec<&str> = vec![];
     for named in space.structure.named.iter().filter(|named| !matches!(named.domain, Domain::Mission)) {
         for indices in field::members(&named.loops).into_iter().take(MOST) {
             let index = named.family.and_then(|_| indices.last().copied());
@@ -277,14 +295,41 @@ fn centres(space: &Space<'_>, view: &View) -> Vec<Place> {
             let axes: Vec<usize> = (0..field.depends.len()).filter(|axis| field.depends[*axis]).collect();
             let row = |points: &[[f64; 3]]| field.values(points);
             let quadric = (axes.len() > 1).then(|| Quadric::of(row, &axes, (view.middle, view.size))).flatten();
-            let Some(quadric) = quadric.filter(Quadric::is_round) else { continue };
-            let name = index.map_or_else(|| named.name.clone(), |index| format!("{}[{index}]", named.name));
-            let at = quadric.centre()[..space.scene.axes.len()].to_vec();
-            let place = Place { name, at };
-            if found.iter().all(|known| known.name != place.name) {
-                found.push(place);
+            if let Some(quadric) = quadric.filter(Quadric::is_round) {
+                let name = index.map_or_else(|| named.name.clone(), |index| format!("{}[{index}]", named.name));
+                let place = Place { name, at: quadric.centre()[..space.scene.axes.len()].to_vec() };
+                if places.iter().all(|known| known.name != place.name) {
+                    places.push(place);
+                }
+                continue;
+            }
+            let helper = run.lets.iter().any(|(path, series)| series.helper && crate::figure::base(path) == named.name);
+            let mut plane = view.plane;
+            plane.sort_unstable();
+            // Members of a family would lie over one another; those of another agent are the same function.
+            let is_new = named.family.is_none() && !helper && !drawn.contains(&named.name.as_str());
+            if axes == plane && is_new && drawn.len() < FIELDS {
+                drawn.push(&named.name);
+                levels.extend(equal_values(view, row, (&named.name, named.unit.factor)));
             }
         }
     }
-    found
+    (places, levels)
+}
+
+/// Lines of round values of a function of the plane.
+fn equal_values(view: &View, row: impl Fn(&[[f64; 3]]) -> Vec<f64>, (name, factor): (&str, f64)) -> Vec<Level> {
+    let [a, b] = view.plane;
+    let function = |points: &[[f64; 2]]| {
+        let at = |p: &[f64; 2]| {
+            let mut at = view.middle;
+            (at[a], at[b]) = (p[0], p[1]);
+            at
+        };
+        let values = row(&points.iter().map(at).collect::<Vec<_>>());
+        values.into_iter().map(|value| value / factor).collect::<Vec<f64>>()
+    };
+    let grid = Grid::new(view.rectangle, function);
+    let level = |value: f64| Level { name: name.to_owned(), value, lines: grid.lines(value, function) };
+    grid.levels().into_iter().map(level).filter(|level| !level.lines.is_empty()).collect()
 }
