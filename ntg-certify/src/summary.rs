@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use ntg_structure::{Structure, Unit};
+use ntg_structure::{Independent, Structure, Unit};
 
 use crate::certify::{Certificate, Finding, Verdict};
 use crate::statement::{Kind, Quantity, Subject};
@@ -17,8 +17,10 @@ pub struct Proof {
     pub verdict: Verdict,
     /// Encloses all values of all members, in `unit`.
     pub values: (f64, f64),
-    /// Where a bound is missed, in seconds of mission time, and the value there.
+    /// Where a bound is missed, in mission time as it is shown, and the value there.
     pub witness: Option<(f64, f64)>,
+    /// What the time of the witness is in.
+    pub independent: Independent,
     /// How many members and phases it has.
     pub members: usize,
     /// The unit of all of these.
@@ -28,7 +30,7 @@ pub struct Proof {
 /// The enclosure of a quantity over a stretch of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band {
-    /// Where it begins, in seconds of mission time.
+    /// Where it begins, in mission time as it is shown.
     pub from: f64,
     /// Where it ends.
     pub to: f64,
@@ -80,7 +82,7 @@ impl Certificate {
         }
         let of = |wanted: fn(&Kind) -> bool, sign: f64| {
             let own = self.each().filter(move |(subject, _)| wanted(&subject.kind));
-            own.map(|(subject, finding)| self.bounds(subject, finding, sign)).collect()
+            own.map(|(subject, finding)| self.bounds(&structure.independent, (subject, finding), sign)).collect()
         };
         Summary {
             constraints,
@@ -101,7 +103,8 @@ impl Certificate {
         let (subject, _) = own().find(|(_, finding)| std::ptr::eq(*finding, worst))?;
         let witness = worst
             .witness
-            .and_then(|witness| self.witness_time(subject, &witness).map(|t| (t, witness.value.middle() / unit)));
+            .and_then(|witness| self.witness_time(subject, &witness).map(|t| (t, witness.value.middle() / unit)))
+            .map(|(t, value)| (structure.independent.shown(t), value));
         let verdict = match worst.verdict {
             Verdict::Within(residual) => Verdict::Within(residual / unit),
             Verdict::Refuted(least, most) => Verdict::Refuted(least / unit, most / unit),
@@ -110,10 +113,18 @@ impl Certificate {
         };
         let name = declared.name.as_deref().unwrap_or(&declared.place.text).to_owned();
         let values = (values.low() / unit, values.high() / unit);
-        Some(Proof { name, verdict, values, witness, members: own().count(), unit: declared.unit.clone() })
+        Some(Proof {
+            name,
+            verdict,
+            values,
+            witness,
+            members: own().count(),
+            unit: declared.unit.clone(),
+            independent: structure.independent.clone(),
+        })
     }
 
-    fn bounds(&self, subject: &Subject, finding: &Finding, sign: f64) -> Bounds {
+    fn bounds(&self, independent: &Independent, (subject, finding): (&Subject, &Finding), sign: f64) -> Bounds {
         let unit = subject.unit.factor;
         let of = |low: f64, high: f64| {
             let (low, high) = (sign * low / unit, sign * high / unit);
@@ -123,8 +134,8 @@ impl Certificate {
         if let Quantity::Path(_, phase, _) = subject.quantity {
             for leaf in finding.covers.iter().flatten() {
                 let (low, high) = of(leaf.values.low(), leaf.values.high());
-                let from = self.time(phase, leaf.cell, leaf.start());
-                let to = self.time(phase, leaf.cell, leaf.start() + leaf.length());
+                let from = independent.shown(self.time(phase, leaf.cell, leaf.start()));
+                let to = independent.shown(self.time(phase, leaf.cell, leaf.start() + leaf.length()));
                 bands.push(Band { from, to, low, high });
             }
         }
@@ -158,7 +169,10 @@ impl Proof {
             Verdict::Bounded | Verdict::Proved => "proved for all times".to_owned(),
             Verdict::Within(residual) => format!("holds to within {residual:.1e}{unit}, proved"),
             Verdict::Refuted(least, most) => {
-                let at = self.witness.map_or(String::new(), |(t, value)| format!(", value {value:.6} at t = {t:.4} s"));
+                let at = self.witness.map_or(String::new(), |(t, value)| {
+                    let Independent { name, unit } = &self.independent;
+                    format!(", value {value:.6} at {name} = {t:.4} {}", unit.symbol).trim_end().to_owned()
+                });
                 format!("REFUTED: missed by {least:.3e} to {most:.3e}{unit}{at}")
             }
             Verdict::Undecided(most) if most.is_finite() => format!("undecided: missed by {most:.1e}{unit} at most"),

@@ -40,6 +40,8 @@ pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> 
             guess = guess.output(name, move |tau| interpolate(&t, &value, tau));
         }
     }
+    // What a saved time is in: seconds, unless it says otherwise.
+    let unit = saved["independent"]["factor"].as_f64().unwrap_or(1.0);
     for phase in &structure.phases {
         let name = phase.duration_name.iter().chain(&phase.name);
         let free = matches!(phase.duration, ntg_runtime::structure::Duration::Free(_));
@@ -47,7 +49,7 @@ pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> 
             if let Some(seconds) =
                 saved["times"][name].as_f64().or(saved["times"][format!("duration({name})")].as_f64())
             {
-                guess = guess.duration(name, seconds);
+                guess = guess.duration(name, seconds * unit);
             }
         }
     }

@@ -143,6 +143,27 @@ temporal { at( T/3,x )<=2; }
 }
 
 #[test]
+fn domains_and_scenarios_read_as_they_are_spoken() {
+    assert_layout(
+        "problem P{domain   s[m];duration S=1 [m];scenario plant [ k in 1..S ]weight p[ k ]{state x[m];shared u,w[1]
+          until 1[m];final{x<=k;}}
+          scenario b[k in 1..2]{output y:spline(order=3);}  scenario longer[k in 1..2] weight 0.5 {output z:spline(order=3);} }",
+        "problem P {
+    domain s [m];
+    duration S = 1 [m];
+    scenario plant[k in 1 .. S] weight p[k] {
+        state x [m];
+        shared u, w[1] until 1 [m];
+        final { x <= k; }
+    }
+    scenario b[k in 1 .. 2]                 { output y: spline(order = 3); }
+    scenario longer[k in 1 .. 2] weight 0.5 { output z: spline(order = 3); }
+}
+",
+    );
+}
+
+#[test]
 fn blocks_stay_on_one_line_or_on_several_as_their_author_wrote_them() {
     assert_layout(
         "problem P {

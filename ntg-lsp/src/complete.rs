@@ -33,7 +33,7 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
         items.extend(
             [
                 "else", "smooth", "spline", "held", "gauss", "uniform", "after", "through", "from", "except", "rows",
-                "sigma",
+                "sigma", "until", "weight",
             ]
             .map(keyword),
         );
@@ -117,10 +117,12 @@ fn names(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
 
 fn kind(kind: Kind) -> CompletionItemKind {
     match kind {
-        Kind::Problem | Kind::Agent | Kind::Phase => CompletionItemKind::MODULE,
+        Kind::Problem | Kind::Agent | Kind::Phase | Kind::Scenario => CompletionItemKind::MODULE,
         Kind::Const => CompletionItemKind::CONSTANT,
         Kind::Param => CompletionItemKind::PROPERTY,
-        Kind::Variable | Kind::Duration | Kind::Index | Kind::Argument | Kind::Step => CompletionItemKind::VARIABLE,
+        Kind::Variable | Kind::Duration | Kind::Domain | Kind::Index | Kind::Argument | Kind::Step => {
+            CompletionItemKind::VARIABLE
+        }
         Kind::Output => CompletionItemKind::FIELD,
         Kind::Function | Kind::Table => CompletionItemKind::FUNCTION,
         Kind::Let | Kind::Term | Kind::Constraint => CompletionItemKind::VALUE,
@@ -239,6 +241,11 @@ pub fn explained(word: &str) -> Option<String> {
         "guess" => "`guess { (x, y) through (0, 0), (1, 5) [km];  T = 9 [s]; }`: where to begin",
         "continuous" => "`continuous x up to 1;`: how smoothly phases meet",
         "at" => "`at 2.5 [s] { ... }`: what holds at one time; `at(2.5 [s], e)`: the value there",
+        "domain" => "`domain s [m];`: everything is a function of `s` instead of the time `t`",
+        "scenario" => "`scenario plant[k in 1 .. 20] { ... }`: the same problem for several cases at once",
+        "shared" => "`shared u until 1 [s];`: an input that all members of a scenario have in common",
+        "until" => "`shared u until 1 [s];`: up to when the members of a scenario share an input",
+        "weight" => "`scenario plant[k in 1 .. 20] weight p[k] { ... }`: with what each member counts",
         "periodic" => "`periodic x, y;`: outputs that end as they begin, with their derivatives",
         "soft" => "`soft(200 [1/s]): c;`: a constraint that may be missed, at a price",
         "except" => "`trajectory except final { ... }`: everywhere but at that end",

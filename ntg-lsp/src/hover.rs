@@ -61,7 +61,7 @@ fn about(analysis: &Analysis, declaration: &Declaration) -> String {
 /// The statement; of one with braces, what stands before them.
 fn head(analysis: &Analysis, declaration: &Declaration) -> Span {
     let statement = declaration.statement;
-    let is_block = matches!(declaration.kind, Kind::Problem | Kind::Agent | Kind::Phase);
+    let is_block = matches!(declaration.kind, Kind::Problem | Kind::Agent | Kind::Phase | Kind::Scenario);
     match analysis.source.slice(statement).find('{') {
         Some(brace) if is_block => Span { start: statement.start, end: statement.start + brace as u32 },
         _ => statement,
@@ -80,13 +80,16 @@ fn facts(analysis: &Analysis, problem: &Problem, declaration: &Declaration) -> O
             Some(format!("value: {value}{}, {size}{}", bracketed(&parameter.unit), dimension(&parameter.unit)))
         }
         Kind::Variable => {
-            let variable = problem.variables.iter().find(|v| v.name == name)?;
+            let variables = || problem.variables.iter();
+            let variable = variables().find(|v| v.span == declaration.name.span);
+            let variable = variable.or_else(|| variables().find(|v| v.name == name))?;
             let bounds = bounds(problem, &variable.bounds, &variable.unit);
             Some(format!("a free number{bounds}: {}", dimension(&variable.unit)))
         }
         Kind::Output => {
-            let outputs = || problem.phases.iter().flat_map(|phase| &phase.outputs).filter(|o| o.name == name);
-            let output = outputs().find(|o| o.span == declaration.name.span).or_else(|| outputs().next())?;
+            let outputs = || problem.phases.iter().flat_map(|phase| &phase.outputs);
+            let here = outputs().find(|o| o.span == declaration.name.span);
+            let output = here.or_else(|| outputs().find(|o| o.name == name))?;
             let spline = &output.spline;
             let intervals = spline.breakpoints.len().saturating_sub(1);
             let coefficients = intervals * (spline.order - spline.smoothness) + spline.smoothness;
@@ -112,7 +115,14 @@ fn facts(analysis: &Analysis, problem: &Problem, declaration: &Declaration) -> O
             let probe = probe(analysis, name, declaration.scope, &[])?;
             Some(format!("value: {}", probe.expression))
         }
-        Kind::Duration => Some("a duration: a time [s]".to_owned()),
+        Kind::Duration => {
+            let unit = &problem.independent.unit;
+            Some(match dimension(unit).as_str() {
+                "" => "a duration".to_owned(),
+                words => format!("a duration: {words}"),
+            })
+        }
+        Kind::Domain => Some(format!("the independent variable: {}", dimension(&problem.independent.unit))),
         Kind::Table => {
             let table = problem.tables.iter().find(|t| t.name == name)?;
             Some(format!("a table of {} values: {}", table.values.len(), dimension(&table.unit)))

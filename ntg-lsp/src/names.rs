@@ -20,6 +20,10 @@ pub enum Kind {
     Agent,
     /// `phase`
     Phase,
+    /// `scenario`
+    Scenario,
+    /// `domain`
+    Domain,
     /// `const`
     Const,
     /// `param`, and `continuation` of a name of its own
@@ -76,13 +80,15 @@ pub struct Mention {
     pub declarations: Vec<usize>,
 }
 
-/// A problem, an agent or a phase.
+/// A problem, an agent, a phase or a scenario.
 #[derive(Clone, Debug)]
 pub struct Scope {
     /// The scope around it.
     pub parent: Option<usize>,
     /// Its text, braces included.
     pub span: Span,
+    /// Whether its names are known outside only behind its own, as those of a scenario.
+    closed: bool,
     /// Its own names.
     names: HashMap<String, Vec<usize>>, // Looked up, never iterated.
 }
@@ -107,7 +113,7 @@ pub struct Names {
     pub declarations: Vec<Declaration>,
     /// Every name that stands for a declaration, the declared names too; by place.
     pub mentions: Vec<Mention>,
-    /// The problem, then agents and phases.
+    /// The problem, then agents, phases and scenarios.
     pub scopes: Vec<Scope>,
     /// Every `der(...)`.
     pub derivatives: Vec<Derivative>,
@@ -172,7 +178,10 @@ impl Names {
         self.declarations.iter().filter(move |declaration| match declaration.within {
             Some(within) => within.start as usize <= byte && byte <= within.end as usize,
             // A template may name what each phase declares.
-            None => self.is_within(declaration.scope, scope) || self.is_within(scope, declaration.scope),
+            None => {
+                let inside = self.is_within(declaration.scope, scope) && !self.scopes[declaration.scope].closed;
+                inside || self.is_within(scope, declaration.scope)
+            }
         })
     }
 

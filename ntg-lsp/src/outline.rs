@@ -39,13 +39,15 @@ fn symbol(analysis: &Analysis, declaration: &Declaration) -> DocumentSymbol {
 fn kind(kind: Kind) -> SymbolKind {
     match kind {
         Kind::Problem => SymbolKind::CLASS,
-        Kind::Agent | Kind::Phase => SymbolKind::MODULE,
+        Kind::Agent | Kind::Phase | Kind::Scenario => SymbolKind::MODULE,
         Kind::Const => SymbolKind::CONSTANT,
         Kind::Param => SymbolKind::PROPERTY,
         Kind::Output => SymbolKind::FIELD,
         Kind::Function | Kind::Table => SymbolKind::FUNCTION,
         Kind::Constraint | Kind::Term => SymbolKind::EVENT,
-        Kind::Variable | Kind::Duration | Kind::Let | Kind::Index | Kind::Argument | Kind::Step => SymbolKind::VARIABLE,
+        Kind::Variable | Kind::Duration | Kind::Domain | Kind::Let | Kind::Index | Kind::Argument | Kind::Step => {
+            SymbolKind::VARIABLE
+        }
     }
 }
 

@@ -127,6 +127,13 @@ impl Found {
         self.report.seconds
     }
 
+    /// Name, unit and SI units in one unit of the independent variable.
+    #[getter]
+    fn independent(&self) -> (String, String, f64) {
+        let independent = &self.report.solution.structure().independent;
+        (independent.name.clone(), independent.unit.symbol.clone(), independent.unit.factor)
+    }
+
     #[getter]
     fn span(&self) -> (f64, f64) {
         (self.report.solution.start(), self.report.solution.end())

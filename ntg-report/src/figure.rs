@@ -138,7 +138,7 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
                 Some(panel) => panel.lines.extend(lines),
                 None => panels.push(Panel {
                     title: name.to_owned(),
-                    x: "t [s]".to_owned(),
+                    x: run.independent.heading(),
                     y,
                     lines: lines.collect(),
                     marks: marks(runs),
@@ -214,8 +214,12 @@ pub fn multipliers(runs: &Runs<'_>) -> Vec<Panel> {
         let lines = constraint.members.iter().filter(|member| told && member.multiplier_t.len() > 1);
         let lines =
             lines.map(|member| line(label(runs, run, &member.name), run, &member.multiplier_t, &member.multiplier));
-        let y = if density { "dJ*/d(bound), per second" } else { "dJ*/d(bound)" };
-        (y.to_owned(), lines.collect(), vec![])
+        let y = if density {
+            format!("dJ*/d(bound), {}", runs[run].1.independent.per())
+        } else {
+            "dJ*/d(bound)".to_owned()
+        };
+        (y, lines.collect(), vec![])
     });
     panels.retain(|panel| panel.lines.iter().any(|line| line.points.iter().any(|p| p.1.abs() > 0.0)));
     panels
@@ -232,7 +236,8 @@ fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize
             let panel = match panels.iter_mut().find(|panel| panel.title == title && panel.y == y) {
                 Some(panel) => panel,
                 None => {
-                    let panel = Panel { title, x: "t [s]".to_owned(), y, marks: marks(runs), ..Panel::default() };
+                    let panel =
+                        Panel { title, x: run.independent.heading(), y, marks: marks(runs), ..Panel::default() };
                     panels.push(panel);
                     let last = panels.len() - 1;
                     &mut panels[last]

@@ -28,11 +28,11 @@ pub use guess::{Continuation, Guess, GuessKind, GuessScope};
 pub use index::{Affine, Family, Loop};
 pub use kernel::{Degree, Kernel};
 pub use mission::{
-    Agent, Bounds, Duration, Output, Parameter, Phase, Points, Spline, Start, Table, TableAxis, TableExtrapolation,
-    TableMethod, TableSymmetry, Variable,
+    Agent, Bounds, Duration, Output, Parameter, Phase, Points, Shared, Spline, Start, Table, TableAxis,
+    TableExtrapolation, TableMethod, TableSymmetry, Variable,
 };
 pub use part::{Instant, Part, Places};
-pub use quantity::{Place, Unit};
+pub use quantity::{Independent, Place, Unit};
 
 /// A whole problem, without its formulas.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -47,10 +47,14 @@ pub struct Structure {
     pub maximize: bool,
     /// The unit in which the objective is reported.
     pub objective_unit: Unit,
+    /// What everything is a function of.
+    pub independent: Independent,
     /// Parameters, in the order in which they were declared; their values form one flat vector.
     pub parameters: Vec<Parameter>,
     /// Tables, addressed by number in kernels.
     pub tables: Vec<Table>,
+    /// Outputs of which members have coefficients in common.
+    pub shared: Vec<Shared>,
     /// Free numbers that are constant in time.
     pub variables: Vec<Variable>,
     /// Independent timelines; a problem without agents has one, unnamed.

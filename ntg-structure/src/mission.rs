@@ -154,6 +154,20 @@ pub enum Duration {
     Free(Bounds),
 }
 
+/// An array of outputs whose members are the same up to some time: scenarios that share an input.
+///
+/// The array has `until.len()` elements for each scenario, those of one scenario side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shared {
+    /// Index into `Structure::phases`.
+    pub phase: usize,
+    /// Index into `Phase::outputs`.
+    pub output: usize,
+    /// For each element of a scenario the scaled time up to which it is that of the first scenario: a breakpoint of
+    /// its spline; 0 for an element that is not shared, 1 for one that is all the way.
+    pub until: Vec<f64>,
+}
+
 /// A spline's order and knots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {

@@ -15,6 +15,45 @@ impl Default for Unit {
     }
 }
 
+/// The independent variable: time, unless the spec has another domain. What this crate calls seconds, starts and
+/// durations is then in SI units of that variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Independent {
+    /// Its name.
+    pub name: String,
+    /// The unit in which it, starts and durations are shown.
+    pub unit: Unit,
+}
+
+impl Default for Independent {
+    fn default() -> Self {
+        Self { name: "t".to_owned(), unit: Unit { symbol: "s".to_owned(), factor: 1.0 } }
+    }
+}
+
+impl Independent {
+    /// How a place is told of: `t = 2.5 s`, `s = 130 m`; the number is in SI units.
+    pub fn place(&self, value: f64, number: impl Fn(f64) -> String) -> String {
+        format!("{} = {}", self.name, self.amount(value, number))
+    }
+
+    /// How a length of it is told of: `2.5 s`, `130 m`; the number is in SI units.
+    pub fn amount(&self, value: f64, number: impl Fn(f64) -> String) -> String {
+        let number = number(self.shown(value));
+        if self.unit.symbol.is_empty() { number } else { format!("{number} {}", self.unit.symbol) }
+    }
+
+    /// Its name and unit at the head of a column or an axis: `t [s]`.
+    pub fn heading(&self) -> String {
+        if self.unit.symbol.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit.symbol) }
+    }
+
+    /// A value in SI units as it is shown.
+    pub fn shown(&self, value: f64) -> f64 {
+        value / self.unit.factor
+    }
+}
+
 /// Where something stands in the spec.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Place {

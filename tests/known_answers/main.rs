@@ -16,6 +16,7 @@ mod oscillator;
 mod phases;
 mod places;
 mod resolve;
+mod scenarios;
 mod support;
 mod vectors;
 mod vehicles;

@@ -2,7 +2,7 @@
 
 use ntg_runtime::problem::Problem;
 use ntg_runtime::report::{ConstraintReport, Estimate, Report, Worst};
-use ntg_runtime::structure::Parameter;
+use ntg_runtime::structure::{Independent, Parameter};
 use serde_json::{Map, Value, json};
 
 use super::Solved;
@@ -10,10 +10,13 @@ use super::Solved;
 pub(super) fn document(solved: &Solved<'_>) -> Value {
     let report = solved.report;
     let solution = &report.solution;
+    let independent = &solution.structure().independent;
+    let shown = |time: f64| independent.shown(time);
     let mut document = json!({
         "problem": report.problem,
         "status": report.status.label(),
         "advice": report.advice,
+        "independent": { "name": independent.name, "unit": independent.unit.symbol },
         "objective": report.objective,
         "objective_unit": report.objective_unit.symbol,
         "objective_fine": report.objective_fine,
@@ -23,18 +26,18 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "iterations": report.iterations,
         "seconds": { "compile": solved.compile_seconds, "solve": report.seconds },
         "violation": { "points": report.violation.points, "between": report.violation.between },
-        "times": solution.event_times().into_iter().map(|(name, t)| (name, json!(t))).collect::<Map<_, _>>(),
-        "phases": solution.phases().into_iter().map(|p| json!({ "name": p.name, "start": p.start, "end": p.end })).collect::<Vec<_>>(),
+        "times": solution.event_times().into_iter().map(|(name, t)| (name, json!(shown(t)))).collect::<Map<_, _>>(),
+        "phases": solution.phases().into_iter().map(|p| json!({ "name": p.name, "start": shown(p.start), "end": shown(p.end) })).collect::<Vec<_>>(),
         "variables": solution.variables().into_iter().map(|v| {
             (v.name, json!({ "unit": v.unit.symbol, "value": v.value }))
         }).collect::<Map<_, _>>(),
         "parameters": solution.structure().parameters.iter().map(parameter).collect::<Map<_, _>>(),
         "outputs": outputs(solved),
         "lets": lets(solved),
-        "constraints": report.constraints.iter().map(constraint).collect::<Vec<_>>(),
+        "constraints": report.constraints.iter().map(|c| constraint(c, independent)).collect::<Vec<_>>(),
         "warnings": report.warnings().iter().map(|w| json!({
             "message": w.message, "expression": w.place.text, "line": w.place.line, "column": w.place.column,
-            "constraint": w.constraint, "t": w.time,
+            "constraint": w.constraint, "t": w.time.map(shown),
         })).collect::<Vec<_>>(),
         "history": history(report),
     });
@@ -100,9 +103,15 @@ fn outputs(solved: &Solved<'_>) -> Map<String, Value> {
         .map(|trajectory| {
             let (t, value): (Vec<f64>, Vec<f64>) = trajectory.sample(solved.samples).into_iter().unzip();
             let unit = &trajectory.unit().symbol;
-            (trajectory.name().to_owned(), json!({ "unit": unit, "t": t, "value": value }))
+            (trajectory.name().to_owned(), json!({ "unit": unit, "t": shown(solved, &t), "value": value }))
         })
         .collect()
+}
+
+/// Times in the unit of the independent variable.
+fn shown(solved: &Solved<'_>, times: &[f64]) -> Vec<f64> {
+    let independent = &solved.report.solution.structure().independent;
+    times.iter().map(|time| independent.shown(*time)).collect()
 }
 
 fn lets(solved: &Solved<'_>) -> Map<String, Value> {
@@ -116,18 +125,19 @@ fn lets(solved: &Solved<'_>) -> Map<String, Value> {
                 json!({ "unit": unit, "value": signal.at(0.0) })
             } else {
                 let value: Vec<f64> = times.iter().map(|t| signal.at(*t)).collect();
-                json!({ "unit": unit, "t": times, "value": value })
+                json!({ "unit": unit, "t": shown(solved, &times), "value": value })
             };
             (signal.name().to_owned(), shown)
         })
         .collect()
 }
 
-fn constraint(constraint: &ConstraintReport) -> Value {
+fn constraint(constraint: &ConstraintReport, independent: &Independent) -> Value {
+    let shown = |time: f64| independent.shown(time);
     let worst = |worst: &Option<Worst>| {
         worst.as_ref().map(|w| {
             json!({
-                "violation": w.violation, "relative": w.relative, "value": w.value, "t": w.time, "phase": w.phase,
+                "violation": w.violation, "relative": w.relative, "value": w.value, "t": w.time.map(shown), "phase": w.phase,
             })
         })
     };
@@ -139,7 +149,8 @@ fn constraint(constraint: &ConstraintReport) -> Value {
         "points": worst(&constraint.points),
         "between": worst(&constraint.between),
         "multiplier": constraint.multiplier.as_ref().map(|m| {
-            json!({ "value": m.value, "density": m.density, "t": m.time })
+            let per = if m.density { independent.unit.factor } else { 1.0 };
+            json!({ "value": m.value * per, "density": m.density, "t": m.time.map(shown) })
         }),
         "sensitivity": constraint.sensitivity,
     })

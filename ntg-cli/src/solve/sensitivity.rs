@@ -96,6 +96,7 @@ pub(super) fn document(sensitivity: &Result<Sensitivity, SensitivityError>, samp
     let curve = |name: &str, unit: &str, times: Vec<f64>| {
         let values: Vec<Vec<f64>> =
             times.iter().filter_map(|t| sensitivity.at(name, *t)).map(|gradient| gradient.values).collect();
+        let times: Vec<f64> = times.iter().map(|time| solution.structure().independent.shown(*time)).collect();
         json!({ "unit": unit, "t": times, "values": values })
     };
     let outputs = solution.trajectories().into_iter().map(|output| {

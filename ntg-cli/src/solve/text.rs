@@ -27,12 +27,13 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
         lines.push(format!("  {} = {}{}", signal.name(), number(signal.at(0.0)), spaced(signal.unit())));
     }
 
-    let mut heads = vec!["t [s]".to_owned()];
+    let independent = &solution.structure().independent;
+    let mut heads = vec![independent.heading()];
     heads.extend(trajectories.iter().map(|t| head(t.name(), t.unit())));
     heads.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| head(s.name(), s.unit())));
     lines.push(heads.iter().map(|h| format!("{h:>w$}", w = width(h))).collect::<Vec<_>>().join(" "));
     for t in solution.times(solved.samples.min(MOST_ROWS)) {
-        let mut row = vec![t];
+        let mut row = vec![independent.shown(t)];
         row.extend(trajectories.iter().map(|trajectory| trajectory.at(t)));
         row.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| s.at(t)));
         let cells = row.iter().zip(&heads).map(|(value, head)| format!("{:>w$}", number(*value), w = width(head)));

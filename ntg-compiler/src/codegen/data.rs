@@ -13,8 +13,8 @@
 
 use ntg_structure::{
     Affine, Agent, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family, Group,
-    Guess, GuessKind, GuessScope, Instant, Integral, Kernel, Loop, Measurement, Named, Output, Parameter, Part, Phase,
-    PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Slot, Spline, Start, Table, TableAxis,
+    Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement, Named, Output, Parameter,
+    Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline, Start, Table, TableAxis,
     TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
@@ -116,6 +116,7 @@ structs! {
     Parameter { name, doc, unit, array, value }
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }
     Reduction { op, over, body }
+    Shared { phase, output, until }
     Table { name, doc, axes, unit, values, method, extrapolation, replaceable }
     TableAxis { name, unit, nodes, symmetry }
     Term { name, place, unit }
@@ -129,6 +130,7 @@ structs_with_default! {
     PhaseRef {; phase, agent, index }
     Place {; line, column, text }
     Unit {; symbol, factor }
+    Independent {; name, unit }
 }
 
 impl ToRust for Instant {

@@ -3,7 +3,7 @@
 //! One function for each list of the `Structure`, so that a reader finds a phase or a group by
 //! name, and no expression is deeper than one of its entries.
 
-use ntg_structure::Structure;
+use ntg_structure::{Independent, Structure};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -17,6 +17,7 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
     let lists = [
         ("parameters", quote! { Parameter }, entries(&structure.parameters)),
         ("tables", quote! { Table }, entries(&structure.tables)),
+        ("shared", quote! { Shared }, entries(&structure.shared)),
         ("variables", quote! { Variable }, entries(&structure.variables)),
         ("agents", quote! { Agent }, entries(&structure.agents)),
         ("phases", quote! { Phase }, entries(&structure.phases)),
@@ -48,7 +49,11 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
     let Structure { name, doc, source, maximize, objective_unit, .. } = structure;
     let [name, doc, source] = [name, doc, source].map(ToRust::to_rust);
     let (maximize, objective_unit) = (maximize.to_rust(), objective_unit.to_rust());
-    let rest = left_out.then(|| quote! { ..Structure::default() });
+    let independent = (structure.independent != Independent::default()).then(|| {
+        let independent = structure.independent.to_rust();
+        quote! { independent: #independent, }
+    });
+    let rest = (left_out || independent.is_none()).then(|| quote! { ..Structure::default() });
     quote! {
         mod structure {
             use ::ntg::runtime::structure::*;
@@ -60,6 +65,7 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
                     source: #source,
                     maximize: #maximize,
                     objective_unit: #objective_unit,
+                    #independent
                     #(#fields,)*
                     #rest
                 }

@@ -210,8 +210,10 @@ impl<'a> Elaborator<'a> {
         if order == 0 || self.time.is_none() {
             return unit.clone();
         }
-        let seconds = if order == 1 { "s".to_owned() } else { format!("s^{order}") };
+        let Unit { symbol: time, factor } = &self.problem.independent.unit;
+        let time = if time.contains(['*', '/', '^']) { format!("({time})") } else { time.clone() };
+        let time = if order == 1 { time } else { format!("{time}^{order}") };
         let symbol = if unit.symbol.is_empty() { "1" } else { &unit.symbol };
-        Unit { symbol: format!("{symbol}/{seconds}"), factor: unit.factor }
+        Unit { symbol: format!("{symbol}/{time}"), factor: unit.factor / factor.powi(order as i32) }
     }
 }

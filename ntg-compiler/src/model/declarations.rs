@@ -123,7 +123,10 @@ impl<'a> Elaborator<'a> {
             }
             ItemKind::Phase(phase) => self.phase_declaration(scope, phase, item),
             ItemKind::Agent(agent) => self.agent_declaration(scope, agent, item),
-            ItemKind::Start(_)
+            ItemKind::Domain(_)
+            | ItemKind::Start(_)
+            | ItemKind::Scenario(_)
+            | ItemKind::Shared(_)
             | ItemKind::Jump(_)
             | ItemKind::Continuous(_)
             | ItemKind::Periodic(_)
@@ -227,9 +230,10 @@ fn allowed(kind: &ItemKind, level: Level) -> bool {
         | ItemKind::Collocation(_)
         | ItemKind::Guess(_) => true,
         ItemKind::Table(table) => !table.is_param || matches!(level, Level::Problem | Level::AboveAgents),
-        ItemKind::Param(_) | ItemKind::Variable(_) | ItemKind::Continuation(_) => {
+        ItemKind::Param(_) | ItemKind::Variable(_) | ItemKind::Continuation(_) | ItemKind::Domain(_) => {
             matches!(level, Level::Problem | Level::AboveAgents)
         }
+        ItemKind::Scenario(_) | ItemKind::Shared(_) => matches!(level, Level::Problem | Level::Agent),
         ItemKind::Let(_) | ItemKind::Output(_) | ItemKind::Duration(_) | ItemKind::Periodic(_) | ItemKind::At(_) => {
             level != Level::AboveAgents
         }
@@ -258,6 +262,9 @@ fn keyword(kind: &ItemKind) -> &'static str {
         ItemKind::Table(table) if table.is_param => "param",
         ItemKind::Table(_) => "table",
         ItemKind::Continuation(_) => "continuation",
+        ItemKind::Domain(_) => "domain",
+        ItemKind::Scenario(_) => "scenario",
+        ItemKind::Shared(_) => "shared",
         ItemKind::Duration(_) => "duration",
         ItemKind::Start(_) => "start",
         ItemKind::Phase(_) => "phase",

@@ -142,8 +142,10 @@ pub(super) struct Elaborator<'a> {
     pub(super) total_indices: HashMap<usize, u32>,
     /// The first event time, boundary value or integral in the expression at hand.
     pub(super) event: Option<EventMark>,
-    /// The dimension of time: none in a spec without units.
+    /// The dimension of the independent variable: that of time, or of what `domain` says; none in a spec without units.
     pub(super) time: Dimension,
+    /// The declaration of another independent variable.
+    pub(super) domain: Option<&'a ast::IndependentVariable>,
     /// The functions being inlined.
     pub(super) inlining: Vec<usize>,
     pub(super) memo: HashMap<MemoKey, Memo>,
@@ -218,6 +220,7 @@ impl<'a> Elaborator<'a> {
             total_indices: HashMap::new(),
             event: None,
             time: Dimension::TIME,
+            domain: None,
             inlining: Vec::new(),
             memo: HashMap::new(),
             members: Vec::new(),

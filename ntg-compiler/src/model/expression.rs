@@ -40,7 +40,7 @@ impl<'a> Elaborator<'a> {
                 let node = self.problem.dag.constant(std::f64::consts::PI);
                 Value::new(node, Dimension::NONE, span)
             }
-            ExprKind::Time => self.mission_time(cx, span),
+            ExprKind::Time => self.time(cx, span),
             ExprKind::ScaledTime => self.scaled_time(cx, span),
             ExprKind::Path(path) => self.path(cx, path, at),
             ExprKind::Tuple(elements) => self.tuple_element(cx, elements, at, span),

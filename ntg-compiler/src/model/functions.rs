@@ -173,7 +173,7 @@ impl<'a> Elaborator<'a> {
         if let Some(entity) = entity {
             if let ([only], true) =
                 (call.arguments.as_slice(), matches!(entity, Entity::Output | Entity::Definition(_)))
-                && super::mention::mentions_time(only)
+                && super::mention::mentions_time(only, &self.problem.independent.name)
             {
                 return self.delay(call.span, name);
             }

@@ -2,12 +2,16 @@
 
 use crate::syntax::ast::{Expr, ExprKind};
 
-/// Whether `t` or `tau` occurs where an expression's own context holds.
-pub(super) fn mentions_time(expr: &Expr) -> bool {
+/// Whether the independent variable or `tau` occurs where an expression's own context holds.
+pub(super) fn mentions_time(expr: &Expr, name: &str) -> bool {
     let mut open = vec![expr];
     while let Some(expr) = open.pop() {
         match &expr.kind {
             ExprKind::Time | ExprKind::ScaledTime => return true,
+            ExprKind::Path(path) => match path.segments.as_slice() {
+                [only] if only.name.text == name => return true,
+                _ => {}
+            },
             ExprKind::Neg(inner) | ExprKind::Der { of: inner, .. } => open.push(inner),
             ExprKind::Tuple(elements) => open.extend(elements),
             ExprKind::Sum(terms) => open.extend(terms.iter().map(|(_, term)| term)),

@@ -287,11 +287,16 @@ impl<'a> Elaborator<'a> {
         if !value.is_sound() {
             return None;
         }
-        let message = format!("{what} is a time, but this is {}", dimension.describe());
+        let (kind, unit, domain) = self.kind_of_time();
+        let message = match domain {
+            Some(domain) => format!("{what} is {kind} here, as `{domain}` says, but this is {}", dimension.describe()),
+            None => format!("{what} is {kind}, but this is {}", dimension.describe()),
+        };
         let text = self.text(value.span);
         let help = match text.parse::<f64>() {
-            Ok(_) => format!("give it a unit: `{text} [s]`"),
-            Err(_) => "write a time, such as `5 [s]`".to_owned(),
+            Ok(_) if !unit.is_empty() => format!("give it a unit: `{text} [{unit}]`"),
+            _ if unit.is_empty() => "write a number without a unit, such as `5`".to_owned(),
+            _ => format!("write {}, such as `5 [{unit}]`", kind.split(" [").next().unwrap_or_default()),
         };
         self.report(Diagnostic::new(Code::WrongUnit, value.span, message).help(help));
         None
@@ -372,6 +377,9 @@ impl<'a> Elaborator<'a> {
 
     /// The unit in which times are shown where none is declared.
     pub(super) fn time_unit(&self) -> ntg_structure::Unit {
+        if self.domain.is_some() {
+            return self.problem.independent.unit.clone();
+        }
         super::units::si(&self.time)
     }
 

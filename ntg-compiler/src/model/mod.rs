@@ -25,6 +25,7 @@ mod files;
 mod functions;
 mod given;
 mod guess;
+mod independent;
 mod kinds;
 mod library;
 mod measure;
@@ -42,14 +43,17 @@ mod places;
 pub mod problem;
 mod quantities;
 mod reductions;
+mod rename;
 mod repeat;
 mod route;
 mod rows;
+mod scenarios;
 mod scope;
 mod settle;
 mod shape;
 mod shape_calls;
 mod shape_names;
+mod shared;
 mod soft;
 mod steps;
 mod suggest;
@@ -111,9 +115,17 @@ fn elaborated(
     loader: &dyn Loader,
     given: &[Given],
 ) -> (Problem, Vec<Diagnostic>) {
+    let (expanded, misplaced) = scenarios::expanded(&spec.problem);
     let mut pass = Elaborator::new(&libraries.joined, loader);
-    pass.elaborate(&spec.problem, (libraries, &spec.uses), given);
-    let Elaborator { found, problem, .. } = pass;
+    pass.elaborate(&expanded, (libraries, &spec.uses), given);
+    let Elaborator { mut found, problem, .. } = pass;
+    let scenarios = scenarios::scenarios(&spec.problem.items);
+    found.iter_mut().for_each(|finding| scenarios::in_own_words(finding, &scenarios));
+    // What leads nowhere in a scenario has no meaning elsewhere either.
+    found.retain(|finding| {
+        misplaced.iter().all(|other| !(other.span.start <= finding.span.start && finding.span.end <= other.span.end))
+    });
+    found.extend(misplaced);
     (problem, found)
 }
 
@@ -150,7 +162,9 @@ impl<'a> Elaborator<'a> {
         if unitless::is_unitless(&problem.items) {
             self.time = dimension::Dimension::NONE;
         }
+        self.independent(&problem.items);
         self.declarations(problem);
+        self.independent_named(&problem.items);
         if !libraries.files.is_empty() {
             self.libraries(libraries, uses);
         }
@@ -164,6 +178,7 @@ impl<'a> Elaborator<'a> {
         self.outputs();
         self.variables();
         self.durations();
+        self.shared();
         self.continuity();
         self.periodic();
         self.objective();

@@ -177,6 +177,10 @@ impl<'a> Elaborator<'a> {
                 self.no_index(segment, "a duration");
                 self.named_duration(cx, scope, &segment.name.text, span)
             }
+            Entity::Independent => {
+                self.no_index(segment, "the independent variable");
+                self.mission_time(cx, span)
+            }
             Entity::Table(_) | Entity::Function(_) => {
                 let name = &segment.name.text;
                 let message = format!("`{name}` is {}: it has a value only for arguments", entity.describe());
@@ -273,7 +277,10 @@ impl<'a> Elaborator<'a> {
 
     pub(super) fn wrong_indices(&mut self, segment: &Segment, axes: usize) -> Value {
         let name = &segment.name.text;
-        let message = match (axes, segment.indices.len()) {
+        // The member of a scenario comes first, and is written at its head.
+        let hidden = usize::from(segment.indices.first().is_some_and(|index| index.span.end <= segment.span.start));
+        let axes = axes.saturating_sub(hidden);
+        let message = match (axes, segment.indices.len() - hidden) {
             (0, _) => format!("`{name}` is no array"),
             (_, 0) => format!("`{name}` is an array: say which member"),
             (1, n) => format!("`{name}` takes one index, not {n}"),

@@ -96,7 +96,7 @@ impl<'a> Elaborator<'a> {
             let text = self.text(span);
             return self.misplaced_value(What::Mission, span, &text, None);
         }
-        if mentions_time(time) {
+        if mentions_time(time, &self.problem.independent.name) {
             let text = self.text(of.span);
             return self.delay(span, &text);
         }
@@ -126,7 +126,9 @@ impl<'a> Elaborator<'a> {
             _ => {
                 let message = "`at` takes a time and an expression";
                 let finding = Diagnostic::new(Code::ArgumentCount, call.span, message);
-                self.report(finding.help("write `at(2.5 [s], x)`, or with a phase or agent `at(uav[2], 2.5 [s], x)`"));
+                let time = self.example_of_time("2.5");
+                let help = format!("write `at({time}, x)`, or with a phase or agent `at(uav[2], {time}, x)`");
+                self.report(finding.help(help));
                 None
             }
         }
@@ -336,6 +338,19 @@ impl<'a> Elaborator<'a> {
         })
     }
 
+    /// A place in a phase as one would write it.
+    pub(super) fn place_in_words(&self, phase: usize, tau: f64) -> String {
+        let at = PhaseAt { phase, agent: None, index: None };
+        let name = self.problem.phases[phase].duration_name.as_deref().unwrap_or("duration");
+        match (self.start_of(&at).as_number(), self.lasting(&at).as_number()) {
+            (Some(start), Some(lasting)) => {
+                let shown = self.problem.independent.shown(start + tau * lasting);
+                self.example_of_time(&((shown * 1e6).round() / 1e6).to_string())
+            }
+            _ => format!("{} * {name}", (tau * 1e6).round() / 1e6),
+        }
+    }
+
     /// Tells of a time that is made of more than constants and durations.
     fn no_place(&mut self, time: &Expr, stretches: &[Stretch]) -> Value {
         let text = self.text(time.span);
@@ -350,7 +365,8 @@ impl<'a> Elaborator<'a> {
         let text = self.text(time.span);
         let known: Option<Vec<f64>> = stretches.iter().map(|stretch| self.since(moment, stretch)).collect();
         let in_phase = stretches.len() == 1 && self.phases[stretches[0].phase].item.is_some();
-        let clock = "times are on the clock `t`, which does not begin anew with a phase";
+        let name = &self.problem.independent.name;
+        let clock = format!("times are on the clock `{name}`, which does not begin anew with a phase");
         let finding = if let Some(known) = known {
             let side = if known.iter().all(|tau| *tau < 0.0) { "before it begins" } else { "after it ends" };
             let what = if in_phase { "the phase" } else { "the trajectory" };

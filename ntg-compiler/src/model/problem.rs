@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use ntg_structure::{Block, Parameter, Spline, Table, Unit};
+use ntg_structure::{Block, Independent, Parameter, Shared, Spline, Table, Unit};
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Dag, InputId, NodeId};
@@ -417,10 +417,14 @@ pub struct Problem {
     pub maximize: bool,
     /// The unit of the objective.
     pub objective_unit: Unit,
+    /// What everything is a function of.
+    pub independent: Independent,
     /// Parameters with their defaults.
     pub parameters: Vec<Parameter>,
     /// Tables in SI units; `Node::Table { table, .. }` is an index into them.
     pub tables: Vec<Table>,
+    /// Outputs that members of scenarios have in common.
+    pub shared: Vec<Shared>,
     /// Free numbers.
     pub variables: Vec<Variable>,
     /// Timelines.

@@ -66,6 +66,8 @@ pub(super) enum Entity {
     Table(usize),
     /// A flat output; which one depends on the phase.
     Output,
+    /// The independent variable.
+    Independent,
     /// The duration of this scope.
     Duration(ScopeId),
     /// A phase.
@@ -84,6 +86,7 @@ impl Entity {
             Self::Variable(_) => "a variable",
             Self::Table(_) => "a table",
             Self::Output => "an output",
+            Self::Independent => "the independent variable",
             Self::Duration(_) => "a duration",
             Self::Phase(_) => "a phase",
             Self::Agent(_) => "an agent",

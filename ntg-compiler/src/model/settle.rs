@@ -91,7 +91,7 @@ fn remedy(misplaced: &Misplaced, place: Use<'_>) -> String {
             Some((path, inner)) => {
                 format!("write `initial({path}, {inner})`, `final({path}, {inner})` or `integral({path}, {inner})`")
             }
-            None if misplaced.what == What::Time => "write the name of the duration, or `final(t)`".to_owned(),
+            None if misplaced.what == What::Time => format!("write the name of the duration, or `final({text})`"),
             None => format!("write `integral({text})`, `initial({text})` or `final({text})`"),
         },
         (What::ScaledTime, Use::Objective | Use::Temporal) => {

@@ -67,7 +67,10 @@ impl<'a> Elaborator<'a> {
         };
         match node {
             Some(node) => Value::new(node, dimension, span),
-            None => self.misplaced_value(What::Time, span, "t", Some(dimension)),
+            None => {
+                let name = self.problem.independent.name.clone();
+                self.misplaced_value(What::Time, span, &name, Some(dimension))
+            }
         }
     }
 

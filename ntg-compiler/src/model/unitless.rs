@@ -45,8 +45,14 @@ impl Look {
                     t.axes.iter().for_each(|axis| self.unit(&axis.unit));
                 }
                 ItemKind::Continuation(c) => self.values(&c.values),
+                ItemKind::Domain(d) => self.unit(&d.unit),
                 ItemKind::Duration(d) => self.extent(&d.extent),
                 ItemKind::Start(extent) => self.extent(extent),
+                ItemKind::Scenario(s) => {
+                    self.items(&s.items);
+                    s.weight.iter().for_each(|weight| self.expr(weight));
+                }
+                ItemKind::Shared(s) => s.until.iter().for_each(|until| self.expr(until)),
                 ItemKind::Phase(p) => self.items(&p.items),
                 ItemKind::Agent(a) => self.items(&a.items),
                 ItemKind::Objective(o) => {

@@ -65,6 +65,8 @@ struct Gathered {
     loops: Vec<ntg_structure::Loop>,
     domain: Domain,
     purpose: &'static str,
+    /// Whether they are about what members of a scenario have in common alone.
+    is_common: bool,
     pieces: Vec<Piece>,
 }
 
@@ -102,13 +104,15 @@ impl Lowering<'_> {
         for piece in pieces {
             let loops = positions(&piece.loops);
             let environment = Environment::of(&piece.loops);
+            let is_common = self.is_common(&piece);
             for (domain, purpose) in self.domains(&piece, &environment, structure) {
                 let apart = matches!(domain, Domain::Mission);
-                match gathered.iter_mut().find(|g| !apart && g.loops == loops && g.domain == domain) {
+                let fits = |g: &&mut Gathered| g.is_common == is_common && g.loops == loops && g.domain == domain;
+                match gathered.iter_mut().find(|g| !apart && fits(g)) {
                     Some(group) => group.pieces.push(piece.clone()),
                     None => {
                         let pieces = vec![piece.clone()];
-                        gathered.push(Gathered { loops: loops.clone(), domain, purpose, pieces });
+                        gathered.push(Gathered { loops: loops.clone(), domain, purpose, is_common, pieces });
                     }
                 }
             }
@@ -117,6 +121,25 @@ impl Lowering<'_> {
             let group = self.group(group);
             structure.groups.push(group);
         }
+    }
+
+    /// Whether a constraint is about shared outputs alone: its rows are the same for several members.
+    fn is_common(&self, piece: &Piece) -> bool {
+        if self.problem.shared.is_empty() || !matches!(piece.role, Role::Constraint { .. }) {
+            return false;
+        }
+        let is_shared = |phase: usize, output: usize| {
+            self.problem.shared.iter().any(|shared| (shared.phase, shared.output) == (phase, output))
+        };
+        let mut flats = 0;
+        let leaves = self.problem.dag.inputs_of(&[piece.body]);
+        leaves.into_iter().all(|input| match self.problem.leaves.leaf(input) {
+            model::Leaf::Flat { phase, output, .. } => {
+                flats += 1;
+                is_shared(phase.phase, *output)
+            }
+            _ => true,
+        }) && flats > 0
     }
 
     /// Where a piece is evaluated, and what to call a kernel there.

@@ -18,9 +18,11 @@ pub(super) fn structure(lowering: &mut Lowering<'_>) -> Structure {
         source: lowering.source_name().to_owned(),
         maximize: problem.maximize,
         objective_unit: problem.objective_unit.clone(),
+        independent: problem.independent.clone(),
         parameters: problem.parameters.clone(),
         tables: problem.tables.clone(),
         places: problem.places.clone(),
+        shared: problem.shared.clone(),
         ..Structure::default()
     };
     structure.terms = terms(lowering);

@@ -117,6 +117,8 @@ pub enum ItemKind {
     Table(Table),
     /// `continuation width = (20, 10, 5) [deg];`
     Continuation(Continuation),
+    /// `domain s [m];`
+    Domain(IndependentVariable),
     /// `duration T in 1 .. 9 [s];`
     Duration(Duration),
     /// `start in 0 .. 600 [s];`, in an agent or the problem.
@@ -125,12 +127,16 @@ pub enum ItemKind {
     Phase(Phase),
     /// `agent uav[i in 1 .. 3] { ... }`
     Agent(Agent),
+    /// `scenario plant[k in 1 .. 20] weight p[k] { ... }`
+    Scenario(Scenario),
     /// `jump x, m;`, in a phase.
     Jump(Jump),
     /// `continuous x up to 1;`, in a phase.
     Continuous(Continuous),
     /// `periodic x, v up to 1;`
     Periodic(Periodic),
+    /// `shared u until 1 [s];`, in a scenario.
+    Shared(Shared),
     /// `collocation gauss(points = 5);`
     Collocation(Collocation),
     /// `minimize fuel [kg]: m0;`
@@ -337,6 +343,15 @@ pub struct Continuation {
     pub values: Values,
 }
 
+/// `domain s [m];`: what everything is a function of, instead of `t` in seconds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IndependentVariable {
+    /// Its name.
+    pub name: Ident,
+    /// The unit it is shown in; none for a pure number.
+    pub unit: Option<Unit>,
+}
+
 /// `duration T = 5 [s];`, `duration in 60 .. 1500 [s];`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Duration {
@@ -377,6 +392,30 @@ pub struct Agent {
     pub family: Option<IndexRange>,
     /// What stands in it.
     pub items: Vec<Item>,
+}
+
+/// `scenario name[k in 1 .. S] weight p[k] { items }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Its name.
+    pub name: Ident,
+    /// The index of its members.
+    pub family: IndexRange,
+    /// With what a member's terms enter the objective; none: 1 over the number of members.
+    pub weight: Option<Expr>,
+    /// What stands in it.
+    pub items: Vec<Item>,
+    /// From `scenario` to before the brace.
+    pub head: Span,
+}
+
+/// `shared u until 1 [s];`: members of a scenario have the same inputs, up to some time or all the way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shared {
+    /// The inputs, one at least; an index picks one of an array.
+    pub inputs: Vec<Segment>,
+    /// Until when; all the way where none is written.
+    pub until: Option<Expr>,
 }
 
 /// `jump x, m;`: these outputs are not continuous at the start of the phase.

@@ -204,12 +204,12 @@ impl Here<'_> {
         format!("`{short}{dots}`")
     }
 
-    /// Whether the statement begins with `soft` as constraints that may be missed do.
-    fn is_soft(&self) -> bool {
+    /// The word that the statement begins with.
+    fn first_word(&self) -> Option<&str> {
         let tokens = &self.scan.tokens[..self.index.min(self.scan.tokens.len())];
         let start = tokens.iter().rposition(|token| matches!(text(self.scan, token), ";" | "{" | "}"));
         let first = tokens.get(start.map_or(0, |start| start + 1));
-        first.is_some_and(|token| text(self.scan, token) == "soft")
+        first.map(|token| text(self.scan, token))
     }
 
     /// What to write instead, where the tokens tell.
@@ -218,7 +218,17 @@ impl Here<'_> {
         let (this, before) = (word(self.token), word(self.before));
         let is_word = self.token.is_some_and(|token| token.kind == TokenKind::Word);
         let after_number = self.before.is_some_and(|token| token.kind == TokenKind::Number);
-        if self.is_soft() && self.expected.has(Rule::relation) {
+        match self.first_word() {
+            Some("scenario") => {
+                return Some("a scenario names the index of its members: `scenario plant[k in 1 .. 20] { ... }`, or with `weight p[k]`".into());
+            }
+            Some("domain") => {
+                return Some("write the name of the independent variable and its unit: `domain s [m];`".into());
+            }
+            Some("shared") => return Some("write the inputs, and until when: `shared u until 1 [s];`".into()),
+            _ => {}
+        }
+        if self.first_word() == Some("soft") && self.expected.has(Rule::relation) {
             return Some("a soft constraint is `soft(w): c`, with two prices `soft(linear = v, square = w): c`".into());
         }
         if this == "at" && self.expected.has(Rule::part) {

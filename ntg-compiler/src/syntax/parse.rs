@@ -36,6 +36,7 @@ pub(super) enum Scope {
     Problem,
     Agent,
     Phase,
+    Scenario,
     /// A file without a problem.
     Library,
 }

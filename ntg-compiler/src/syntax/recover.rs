@@ -239,6 +239,7 @@ impl Walk<'_> {
             ("initial" | "trajectory" | "final" | "temporal" | "dynamics" | "measure", Body::Items(_)) => {
                 (Rule::whole_block_head, Body::Constraints)
             }
+            ("scenario", Body::Items(_)) => (Rule::whole_scenario_head, Body::Items(Scope::Scenario)),
             ("at", Body::Items(_)) => (Rule::whole_at_head, Body::Constraints),
             ("guess", Body::Items(_)) => (Rule::whole_guess_head, Body::Guess),
             ("table", Body::Items(_)) => (Rule::whole_table_head, Body::Rows),

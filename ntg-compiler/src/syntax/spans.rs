@@ -130,9 +130,12 @@ structures! {
     Rows { header, rows, span }
     Row { node, values, span }
     Continuation { name, values }
+    IndependentVariable { name, unit }
     Duration { name, extent }
     Phase { name, family, after, items }
     Agent { name, family, items }
+    Scenario { name, family, weight, items, head }
+    Shared { inputs, until }
     Jump { outputs }
     Continuous { outputs, up_to }
     Periodic { outputs, up_to }
@@ -187,9 +190,9 @@ macro_rules! choices {
 
 choices! {
     ItemKind {
-        Const(x), Param(x), Variable(x), Output(x), Function(x), Let(x), Table(x), Continuation(x), Duration(x),
-        Start(x), Phase(x), Agent(x), Jump(x), Continuous(x), Periodic(x), Collocation(x), Objective(x), Block(x), At(x),
-        Guess(x);;
+        Const(x), Param(x), Variable(x), Output(x), Function(x), Let(x), Table(x), Continuation(x), Domain(x),
+        Duration(x), Start(x), Phase(x), Agent(x), Scenario(x), Jump(x), Continuous(x), Periodic(x), Shared(x),
+        Collocation(x), Objective(x), Block(x), At(x), Guess(x);;
     }
     UseTarget { Module(x), File(x);; }
     TableData { Inline(x); File { path, span }; }

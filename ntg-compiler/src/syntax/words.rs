@@ -34,8 +34,10 @@ pub const EXPRESSION_WORDS: &[&str] = &[
 pub(crate) const NEVER_NAMES: &[&str] = &["Self", "crate", "self", "super"];
 
 /// Words that begin a declaration though they are reserved for expressions, or not at all.
-pub const OTHER_ITEM_WORDS: &[&str] =
-    &["at", "duration", "dynamics", "final", "initial", "input", "jump", "measure", "periodic", "start", "state"];
+pub const OTHER_ITEM_WORDS: &[&str] = &[
+    "at", "domain", "duration", "dynamics", "final", "initial", "input", "jump", "measure", "periodic", "scenario",
+    "shared", "start", "state",
+];
 
 /// Whether no name may be so.
 pub(crate) fn is_reserved(word: &str) -> bool {

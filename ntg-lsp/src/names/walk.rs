@@ -45,7 +45,7 @@ struct Walk {
 
 impl Walk {
     fn open(&mut self, parent: Option<usize>, span: Span) -> usize {
-        self.names.scopes.push(NameScope { parent, span, names: HashMap::new() });
+        self.names.scopes.push(NameScope { parent, span, closed: false, names: HashMap::new() });
         self.names.scopes.len() - 1
     }
 
@@ -104,6 +104,11 @@ impl Walk {
                     self.segment_of_time(scope, &it.name, Kind::Agent, item, &it.items);
                     continue;
                 }
+                ItemKind::Scenario(it) => {
+                    self.segment_of_time(scope, &it.name, Kind::Scenario, item, &it.items);
+                    continue;
+                }
+                ItemKind::Domain(it) => (&it.name, Kind::Domain),
                 _ => continue,
             };
             self.declare(scope, kind.0, kind.1, item.span, doc, None);
@@ -114,6 +119,7 @@ impl Walk {
         let doc = item.doc.as_ref().map(|doc| doc.text.clone());
         let declaration = self.declare(scope, name, kind, item.span, doc, None);
         let inner = self.open(Some(scope), item.span);
+        self.names.scopes[inner].closed = kind == Kind::Scenario;
         self.names.declarations[declaration].inner = Some(inner);
         self.opened.insert(name.span, inner);
         self.declarations(inner, items);
@@ -141,7 +147,7 @@ impl Walk {
     fn look_up(&self, scope: usize, name: &str) -> Vec<usize> {
         let mut found = self.outwards(Some(scope), name);
         for inner in scope + 1..self.names.scopes.len() {
-            if self.names.is_within(inner, scope) {
+            if self.names.is_within(inner, scope) && !self.names.scopes[inner].closed {
                 found.extend(self.own(inner, name));
             }
         }
@@ -274,6 +280,18 @@ impl Walk {
                     None => self.items(inner, &it.items),
                 }
             }
+            ItemKind::Scenario(it) => {
+                let inner = self.opened.get(&it.name.span).copied().unwrap_or(scope);
+                self.over(scope, &it.family, item.span, |walk| {
+                    it.weight.iter().for_each(|weight| walk.expr(scope, weight));
+                    walk.items(inner, &it.items);
+                });
+            }
+            ItemKind::Shared(it) => {
+                it.inputs.iter().for_each(|input| self.segment(scope, input));
+                it.until.iter().for_each(|until| self.expr(scope, until));
+            }
+            ItemKind::Domain(_) => {}
             ItemKind::Jump(it) => it.outputs.iter().for_each(|output| self.segment(scope, output)),
             ItemKind::Continuous(it) => {
                 it.outputs.iter().for_each(|output| self.segment(scope, output));

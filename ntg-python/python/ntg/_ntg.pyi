@@ -53,6 +53,7 @@ class Found:
     violation: tuple[float, float]
     iterations: int
     seconds: float
+    independent: tuple[str, str, float]
     span: tuple[float, float]
     terms: list[_Number]
     history: list[tuple[int, float, float, float, float, float]]

@@ -260,8 +260,9 @@ class Solution:
     # Tables.
 
     def sample(self, times: "int | ArrayLike" = POINTS) -> "dict[str, NDArray[np.float64]]":
-        """Outputs and named expressions at times in seconds, or at so many equally spaced ones; the times are `t`.
+        """Outputs and named expressions at times in SI units, or at so many equally spaced ones; the times are `t`.
 
+        Where the spec has another `domain`, their column has its name and unit.
         Outside the span of an agent its columns are NaN.
         """
         import numpy as np
@@ -269,7 +270,8 @@ class Solution:
         t = np.linspace(self.start, self.end, times) if isinstance(times, (int, np.integer)) else np.asarray(times, float)
         if t.ndim != 1:
             raise ValueError("times are a number of them, or an array of one dimension")
-        table = {"t": t}
+        name, _, factor = self._core.independent
+        table = {name: t / factor}
         curves = [*self.outputs.values(), *(one for one in self.expressions.values() if isinstance(one, Curve))]
         for curve in curves:
             near = 1e-12 * max(abs(curve.start), abs(curve.end), 1.0)
@@ -281,7 +283,8 @@ class Solution:
     def units(self) -> dict[str, str]:
         """The units of the columns of `sample` and of the tables; empty for pure numbers."""
         curves = [*self._core.outputs, *self._core.expressions[0]]
-        return {"t": "s", **{data[0]: data[1] for data in curves}}
+        name, unit, _ = self._core.independent
+        return {name: unit, **{data[0]: data[1] for data in curves}}
 
     def to_pandas(self, times: "int | ArrayLike" = POINTS) -> Any:
         """`sample` as a pandas DataFrame; the units are in its `attrs["units"]`."""
@@ -344,13 +347,14 @@ class Solution:
         if axes is None:
             _, axes = plt.subplots(len(curves), 1, sharex=True, squeeze=False, layout="constrained")
         places = np.atleast_1d(axes).reshape(-1)
+        name, unit, factor = self._core.independent
         for curve, place in zip(curves, places):
             t = np.linspace(curve.start, curve.end, times) if isinstance(times, int) else np.asarray(times, float)
-            place.plot(t, curve(t))
+            place.plot(t / factor, curve(t))
             place.set_ylabel(f"{curve.name} [{curve.unit}]" if curve.unit else curve.name)
             place.margins(x=0)
             place.grid(alpha=0.3)
-        places[-1].set_xlabel("t [s]")
+        places[-1].set_xlabel(f"{name} [{unit}]" if unit else name)
         return axes
 
     def plot_track(self, x: str, y: str, times: int = POINTS, axes: Any = None) -> Any:

@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 use super::tables::{multiplier_words, number, place_words, prose, with_unit};
-use crate::run::{Constraint, Run, Spec};
+use crate::run::{Constraint, Independent, Run, Spec};
 
 /// Relative violations at points above this are violations.
 const VIOLATED: f64 = 1e-6;
@@ -155,7 +155,7 @@ fn text(spec: &Spec, run: &Run) -> Markup {
         parts.push(html! {
             mark class=(state.class()) tabindex="0" {
                 (&spec.text[mark.start..mark.end])
-                span.tip role="tooltip" { @for constraint in &mark.constraints { (tip(constraint)) } }
+                span.tip role="tooltip" { @for constraint in &mark.constraints { (tip(constraint, &run.independent)) } }
             }
         });
         at = mark.end;
@@ -165,16 +165,16 @@ fn text(spec: &Spec, run: &Run) -> Markup {
 }
 
 /// What one reads on pointing at a constraint.
-fn tip(constraint: &Constraint) -> Markup {
+fn tip(constraint: &Constraint, independent: &Independent) -> Markup {
     let state = state(constraint);
     html! {
         span.tipline {
             b { (constraint.name) } " is " (state.word())
             @if let Some(worst) = constraint.points.iter().chain(&constraint.between).find(|w| w.relative > VIOLATED) {
-                span.row { "missed by " (with_unit(worst.violation, &constraint.unit)) (place_words(worst.t, &worst.phase)) }
+                span.row { "missed by " (with_unit(worst.violation, &constraint.unit)) (place_words(worst.t, &worst.phase, independent)) }
             }
             @if let Some(multiplier) = &constraint.multiplier {
-                span.row { "largest multiplier " (multiplier_words(multiplier)) (place_words(multiplier.t, "")) }
+                span.row { "largest multiplier " (multiplier_words(multiplier, independent)) (place_words(multiplier.t, "", independent)) }
                 @if constraint.sensitivity.is_finite() {
                     span.row { "dJ*/d(bound) " (number(constraint.sensitivity)) }
                 }

@@ -23,7 +23,7 @@ pub(super) fn explanation(run: &Run) -> Markup {
                             }
                             td.n { @if part.line > 0 { (part.line) } }
                             td.n { @if part.amount != 0.0 { (with_unit(part.amount, &part.unit)) } @else { "–" } }
-                            td { @if part.amount != 0.0 { (place_words(part.t, &part.phase).trim_start()) } @else { "holds only because others do not" } }
+                            td { @if part.amount != 0.0 { (place_words(part.t, &part.phase, &run.independent).trim_start()) } @else { "holds only because others do not" } }
                         }
                     } }
                 } }

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::spec::{State, state};
 use crate::figure::Runs;
-use crate::run::{Multiplier, Run};
+use crate::run::{Independent, Multiplier, Run};
 
 /// Seven significant digits without an exponent where that is readable.
 pub(super) fn number(value: f64) -> String {
@@ -38,14 +38,24 @@ pub(super) fn seconds(value: f64) -> String {
 }
 
 /// ", t = 12.5 s in `covert`"; empty for no place.
-pub(super) fn place_words(t: Option<f64>, phase: &str) -> String {
-    let time = t.map_or_else(String::new, |t| format!(" at t = {} s", number(t)));
+pub(super) fn place_words(t: Option<f64>, phase: &str, independent: &Independent) -> String {
+    let Independent { name, unit, .. } = independent;
+    let time = t.map_or_else(String::new, |t| format!(" at {name} = {} {unit}", number(t)).trim_end().to_owned());
     if phase.is_empty() { time } else { format!("{time} in {phase}") }
 }
 
-/// A multiplier, per second where it is a density.
-pub(super) fn multiplier_words(multiplier: &Multiplier) -> String {
-    format!("{}{}", number(multiplier.value), if multiplier.density { " per second" } else { "" })
+/// The head of a column of times.
+fn time_unit(independent: &Independent) -> String {
+    match independent.unit.as_str() {
+        "s" => "seconds".to_owned(),
+        unit => unit.to_owned(),
+    }
+}
+
+/// A multiplier, per unit of time where it is a density.
+pub(super) fn multiplier_words(multiplier: &Multiplier, independent: &Independent) -> String {
+    let per = if multiplier.density { format!(" {}", independent.per()) } else { String::new() };
+    format!("{}{per}", number(multiplier.value))
 }
 
 /// Prose in which code stands between backticks, as in documentation and messages.
@@ -86,7 +96,7 @@ pub(super) fn constraints(run: &Run) -> Markup {
                         th { "constraint" } th { "block" } th.n { "line" } th { "state" }
                         th.n { "missed at points" } th.n { "between" }
                         @if proved { th { "for all times" } }
-                        th.n { "largest multiplier" } th.n { "at t" }
+                        th.n { "largest multiplier" } th.n { "at " (run.independent.name) }
                         th.n title="when the bound moves everywhere at once" { "dJ*/d(bound)" } th { "unit" }
                     } }
                     tbody { @for constraint in &run.constraints {
@@ -102,7 +112,7 @@ pub(super) fn constraints(run: &Run) -> Markup {
                                 mark.equality[proof.holds()].violated[!proof.holds()] title=(proof.words) { (proof.verdict) }
                             } } }
                             @if let Some(multiplier) = &constraint.multiplier {
-                                td.n { (multiplier_words(multiplier)) }
+                                td.n { (multiplier_words(multiplier, &run.independent)) }
                                 td.n { @if let Some(t) = multiplier.t { (number(t)) } }
                                 td.n { (number(constraint.sensitivity)) }
                             } @else { td {} td {} td {} }
@@ -125,7 +135,7 @@ pub(super) fn quantities(run: &Run) -> Markup {
             div.columns {
                 @if !run.times.is_empty() {
                     div.scroll { table {
-                        thead { tr { th { "time" } th.n { "seconds" } } }
+                        thead { tr { th { (if run.independent.name == "t" { "time" } else { &run.independent.name }) } th.n { (time_unit(&run.independent)) } } }
                         tbody { @for (name, t) in &run.times { tr { td { (name) } td.n { (number(*t)) } } } }
                     } }
                 }

@@ -38,6 +38,8 @@ pub struct Run {
     pub doc: String,
     /// `solved`, or why the solve ended.
     pub status: String,
+    /// What everything is a function of; every time is in its unit.
+    pub independent: Independent,
     /// What to try next; empty when solved.
     pub advice: String,
     /// What is to be known beside the status, in words.
@@ -78,7 +80,7 @@ pub struct Run {
     pub outputs: IndexMap<String, Series>,
     /// Named expressions by path.
     pub lets: IndexMap<String, Series>,
-    /// Durations and event times by name, seconds.
+    /// Durations and event times by name.
     pub times: IndexMap<String, f64>,
     /// Phases in order.
     pub phases: Vec<Phase>,
@@ -143,7 +145,7 @@ pub struct Series {
     /// Whether it is a named expression that only serves others: pictures leave it out unless asked.
     #[serde(skip_serializing_if = "is_false")]
     pub helper: bool,
-    /// Seconds of mission time, increasing.
+    /// Mission times, increasing.
     #[serde(with = "numbers::many", skip_serializing_if = "Vec::is_empty")]
     pub t: Vec<f64>,
     /// Values in the unit.
@@ -154,13 +156,47 @@ pub struct Series {
     pub bands: Vec<[f64; 4]>,
 }
 
+/// The independent variable: mission time in seconds, unless the spec has another domain.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Independent {
+    /// Its name.
+    pub name: String,
+    /// The unit's symbol; empty for a pure number.
+    pub unit: String,
+    /// SI units in one unit.
+    pub factor: f64,
+}
+
+impl Default for Independent {
+    fn default() -> Self {
+        Self { name: "t".to_owned(), unit: "s".to_owned(), factor: 1.0 }
+    }
+}
+
+impl Independent {
+    /// The head of an axis or a column: `t [s]`.
+    pub fn heading(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+
+    /// What a density is per: `second`, `m`.
+    pub fn per(&self) -> String {
+        match self.unit.as_str() {
+            "s" => "per second".to_owned(),
+            "" => format!("per unit of {}", self.name),
+            unit => format!("per {unit}"),
+        }
+    }
+}
+
 /// A phase and its times.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Phase {
     /// Its path.
     pub name: String,
-    /// When it starts, seconds.
+    /// When it starts.
     pub start: f64,
     /// When it ends.
     pub end: f64,
@@ -272,7 +308,7 @@ pub struct Worst {
     /// The value there.
     #[serde(with = "numbers::one")]
     pub value: f64,
-    /// Seconds of mission time.
+    /// Mission time.
     pub t: Option<f64>,
     /// The phase's path.
     pub phase: String,
@@ -282,12 +318,12 @@ pub struct Worst {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Multiplier {
-    /// In units of the objective per unit of the constraint, per second where it is a density.
+    /// In units of the objective per unit of the constraint, per unit of time where it is a density.
     #[serde(with = "numbers::one")]
     pub value: f64,
     /// Whether it is a density over time.
     pub density: bool,
-    /// Seconds of mission time.
+    /// Mission time.
     pub t: Option<f64>,
 }
 
@@ -301,7 +337,7 @@ pub struct Member {
     pub lower: Option<f64>,
     /// The upper bound; none for none.
     pub upper: Option<f64>,
-    /// Seconds of mission time; empty for a constraint at no point.
+    /// Mission times; empty for a constraint at no point.
     #[serde(with = "numbers::many")]
     pub t: Vec<f64>,
     /// Values on the finer grid.

@@ -9,8 +9,8 @@ use ntg_runtime::settings::Progress;
 use ntg_runtime::structure::{Block, Points, Structure, Unit};
 
 use super::{
-    Constraint, Discretisation, FORMAT, Finding, Grid, Iteration, Member, Multiplier, Phase, Quantity, Run, Scene,
-    Series, Spec, Step, Term, VERSION, Values, Violation, Worst, layout, reading,
+    Constraint, Discretisation, FORMAT, Finding, Grid, Independent, Iteration, Member, Multiplier, Phase, Quantity,
+    Run, Scene, Series, Spec, Step, Term, VERSION, Values, Violation, Worst, layout, reading,
 };
 
 /// Samples of each output and named expression.
@@ -53,11 +53,17 @@ impl Recording<'_> {
     fn numbers(&self) -> Run {
         let (report, solution) = (self.report, &self.report.solution);
         let structure = solution.structure();
-        Run {
+        let independent = &structure.independent;
+        let mut run = Run {
             format: FORMAT.to_owned(),
             version: VERSION,
             problem: report.problem.clone(),
             doc: structure.doc.clone(),
+            independent: Independent {
+                name: independent.name.clone(),
+                unit: independent.unit.symbol.clone(),
+                factor: independent.unit.factor,
+            },
             status: report.status.label(),
             advice: report.advice.to_owned(),
             warnings: report.warnings().into_iter().map(|warning| warning.message).collect(),
@@ -89,7 +95,9 @@ impl Recording<'_> {
                 text: self.source.text.clone(),
                 findings: self.notes.iter().map(|note| finding(note, self.source)).collect(),
             }),
-        }
+        };
+        in_units_of_time(&mut run);
+        run
     }
 
     fn outputs(&self) -> IndexMap<String, Series> {
@@ -159,6 +167,28 @@ impl Recording<'_> {
             coefficients: solution.spline_coefficients().len(),
             rows: solution.rows(),
             phases: structure.phases.iter().map(|phase| grid(structure, phase)).collect(),
+        }
+    }
+}
+
+/// Every time in the unit that the independent variable is shown in; until then they are in SI units.
+fn in_units_of_time(run: &mut Run) {
+    let factor = run.independent.factor;
+    let shown = |time: &mut f64| *time /= factor;
+    run.times.values_mut().for_each(shown);
+    run.phases.iter_mut().flat_map(|phase| [&mut phase.start, &mut phase.end]).for_each(shown);
+    run.outputs.values_mut().chain(run.lets.values_mut()).flat_map(|series| &mut series.t).for_each(shown);
+    for constraint in &mut run.constraints {
+        let worst = constraint.points.iter_mut().chain(&mut constraint.between);
+        worst.filter_map(|worst| worst.t.as_mut()).for_each(shown);
+        if let Some(multiplier) = &mut constraint.multiplier {
+            multiplier.t.iter_mut().for_each(shown);
+            multiplier.value *= if multiplier.density { factor } else { 1.0 };
+        }
+        let is_density = constraint.multiplier.as_ref().is_some_and(|multiplier| multiplier.density);
+        for member in &mut constraint.members {
+            member.t.iter_mut().chain(&mut member.multiplier_t).for_each(shown);
+            member.multiplier.iter_mut().for_each(|value| *value *= if is_density { factor } else { 1.0 });
         }
     }
 }

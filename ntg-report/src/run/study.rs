@@ -155,7 +155,7 @@ impl From<&ntg_runtime::explain::Part> for Part {
             column: part.place.column,
             amount: part.amount,
             unit: part.unit.symbol.clone(),
-            t: part.time,
+            t: part.time.map(|time| part.independent.shown(time)),
             phase: part.phase.clone(),
             words: part.to_string(),
         }

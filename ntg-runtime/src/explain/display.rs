@@ -57,7 +57,7 @@ impl fmt::Display for Part {
             write!(f, " {}", self.unit.symbol)?;
         }
         if let Some(time) = self.time {
-            write!(f, " at t = {} s", brief(time))?;
+            write!(f, " at {}", self.independent.place(time, brief))?;
         }
         if self.phase.is_empty() { Ok(()) } else { write!(f, " in `{}`", self.phase) }
     }

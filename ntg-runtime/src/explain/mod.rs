@@ -25,7 +25,7 @@ use ntg_nlp::Status as End;
 use ntg_nlp::ipm::{self, FixedPenalty};
 use ntg_nlp::scaling::row_factors;
 use ntg_nlp::{Nlp, Options, Outcome, Scaling, residuals};
-use ntg_structure::{Block, Place, Unit};
+use ntg_structure::{Block, Independent, Place, Unit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
@@ -107,9 +107,11 @@ pub struct Part {
     pub amount: f64,
     /// The unit of `amount`.
     pub unit: Unit,
-    /// The mission time of that violation, or of the largest multiplier, in seconds; none for what
+    /// The mission time of that violation, or of the largest multiplier, in SI units; none for what
     /// belongs to no point.
     pub time: Option<f64>,
+    /// How that time is told of.
+    pub independent: Independent,
     /// The phase's path; empty without one.
     pub phase: String,
 }

@@ -62,6 +62,7 @@ impl Search<'_> {
             amount: if relative > 0.0 { missed(worst) / declared.unit.factor } else { 0.0 },
             unit: declared.unit.clone(),
             time: point.phase.map(|phase| layout.start(phase, x) + point.tau * layout.duration(phase, x)),
+            independent: structure.independent.clone(),
             phase: point.phase.map(|phase| names::phase(structure, layout, phase)).unwrap_or_default(),
         };
         let size = |row: &usize| if relative > 0.0 { key(row).0 } else { key(row).1 };
@@ -84,6 +85,7 @@ impl Search<'_> {
                 amount: 0.0,
                 unit: Unit::default(),
                 time: None,
+                independent: self.nlp.model.structure.independent.clone(),
                 phase: String::new(),
             }
         };

@@ -6,6 +6,7 @@ use crate::transcribe::slots::AffineMap;
 use ntg_nlp::Target;
 use ntg_splines::Side;
 use ntg_structure::{Degree, Domain};
+use std::collections::HashMap;
 
 /// Bounds a decade or more apart have their geometric mean as middle.
 const DECADE: f64 = 10.0;
@@ -65,11 +66,17 @@ pub(super) fn middle(lower: f64, upper: f64) -> f64 {
 /// middle of constant bounds; else 0.
 pub(super) fn outputs(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
+    let mut met = HashMap::new(); // Looked up, never iterated.
     for agent in 0..layout.agents.len() {
         for phase in layout.agents[agent].phases.clone() {
             for output in 0..layout.phases[phase].outputs.len() {
                 let known = known_values(nlp, phase, output, x);
-                let bounds = if known.is_empty() { bounds(nlp, phase, output) } else { None };
+                let first = layout.phases[phase].outputs[output].coefficients[0];
+                // What members of a scenario share is looked at once.
+                let bounds = match known.is_empty() {
+                    true => *met.entry(first).or_insert_with(|| bounds(nlp, phase, output)),
+                    false => None,
+                };
                 let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
                 let member = &layout.phases[phase].outputs[output];
                 for (variable, tau) in member.coefficients.iter().zip(member.knots.greville()) {

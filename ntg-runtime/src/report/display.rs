@@ -2,7 +2,7 @@
 
 use super::{ConstraintReport, Estimate, Report, Warning};
 use crate::transcribe::names::brief;
-use ntg_structure::Unit;
+use ntg_structure::{Independent, Unit};
 use std::fmt;
 
 /// Relative violations below this are not worth a line.
@@ -36,8 +36,9 @@ impl fmt::Display for Report {
         if let Some(refined) = &self.refined {
             write!(f, "\n{refined}")?;
         }
+        let independent = &self.solution.structure().independent;
         for time in self.solution.event_times().iter().filter(|(name, _)| !name.contains('(')) {
-            write!(f, "\n  {:<11} {} s", time.0, brief(time.1))?;
+            write!(f, "\n  {:<11} {}", time.0, independent.amount(time.1, brief))?;
         }
         let deviations = self.estimate.as_ref().map_or(&[][..], |estimate| &estimate.deviations);
         for (k, variable) in self.solution.variables().into_iter().enumerate() {
@@ -54,7 +55,7 @@ impl fmt::Display for Report {
         self.warnings().iter().filter(is_new).try_for_each(|warning| write!(f, "\n  warning: {warning}"))?;
         let told = self.violated_between();
         let is_told = |constraint: &ConstraintReport| told.iter().any(|other| std::ptr::eq(*other, constraint));
-        self.constraints.iter().try_for_each(|constraint| violated(f, constraint, is_told(constraint)))
+        self.constraints.iter().try_for_each(|constraint| violated(f, constraint, (is_told(constraint), independent)))
     }
 }
 
@@ -79,14 +80,18 @@ fn estimated(f: &mut fmt::Formatter<'_>, estimate: &Estimate) -> fmt::Result {
 }
 
 /// A line for a constraint that is violated noticeably; a warning has told of some what is between the points.
-fn violated(f: &mut fmt::Formatter<'_>, constraint: &ConstraintReport, is_told: bool) -> fmt::Result {
+fn violated(
+    f: &mut fmt::Formatter<'_>,
+    constraint: &ConstraintReport,
+    (is_told, independent): (bool, &Independent),
+) -> fmt::Result {
     let between = constraint.between.as_ref().filter(|_| !is_told);
     for (worst, where_) in [(constraint.points.as_ref(), "at a point"), (between, "between points")] {
         let Some(worst) = worst.filter(|w| w.relative > NEGLIGIBLE || w.relative.is_nan()) else { continue };
         let unit = symbol(&constraint.unit);
         write!(f, "\n  `{}` is missed by {}{unit} {where_}", constraint.name, brief(worst.violation))?;
         if let Some(time) = worst.time {
-            write!(f, ", t = {} s", brief(time))?;
+            write!(f, ", {}", independent.place(time, brief))?;
         }
         if !worst.phase.is_empty() {
             write!(f, " in `{}`", worst.phase)?;

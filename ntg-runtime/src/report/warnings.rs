@@ -2,7 +2,7 @@
 
 use super::{ConstraintReport, RefineStatus, Report};
 use crate::transcribe::names::brief;
-use ntg_structure::Place;
+use ntg_structure::{Independent, Place};
 use std::fmt;
 
 /// One thing to know, in words and with its place.
@@ -14,7 +14,7 @@ pub struct Warning {
     pub place: Place,
     /// The name of the constraint that is violated between the points; empty for other warnings.
     pub constraint: String,
-    /// The mission time, in seconds; none for what belongs to no time.
+    /// The mission time, in SI units; none for what belongs to no time.
     pub time: Option<f64>,
 }
 
@@ -35,7 +35,8 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        let between = self.violated_between().into_iter().map(violated_between);
+        let independent = &self.solution.structure().independent;
+        let between = self.violated_between().into_iter().map(|constraint| violated_between(constraint, independent));
         let unmet = self.refined.iter().filter(|refined| refined.status != RefineStatus::Met).map(|refined| Warning {
             message: format!("refinement to {:.0e}: {}", refined.tolerance, refined.status),
             place: Place::default(),
@@ -59,7 +60,7 @@ impl Report {
     }
 }
 
-fn violated_between(constraint: &ConstraintReport) -> Warning {
+fn violated_between(constraint: &ConstraintReport, independent: &Independent) -> Warning {
     let mut message = format!("`{}` is violated between the points", constraint.name);
     let worst = constraint.between.as_ref();
     if let Some(worst) = worst {
@@ -69,7 +70,7 @@ fn violated_between(constraint: &ConstraintReport) -> Warning {
         }
         message += &format!(" ({:.1e} relative)", worst.relative);
         if let Some(time) = worst.time {
-            message += &format!(" at t = {} s", brief(time));
+            message += &format!(" at {}", independent.place(time, brief));
         }
         if !worst.phase.is_empty() {
             message += &format!(" in `{}`", worst.phase);

@@ -35,11 +35,11 @@ impl Sensitivity {
         if name == "objective" {
             return Some(self.objective().clone());
         }
-        let seconds = Unit { symbol: "s".into(), factor: 1.0 };
+        let unit = self.solution.structure().independent.unit.clone();
         // Both are linear in the variables: what they are of the derivatives is their derivative.
-        let time = |solution: &Solution| solution.time(name);
+        let time = |solution: &Solution| solution.time(name).map(|time| time / unit.factor);
         if self.solution.time(name).is_some() {
-            return self.of_each(time).map(|values| Gradient { unit: seconds, values });
+            return self.of_each(time).map(|values| Gradient { unit: unit.clone(), values });
         }
         if let Some(found) = self.solution.variables().into_iter().find(|variable| variable.name == name) {
             let values = self.of_each(|solution| solution.variable(name))?;

@@ -11,6 +11,7 @@ use super::instances::members;
 use super::layout::{Layout, narrow, outside};
 use super::node::Site;
 use super::points::{Point, point_set, within};
+use super::repeated::without_repetitions;
 use super::rows::{RowInfo, RowKind, group_bounds};
 use super::slots::AffineMap;
 use ntg_nlp::{Block, Target};
@@ -49,7 +50,8 @@ pub(crate) fn elements(frame: &Frame) -> Result<Elements, SetupError> {
         if kernel.is_some_and(|kernel| kernel.rows != group.rows.len()) {
             return Err(SetupError::malformed("a group has not one meaning for each row of its kernel"));
         }
-        for (batch, maps) in batches(frame, &group.call, sites(frame, group, point_set)?)? {
+        let sites = without_repetitions(frame, group, sites(frame, group, point_set)?)?;
+        for (batch, maps) in batches(frame, &group.call, sites)? {
             all.add(frame, index, group, (batch, maps))?;
         }
     }

@@ -65,8 +65,8 @@ pub enum SetupError {
     Duration {
         /// The phase, in words.
         phase: String,
-        /// Its duration or the upper bound of it, in seconds.
-        seconds: f64,
+        /// Its duration or the upper bound of it, with its unit.
+        lasting: String,
         /// Where the phase stands.
         place: Place,
     },
@@ -157,8 +157,8 @@ impl SetupError {
             Self::IndexOutOfRange { what, index, first, last, .. } => {
                 format!("{what} has no member {index}: its members are {first} .. {last}")
             }
-            Self::Duration { phase, seconds, .. } => {
-                format!("{phase} would last {seconds} s; a duration must be positive and finite")
+            Self::Duration { phase, lasting, .. } => {
+                format!("{phase} would last {lasting}; a duration must be positive and finite")
             }
             Self::Knots { output, error, .. } => format!("the spline of {output}: {error}"),
             Self::Table { table, message } => format!("table `{table}`: {message}"),

@@ -193,7 +193,7 @@ impl Layout {
         for (phase, declared) in structure.phases.iter().enumerate().filter(|(_, p)| p.agent == agent) {
             self.phase_first[phase].push(self.phases.len());
             for index in family_members(declared.family) {
-                self.add_phase(declared, phase, member, index)?;
+                self.add_phase(structure, phase, member, index)?;
             }
         }
         let phases = first..self.phases.len();
@@ -203,11 +203,12 @@ impl Layout {
 
     fn add_phase(
         &mut self,
-        declared: &Phase,
+        structure: &Structure,
         phase: usize,
         agent: usize,
         index: Option<i64>,
     ) -> Result<(), SetupError> {
+        let declared = &structure.phases[phase];
         let (mut outputs, mut output_first) = (vec![], vec![]);
         for (output, found) in declared.outputs.iter().enumerate() {
             let spline = &found.spline;
@@ -223,7 +224,8 @@ impl Layout {
             }
         }
         let breakpoints = union(outputs.iter().map(|o: &OutputMember| o.knots.breakpoints()));
-        self.number_coefficients(&mut outputs);
+        let common = common(structure, phase, &outputs, &output_first);
+        self.number_coefficients(&mut outputs, &common);
         let duration = Time::Fixed(f64::NAN);
         self.phases.push(PhaseMember { phase, agent, index, duration, outputs, output_first, breakpoints });
         Ok(())
@@ -231,17 +233,24 @@ impl Layout {
 
     /// Numbers one phase's coefficients by the time at which each acts most (its Greville
     /// abscissa), outputs side by side: the order of docs/maths.md, equation 4.4.
-    fn number_coefficients(&mut self, outputs: &mut [OutputMember]) {
+    /// A coefficient that an output has in common with another one before it is that one's.
+    fn number_coefficients(&mut self, outputs: &mut [OutputMember], common: &[Option<(usize, usize)>]) {
         let mut order: Vec<(f64, usize, usize)> = vec![];
         for (o, output) in outputs.iter_mut().enumerate() {
             let greville = output.knots.greville();
             output.coefficients = vec![0; greville.len()];
-            order.extend(greville.into_iter().enumerate().map(|(i, tau)| (tau, o, i)));
+            let first = common[o].map_or(0, |(_, count)| count);
+            order.extend(greville.into_iter().enumerate().skip(first).map(|(i, tau)| (tau, o, i)));
         }
         // A stable sort: coefficients of equal abscissae stay in the order of output and index.
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, o, i) in order {
             outputs[o].coefficients[i] = self.take(1);
+        }
+        for (o, common) in common.iter().enumerate() {
+            let Some((from, count)) = *common else { continue };
+            let own = outputs[from].coefficients[..count].to_vec();
+            outputs[o].coefficients[..count].copy_from_slice(&own);
         }
     }
 
@@ -263,6 +272,32 @@ impl Layout {
         self.variables += count;
         first
     }
+}
+
+/// With which other output each has its first coefficients in common, and how many (docs/maths.md, section 4.2).
+///
+/// Up to an end of an interval two splines on the same knots are the same exactly where all coefficients are that act
+/// before it.
+fn common(
+    structure: &Structure,
+    phase: usize,
+    outputs: &[OutputMember],
+    first: &[usize],
+) -> Vec<Option<(usize, usize)>> {
+    let mut common = vec![None; outputs.len()];
+    for shared in structure.shared.iter().filter(|shared| shared.phase == phase) {
+        let elements = shared.until.len();
+        let members = outputs.iter().enumerate().filter(|(_, member)| member.output == shared.output);
+        for (o, member) in members.filter(|(o, _)| *o >= first[shared.output] + elements) {
+            let element = (o - first[shared.output]) % elements;
+            let intervals = member.knots.breakpoints()[1..].iter().filter(|end| **end <= shared.until[element]).count();
+            if let Some(last) = intervals.checked_sub(1) {
+                let count = member.knots.support_start(last) + member.knots.order();
+                common[o] = Some((first[shared.output] + element, count));
+            }
+        }
+    }
+    common
 }
 
 /// An index of a variable; the vector of variables fits into memory, so 32 bits hold it.

@@ -26,6 +26,7 @@ pub(crate) mod names;
 pub(crate) mod node;
 pub(crate) mod points;
 mod reduce;
+mod repeated;
 pub(crate) mod rows;
 mod scale;
 pub(crate) mod shape;

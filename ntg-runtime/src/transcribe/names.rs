@@ -45,9 +45,10 @@ pub(crate) fn output(structure: &Structure, layout: &Layout, phase: usize, outpu
 pub(crate) fn point(structure: &Structure, layout: &Layout, at: &Point, x: &[f64]) -> String {
     let Some(phase) = at.phase else { return String::new() };
     let t = layout.start(phase, x) + at.tau * layout.duration(phase, x);
+    let place = structure.independent.place(t, brief);
     match self::phase(structure, layout, phase) {
-        name if name.is_empty() => format!("t = {} s (tau = {})", brief(t), brief(at.tau)),
-        name => format!("phase `{name}`, t = {} s (tau = {})", brief(t), brief(at.tau)),
+        name if name.is_empty() => format!("{place} (tau = {})", brief(at.tau)),
+        name => format!("phase `{name}`, {place} (tau = {})", brief(at.tau)),
     }
 }
 
@@ -62,7 +63,9 @@ pub(crate) fn fixed_point(structure: &Structure, layout: &Layout, at: &Point) ->
         return format!("the {}{name}", if at.tau == 0.0 { "start" } else { "end" });
     }
     match (layout.fixed_start(phase), layout.phases[phase].duration) {
-        (Some(start), Time::Fixed(duration)) => format!("t = {} s{name}", brief(start + at.tau * duration)),
+        (Some(start), Time::Fixed(duration)) => {
+            format!("{}{name}", structure.independent.place(start + at.tau * duration, brief))
+        }
         _ => format!("tau = {}{name}", brief(at.tau)),
     }
 }

@@ -56,17 +56,18 @@ pub(crate) fn group_bounds(frame: &Frame, group: &Group, indices: &[i64]) -> Res
 /// Bounds of all variables: coefficients have none, the others those of their declarations.
 pub(crate) fn variable_bounds(frame: &Frame) -> Result<Vec<Pair>, SetupError> {
     let (structure, layout) = (frame.structure, frame.layout);
-    let seconds = Unit { symbol: "s".into(), factor: 1.0 };
+    let unit_of_time = &structure.independent.unit;
     let mut bounds = vec![UNBOUNDED; layout.coefficients];
     for (phase, member) in layout.phases.iter().enumerate() {
         let declared = &structure.phases[member.phase];
         let Duration::Free(call) = &declared.duration else { continue };
         let words = || format!("the duration of {}", phase_words(structure, layout, phase));
         let pair = declared_bounds(frame, call, &frame.phase_indices(phase))?;
-        let (lower, upper) = check(pair, words, &seconds, &declared.place)?;
+        let (lower, upper) = check(pair, words, unit_of_time, &declared.place)?;
         if upper <= 0.0 {
             let phase = phase_words(structure, layout, phase);
-            return Err(SetupError::Duration { phase, seconds: upper, place: declared.place.clone() });
+            let lasting = structure.independent.amount(upper, |value| value.to_string());
+            return Err(SetupError::Duration { phase, lasting, place: declared.place.clone() });
         }
         bounds.push((lower.max(shortest(upper)), upper));
     }
@@ -75,7 +76,7 @@ pub(crate) fn variable_bounds(frame: &Frame) -> Result<Vec<Pair>, SetupError> {
         let Start::Free(call) = &declared.start else { continue };
         let words = || format!("the start of agent `{}`", names::agent(structure, layout, agent));
         let pair = declared_bounds(frame, call, &Vec::from_iter(member.index))?;
-        bounds.push(check(pair, words, &seconds, &declared.place)?);
+        bounds.push(check(pair, words, unit_of_time, &declared.place)?);
     }
     for declared in &structure.variables {
         for index in super::instances::family_members(declared.family) {

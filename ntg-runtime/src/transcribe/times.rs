@@ -127,7 +127,8 @@ fn fix_phase(
     let seconds = frame.number(call, &frame.phase_indices(phase))?;
     if !(seconds.is_finite() && seconds > 0.0) {
         let phase = phase_words(structure, layout, phase);
-        return Err(SetupError::Duration { phase, seconds, place: declared.place.clone() });
+        let lasting = frame.structure.independent.amount(seconds, |value| value.to_string());
+        return Err(SetupError::Duration { phase, lasting, place: declared.place.clone() });
     }
     layout.phases[phase].duration = Time::Fixed(seconds);
     Ok(())

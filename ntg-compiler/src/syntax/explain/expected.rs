@@ -143,12 +143,16 @@ fn kind(rule: Rule) -> Kind {
         | R::function
         | R::named
         | R::continuation
+        | R::domain
         | R::duration
         | R::start
         | R::phase
         | R::phase_head
         | R::agent
         | R::agent_head
+        | R::scenario
+        | R::scenario_head
+        | R::shared
         | R::jump
         | R::continuous
         | R::periodic
@@ -251,13 +255,14 @@ fn mark(rule: Rule) -> Kind {
         R::deviation => Kind::Minor("sigma"),
         R::smoothness => Kind::Keyword("smooth".into()),
         R::course => Kind::Keyword("held".into()),
-        R::method => Kind::Name,
+        R::method | R::domain_name => Kind::Name,
         R::place
         | R::whole_block_head
         | R::whole_at_head
         | R::whole_guess_head
         | R::whole_phase_head
         | R::whole_agent_head
+        | R::whole_scenario_head
         | R::whole_table_head => Kind::Statement,
         R::problem | R::problem_head | R::whole_problem_head => Kind::Keyword("problem".into()),
         R::for_head | R::whole_for_head => Kind::Keyword("for".into()),

@@ -208,7 +208,7 @@ impl Writer<'_> {
         let inside = self.inside(open, body(&word), word == "problem")?;
         let mut line = Line::new(blank, indent, "");
         (line.cells, line.align) = match word.as_str() {
-            "phase" | "agent" => (vec![head, inside], Align::Phases),
+            "phase" | "agent" | "scenario" => (vec![head, inside], Align::Phases),
             "at" | "initial" | "trajectory" | "final" | "temporal" | "dynamics" | "guess" => {
                 (vec![head, inside], Align::Blocks)
             }
@@ -251,7 +251,7 @@ impl Writer<'_> {
 /// What stands in a block that begins with that word.
 fn body(word: &str) -> Body {
     match word {
-        "problem" | "phase" | "agent" | "fn" => Body::Items,
+        "problem" | "phase" | "agent" | "scenario" | "fn" => Body::Items,
         "table" => Body::Rows,
         _ => Body::Statements,
     }

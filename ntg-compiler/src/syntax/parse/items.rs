@@ -48,10 +48,13 @@ impl Build {
             Rule::function => ItemKind::Function(self.function(pair)),
             Rule::named => ItemKind::Let(self.named(pair)),
             Rule::continuation => ItemKind::Continuation(self.continuation(pair)),
+            Rule::domain => ItemKind::Domain(self.domain(pair)),
             Rule::duration => ItemKind::Duration(self.duration(pair)),
             Rule::start => ItemKind::Start(self.start(pair)),
             Rule::phase => ItemKind::Phase(self.phase(pair)),
             Rule::agent => ItemKind::Agent(self.agent(pair)),
+            Rule::scenario => ItemKind::Scenario(self.scenario(pair)),
+            Rule::shared => ItemKind::Shared(self.shared(pair)),
             Rule::jump => ItemKind::Jump(self.jump(pair)),
             Rule::continuous => ItemKind::Continuous(self.continuous(pair)),
             Rule::periodic => ItemKind::Periodic(self.periodic(pair)),
@@ -68,6 +71,17 @@ impl Build {
     fn check_scope(&mut self, declaration: &Pair<'_>) {
         let (word, where_to) = match (declaration.as_rule(), self.scope) {
             (rule, Scope::Library) => return self.check_library_item(declaration, rule),
+            (Rule::domain, Scope::Phase | Scope::Agent | Scope::Scenario) => {
+                ("domain", "write it directly in the problem: all agents have the same independent variable")
+            }
+            (rule, Scope::Scenario) => match outside_scenarios(rule, declaration.as_str()) {
+                Some(found) => found,
+                None => return,
+            },
+            (Rule::scenario, Scope::Phase) => {
+                ("scenario", "write it outside the phases: a scenario goes through all of them")
+            }
+            (Rule::shared, _) => ("shared", "write it in the scenario whose members share it"),
             (Rule::phase, Scope::Phase) => ("phase", "write it after the phase, with `after`"),
             (Rule::agent, Scope::Phase | Scope::Agent) => ("agent", "write it directly in the problem"),
             (Rule::start, Scope::Phase) => {
@@ -106,10 +120,39 @@ impl Build {
             Scope::Problem => "directly in the problem",
             Scope::Agent => "in an agent",
             Scope::Phase => "in a phase",
+            Scope::Scenario => "in a scenario",
             Scope::Library => "in a library",
         };
         let start = self.span(declaration).start;
         let span = Span { start, end: start + word.len() as u32 };
         self.report(Code::Misplaced, span, format!("`{word}` may not stand {place}"), where_to);
     }
+}
+
+/// What may not stand in a scenario, and where to write it.
+fn outside_scenarios(rule: Rule, text: &str) -> Option<(&'static str, &'static str)> {
+    const ALL: &str = "write it outside the scenario, whose members have it in common";
+    const TIME: &str = "write it outside the scenario: its members share one time";
+    Some(match rule {
+        Rule::table if text.starts_with("param") => ("param", ALL),
+        Rule::table => ("table", ALL),
+        Rule::param => (
+            "param",
+            "write it outside the scenario, for numbers of each member as an array: `param p[3] = (1, 2, 3);`",
+        ),
+        Rule::constant => {
+            ("const", "write `let` for a number that depends on the member, or move it outside the scenario")
+        }
+        Rule::function => ("fn", "write it outside the scenario, with what it depends on as arguments"),
+        Rule::continuation => ("continuation", ALL),
+        Rule::collocation => ("collocation", TIME),
+        Rule::duration => ("duration", TIME),
+        Rule::start => ("start", TIME),
+        Rule::phase => ("phase", TIME),
+        Rule::agent => ("agent", "write the scenario in the agent"),
+        Rule::scenario => ("scenario", "scenarios do not nest: write it beside this one"),
+        Rule::jump => ("jump", "declare what jumps outside the scenario, as an array"),
+        Rule::continuous => ("continuous", TIME),
+        _ => return None,
+    })
 }

@@ -89,6 +89,7 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_continuous
             | R::kw_duration
             | R::kw_else
+            | R::kw_domain
             | R::kw_except
             | R::kw_fn
             | R::kw_for
@@ -106,6 +107,8 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_problem
             | R::kw_rows
             | R::kw_sigma
+            | R::kw_scenario
+            | R::kw_shared
             | R::kw_smooth
             | R::kw_soft
             | R::kw_spline
@@ -114,8 +117,10 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_table
             | R::kw_through
             | R::kw_to
+            | R::kw_until
             | R::kw_up
             | R::kw_use
             | R::kw_variable
+            | R::kw_weight
     )
 }

@@ -4,12 +4,20 @@ use super::parts::Parts;
 use super::{Build, Scope};
 use crate::diagnostic::Code;
 use crate::syntax::ast::{
-    Agent, Collocation, CollocationKind, Continuous, Duration, Extent, Jump, Periodic, Phase, Segment,
+    Agent, Collocation, CollocationKind, Continuous, Duration, Extent, IndependentVariable, Jump, Periodic, Phase,
+    Scenario, Segment, Shared,
 };
 use crate::syntax::grammar::{Pair, Rule};
 use crate::syntax::words::nearest;
 
 impl Build {
+    /// `domain s [m];`
+    pub(super) fn domain(&mut self, pair: Pair<'_>) -> IndependentVariable {
+        let mut parts = Parts::of(pair);
+        let name = self.name(&parts.required(Rule::domain_name));
+        IndependentVariable { name, unit: parts.optional(Rule::unit).map(|pair| self.unit(pair)) }
+    }
+
     pub(super) fn duration(&mut self, pair: Pair<'_>) -> Duration {
         let mut parts = Parts::of(pair);
         let name = parts.optional(Rule::name).map(|pair| self.name(&pair));
@@ -43,6 +51,25 @@ impl Build {
         let name = self.name(&head.required(Rule::name));
         let family = head.optional(Rule::family).map(|pair| self.family(pair));
         Agent { name, family, items: self.items(Scope::Agent, parts) }
+    }
+
+    /// `scenario plant[k in 1 .. S] weight p[k] { items }`
+    pub(super) fn scenario(&mut self, pair: Pair<'_>) -> Scenario {
+        let mut parts = Parts::of(pair);
+        let head = parts.required(Rule::scenario_head);
+        let span = self.span(&head);
+        let mut inner = Parts::of(head);
+        let name = self.name(&inner.required(Rule::name));
+        let family = self.family(inner.required(Rule::family));
+        let weight = inner.optional(Rule::expression).map(|pair| self.expression(pair));
+        Scenario { name, family, weight, items: self.items(Scope::Scenario, parts), head: span }
+    }
+
+    /// `shared u until 1 [s];`
+    pub(super) fn shared(&mut self, pair: Pair<'_>) -> Shared {
+        let mut parts = Parts::of(pair);
+        let inputs = self.segments(&mut parts);
+        Shared { inputs, until: parts.optional(Rule::expression).map(|pair| self.expression(pair)) }
     }
 
     pub(super) fn jump(&mut self, pair: Pair<'_>) -> Jump {

@@ -158,7 +158,7 @@ impl Brackets {
         let misplaced = match head {
             "phase" => matches!(this, "phase" | "agent" | "problem"),
             "agent" => matches!(this, "agent" | "problem"),
-            "problem" => this == "problem",
+            "problem" | "scenario" => this == "problem",
             "fn" => this != "let" && ITEM_WORDS.contains(&this),
             _ => {
                 let block =
