@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use ntg_runtime::problem::Problem;
 use ntg_runtime::report::Report;
-use ntg_runtime::structure::Unit;
+use ntg_runtime::structure::{Independent, Unit};
 use ntg_sweep::{Column, Format, Named};
 
 use crate::write;
@@ -34,21 +34,26 @@ impl Arguments {
         csv.chain(self.parquet.iter().map(|path| (path.as_path(), Format::Parquet)))
     }
 
-    /// Whether all can be written, before anything is solved; gives the spacing in seconds.
-    pub(crate) fn checked(&self, force: bool) -> Result<Option<f64>, String> {
+    /// Whether all can be written, before anything is solved.
+    pub(crate) fn checked(&self, force: bool) -> Result<(), String> {
         for (path, format) in self.files() {
             write::may_write(path, force)?;
             ntg_sweep::bytes(&[], format).map_err(|message| format!("--parquet: {message}"))?;
         }
-        let Some(text) = &self.every else { return Ok(None) };
-        if self.files().next().is_none() {
+        if self.every.is_some() && self.files().next().is_none() {
             return Err("--every: write where the samples go, too: --csv FILE or --parquet FILE".to_owned());
         }
-        let seconds = Unit { symbol: "s".to_owned(), factor: 1.0 };
-        let found = ntg_interp::quantity(text, &seconds).map_err(|message| format!("--every {text}: {message}"))?;
+        Ok(())
+    }
+
+    /// The spacing of the samples, in SI units of the independent variable.
+    pub(crate) fn spacing(&self, independent: &Independent) -> Result<Option<f64>, String> {
+        let Some(text) = &self.every else { return Ok(None) };
+        let unit = &independent.unit;
+        let found = ntg_interp::quantity(text, unit).map_err(|message| format!("--every {text}: {message}"))?;
         match found[..] {
             [every] if every > 0.0 && every.is_finite() => Ok(Some(every)),
-            _ => Err(format!("--every {text}: write one positive time, such as `0.1s`")),
+            _ => Err(format!("--every {text}: write one positive time, such as `0.1{}`", unit.symbol)),
         }
     }
 
@@ -101,7 +106,9 @@ fn columns(problem: &dyn Problem, report: &Report, times: &[f64]) -> Vec<Named> 
         Column::Number(cells.collect())
     };
     let all = (f64::NEG_INFINITY, f64::INFINITY);
-    let mut columns = vec![("t [s]".to_owned(), Column::Number(times.iter().copied().map(Some).collect()))];
+    let independent = &solution.structure().independent;
+    let shown = times.iter().map(|time| Some(independent.shown(*time))).collect();
+    let mut columns = vec![(independent.heading(), Column::Number(shown))];
     for trajectory in solution.trajectories() {
         let values = times.iter().map(|t| trajectory.at(*t)).collect();
         let name = headed(trajectory.name(), trajectory.unit());

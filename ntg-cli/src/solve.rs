@@ -56,11 +56,12 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     if let Some(path) = &arguments.save {
         write::may_write(path, arguments.force)?;
     }
-    let every = arguments.sampled.checked(arguments.force)?;
+    arguments.sampled.checked(arguments.force)?;
     let Some(spec) = files::compile(&arguments.spec, &arguments.set) else { return Err(String::new()) };
     let files::Spec { source, compiled, set } = spec;
     let mut problem = Interpreted::new(&compiled.program);
     set.put(&mut problem)?;
+    let every = arguments.sampled.spacing(&problem.structure().independent)?;
     let guess = first_guess(arguments, &problem)?;
     let compile_seconds = began.elapsed().as_secs_f64();
 

@@ -14,8 +14,8 @@
 use ntg_structure::{
     Affine, Agent, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family, Group,
     Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement, Named, Output, Parameter,
-    Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline, Start, Table, TableAxis,
-    TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
+    Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline, Start, Table,
+    TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

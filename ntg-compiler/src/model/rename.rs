@@ -212,6 +212,7 @@ impl<'n> Rename<'n> {
             softness.linear.iter_mut().chain(&mut softness.square).for_each(|price| self.expr(price));
         }
         self.relation(&mut constraint.relation);
+        constraint.sigma.iter_mut().for_each(|sigma| self.expr(sigma));
     }
 
     pub(super) fn guess(&mut self, guess: &mut GuessKind) {
@@ -266,7 +267,12 @@ impl<'n> Rename<'n> {
 
     pub(super) fn expr(&mut self, expr: &mut Expr) {
         match &mut expr.kind {
-            ExprKind::Number(_) | ExprKind::Pi | ExprKind::Time | ExprKind::ScaledTime => {}
+            ExprKind::Number(_)
+            | ExprKind::Pi
+            | ExprKind::Time
+            | ExprKind::ScaledTime
+            | ExprKind::File(_)
+            | ExprKind::Rows(_) => {}
             ExprKind::Path(path) => self.path(path),
             ExprKind::Tuple(elements) => elements.iter_mut().for_each(|element| self.expr(element)),
             ExprKind::Neg(inner) => self.expr(inner),

@@ -238,7 +238,7 @@ impl Pass<'_> {
         Rename::inside(self.members, &scenario.name.text, &scenario.family.index).path(&mut path);
         let value = Expr { kind: ExprKind::Path(path), span: name.span };
         let relation = Relation::In { value, bounds: renamed };
-        Some(Constraint { doc: None, softness: None, name: None, relation, span })
+        Some(Constraint { doc: None, softness: None, name: None, relation, sigma: None, span })
     }
 
     /// What is shared, by the names of its arrays.

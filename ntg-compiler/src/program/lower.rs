@@ -168,7 +168,7 @@ impl Lowering<'_> {
     }
 
     fn group(&mut self, gathered: Gathered) -> Group {
-        let Gathered { loops, domain, purpose, pieces } = gathered;
+        let Gathered { loops, domain, purpose, pieces, .. } = gathered;
         let roots: Vec<Root<'_>> =
             pieces.iter().map(|p| Root { body: p.body, loops: &p.loops, label: self.source.snippet(p.span) }).collect();
         let call = call(self, purpose, Mode::Solve, &roots);

@@ -17,7 +17,7 @@ function NtgClock(place, charts, show, number) {
   const set = (share) => {
     slider.value = 1000 * share;
     const t = first + share * (last - first);
-    reading.textContent = `t = ${number(t)} ${place.dataset.unit}`;
+    reading.textContent = `${place.dataset.name} = ${number(t)} ${place.dataset.unit}`;
     show(t);
   };
   const stop = () => { cancelAnimationFrame(running); running = null; play.textContent = "▶"; };
@@ -33,5 +33,5 @@ function NtgClock(place, charts, show, number) {
     running = requestAnimationFrame(step);
   });
   slider.addEventListener("input", () => { stop(); set(slider.value / 1000); });
-  reading.textContent = `t = ${number(first)} ${place.dataset.unit}`;
+  reading.textContent = `${place.dataset.name} = ${number(first)} ${place.dataset.unit}`;
 }

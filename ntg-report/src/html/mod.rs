@@ -14,7 +14,7 @@ pub use spec::ending;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::figure;
-use crate::run::Run;
+use crate::run::{Independent, Run};
 
 const STYLE: &str = include_str!("../assets/report.css");
 const UPLOT_STYLE: &str = include_str!("../assets/uPlot.min.css");
@@ -58,17 +58,17 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                     (study::explanation(first))
                     (study::minima(first))
                     @if runs.len() > 1 { (tables::comparison(runs)) }
-                    (charts("tracks", "Tracks", &data.tracks))
+                    (charts("tracks", "Tracks", &data.tracks, &first.independent))
                     (extremes::section(runs, page.all))
-                    (charts("outputs", "Outputs", &data.outputs))
-                    (charts("lets", "Named expressions", &data.lets))
+                    (charts("outputs", "Outputs", &data.outputs, &first.independent))
+                    (charts("lets", "Named expressions", &data.lets, &first.independent))
                     (helpers(first, page.all))
-                    (charts("constraints", "Constraints and their bounds", &data.constraints))
-                    (charts("multipliers", "Multipliers", &data.multipliers))
+                    (charts("constraints", "Constraints and their bounds", &data.constraints, &first.independent))
+                    (charts("multipliers", "Multipliers", &data.multipliers, &first.independent))
                     @for (name, run) in runs { (spec::section(name, run, runs.len() > 1)) }
                     (tables::constraints(first))
                     (tables::quantities(first))
-                    (charts("convergence", "Convergence", &data.convergence))
+                    (charts("convergence", "Convergence", &data.convergence, &first.independent))
                     (tables::history(first))
                     (study::refinement(first))
                     (tables::discretisation(first))
@@ -146,12 +146,12 @@ fn helpers(run: &Run, all: bool) -> Markup {
 }
 
 /// Places where the page's program draws; nothing where there is nothing to draw.
-fn charts(anchor: &str, title: &str, ids: &[usize]) -> Markup {
+fn charts(anchor: &str, title: &str, ids: &[usize], independent: &Independent) -> Markup {
     html! {
         @if !ids.is_empty() {
             section id=(anchor) {
                 h2 { (title) }
-                @if anchor == "tracks" { div #clock data-unit="s" {} }
+                @if anchor == "tracks" { div #clock data-name=(independent.name) data-unit=(independent.unit) {} }
                 div.charts { @for id in ids { figure.chart data-chart=(id) {} } }
             }
         }

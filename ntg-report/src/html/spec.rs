@@ -93,7 +93,7 @@ pub(super) fn missed(run: &Run) -> Markup {
                 @if missed.len() == 1 { code { (worst.name) } " is missed between the points" }
                 @else { (missed.len()) " constraints are missed between the points, most of all " code { (worst.name) } }
                 @if let Some(between) = &worst.between {
-                    " by " (with_unit(between.violation, &worst.unit)) (place_words(between.t, &between.phase))
+                    " by " (with_unit(between.violation, &worst.unit)) (place_words(between.t, &between.phase, &run.independent))
                 }
                 ". " code { "ntg solve --between refine" } " adds intervals until that is small."
             }
