@@ -64,12 +64,12 @@ impl<'n> Rename<'n> {
             return;
         }
         if let Some(at) = path.segments.iter().position(|s| self.scenarios.contains_key(&s.name.text)) {
-            self.into_scenario(path, at);
+            self.name_of_member(path, at);
         }
     }
 
     /// `plant[2].x`: the segment `at` names a scenario.
-    fn into_scenario(&mut self, path: &mut Path, at: usize) {
+    fn name_of_member(&mut self, path: &mut Path, at: usize) {
         let scenario = path.segments[at].name.clone();
         let names = &self.scenarios[&scenario.text];
         let example = names.first().map_or("x", String::as_str);
