@@ -19,7 +19,7 @@ pub(crate) struct Arguments {
     /// The same as a Parquet file.
     #[arg(long, value_name = "FILE")]
     parquet: Option<PathBuf>,
-    /// How far apart these times are: `0.1s`, `20 ms`; the very end stands in the last row in any case. Without it,
+    /// How far apart these times are: `0.1s`, `20 ms`, `5 m` where the spec has `domain s [m]`; the very end stands in the last row in any case. Without it,
     /// `--samples` says how many there are.
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     every: Option<String>,

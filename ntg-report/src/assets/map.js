@@ -18,6 +18,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
     for (const key in attributes) element.setAttribute(key, attributes[key]);
     return parent.appendChild(element);
   };
+  const time = document.getElementById("clock").dataset;
   const svg = make("svg", { class: "map", role: "img" }, place);
   const tip = place.appendChild(document.createElement("div"));
   tip.className = "maptip";
@@ -185,7 +186,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
     if (!line) { tip.textContent = ""; return; }
     reading.setAttribute("cx", f.px(line.x[i]));
     reading.setAttribute("cy", f.py(line.y[i]));
-    tip.textContent = `${line.name ? `${line.name}: ` : ""}${chart.x} ${number(line.x[i])}, ${chart.y} ${number(line.y[i])}, t ${number(line.t[i])} s`;
+    tip.textContent = `${line.name ? `${line.name}: ` : ""}${chart.x} ${number(line.x[i])}, ${chart.y} ${number(line.y[i])}, ${time.name} ${number(line.t[i])} ${time.unit}`;
   });
   svg.addEventListener("wheel", (event) => {
     event.preventDefault();

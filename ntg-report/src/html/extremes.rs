@@ -21,6 +21,7 @@ struct Extremes {
 /// The table; nothing where nothing is over time.
 pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
     let several = runs.len() > 1;
+    let at = format!("at {}", runs.first().map_or("t", |(_, run)| run.independent.name.as_str()));
     let mut rows: Vec<(&str, Extremes)> = vec![];
     for (name, run) in runs {
         rows.extend(extremes(run, all).into_iter().map(|row| (name.as_str(), row)));
@@ -37,7 +38,7 @@ pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
                 div.scroll.tall[rows.len() > 40] { table {
                     thead { tr {
                         th { "quantity" } @if several { th { "run" } }
-                        th.n { "least" } th.n { "at t" } th.n { "greatest" } th.n { "at t" } th { "unit" }
+                        th.n { "least" } th.n { (at) } th.n { "greatest" } th.n { (at) } th { "unit" }
                         th { "limits" } th { "nearest to them" }
                     } }
                     tbody { @for (run, row) in &rows {
