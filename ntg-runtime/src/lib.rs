@@ -32,6 +32,7 @@ pub use ntg_splines as splines;
 pub use ntg_structure as structure;
 pub use solve::{solve, solve_from};
 pub use solver::Solver;
+pub use strategy::Tracked;
 
 /// What a program that solves problems names.
 pub mod prelude {
@@ -42,5 +43,5 @@ pub mod prelude {
     pub use crate::settings::{Control, Method, Progress, Settings};
     pub use crate::solution::{Family, Signal, Solution, Trajectory};
     pub use crate::status::Status;
-    pub use crate::{Error, Solver, solve, solve_from};
+    pub use crate::{Error, Solver, Tracked, solve, solve_from};
 }

@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::solve::{refined, solve_and_refine};
-use crate::strategy::{Session, Task};
+use crate::strategy::{Session, Task, Tracked};
 
 /// Solves one problem many times and keeps everything that does not change between the solves: the
 /// transcription, the plans of the method and of the check on the finer grid, and the last solution.
@@ -96,6 +96,66 @@ impl<P: Problem, S> Solver<P, S> {
             }
             None => self.solve(),
         }
+    }
+
+    /// Solves from the last solution and its multipliers, for loops: no continuation, no check between the points and no
+    /// report. Where an attempt of a hundred iterations does not end, one from the guess of the spec follows, with what is
+    /// left of the limits. What the first attempt finds has the bits that [`Solver::resolve`] finds. Without a solution the
+    /// last one stays, so that the next attempt begins there again. The first solution is that of [`Solver::solve`], which
+    /// is called where there is none.
+    ///
+    /// ```
+    /// use ntg::prelude::*;
+    ///
+    /// ntg! {
+    ///     /// From a place to another with the least effort.
+    ///     problem Move {
+    ///         duration T = 2 [s];
+    ///         param from = 0 [m];
+    ///         output x [m]: spline(order = 6, intervals = 2);
+    ///         minimize integral(der(x, 2)^2);
+    ///         initial { x == from;  der(x) == 0; }
+    ///         final   { x == 1 [m];  der(x) == 0; }
+    ///     }
+    /// }
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let mut solver = Move::default().solver(&Settings::default());
+    /// solver.solve()?;
+    /// solver.problem.from = 0.1;
+    /// let tracked = solver.track()?;
+    /// assert!(tracked.status.is_solved(), "{}", tracked.status);
+    /// let x = solver.last().and_then(|plan| plan.output("x")).ok_or("no plan")?;
+    /// assert!((x.at(0.0) - 0.1).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Solver::solve`]; the last solution stays.
+    pub fn track(&mut self) -> Result<Tracked, Error> {
+        match self.last.clone() {
+            Some(last) => self.track_from(&last),
+            None => {
+                let task = Task { problem: &self.problem, guess: None };
+                let report = solve_and_refine(&mut self.session, task, &self.settings)?;
+                if report.has_solution() {
+                    self.last = Some(report.solution.clone());
+                }
+                let Report { status, objective, iterations, seconds, .. } = report;
+                Ok(Tracked { status, objective, iterations, seconds })
+            }
+        }
+    }
+
+    /// As [`Solver::track`], from any solution of the same problem.
+    ///
+    /// # Errors
+    /// As [`Solver::track`].
+    pub fn track_from(&mut self, from: &Solution) -> Result<Tracked, Error> {
+        let (tracked, found) = self.session.track(&self.problem, from, &self.settings)?;
+        self.last = found.or(self.last.take());
+        Ok(tracked)
     }
 
     /// The last solution that was found; none before the first.

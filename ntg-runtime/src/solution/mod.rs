@@ -262,6 +262,19 @@ impl Inner {
         Multipliers { rows: &self.row_multipliers, bounds: &self.bound_multipliers }
     }
 
+    /// Whether another solution is of the same problem on the same mesh.
+    pub(crate) fn has_layout_of(&self, other: &Self) -> bool {
+        let (own, others) = (&self.model, &other.model);
+        let names = |model: &Model| model.structure.named.len();
+        let phases = own.layout.phases.iter().zip(&others.layout.phases);
+        Arc::ptr_eq(own, others)
+            || own.structure.name == others.structure.name
+                && own.layout.variables == others.layout.variables
+                && own.layout.phases.len() == others.layout.phases.len()
+                && names(own) == names(others)
+                && phases.into_iter().all(|(a, b)| a.phase == b.phase && a.outputs.len() == b.outputs.len())
+    }
+
     /// Which of these consecutive phases holds time `t` (clamped), and the scaled time in it.
     pub(crate) fn locate(&self, phases: &Range<usize>, t: f64) -> Option<(usize, f64)> {
         let layout = &self.model.layout;

@@ -99,6 +99,15 @@ impl Signal<'_> {
         Some((start, phases.fold(start, |t, phase| t + layout.duration(phase, x))))
     }
 
+    /// Becomes the same expression in another solution; false, and nothing changes, where that is of another problem.
+    pub fn rebind(&mut self, solution: &Solution) -> bool {
+        let is_same = self.inner.has_layout_of(&solution.inner);
+        if is_same {
+            self.inner = Arc::clone(&solution.inner);
+        }
+        is_same
+    }
+
     /// The value at mission time `t` (seconds, clamped to its own time), in the declared unit.
     /// NaN in a phase that does not define it.
     pub fn at(&self, t: f64) -> f64 {

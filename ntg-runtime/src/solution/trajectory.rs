@@ -63,6 +63,15 @@ impl Trajectory {
         &self.unit
     }
 
+    /// Becomes the same output in another solution; false, and nothing changes, where that is of another problem.
+    pub fn rebind(&mut self, solution: &Solution) -> bool {
+        let is_same = self.inner.has_layout_of(&solution.inner);
+        if is_same {
+            self.inner = Arc::clone(&solution.inner);
+        }
+        is_same
+    }
+
     /// The value at mission time `t` (seconds, clamped to its own time), in the declared unit.
     pub fn at(&self, t: f64) -> f64 {
         self.derivative(t, 0)

@@ -16,3 +16,4 @@ mod session;
 mod solve;
 
 pub(crate) use session::{Session, Task};
+pub use solve::Tracked;

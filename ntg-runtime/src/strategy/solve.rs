@@ -1,18 +1,37 @@
 //! A solve on the problem's own mesh, step by step of its continuation, each solution the guess of the next
 //! (docs/maths.md, section 8.4).
 
-use super::budget::Budget;
+use super::budget::{Budget, better};
 use super::continuation::{set, steps};
-use super::session::{FirstPoint, Session, Task, record};
+use super::session::{FirstPoint, Session, Task, record, solution};
 use crate::error::Error;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
-use crate::report::{Report, StepReport};
+use crate::report::status::in_words;
+use crate::report::{Report, StepReport, user};
 use crate::settings::Settings;
 use crate::solution::Solution;
-use crate::transcribe::SetupError;
+use crate::status::Status as InWords;
+use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Outcome, Start, Status};
 use std::time::Instant;
+
+/// Most iterations of an attempt from the last solution, where a second one may follow. A fit: ten thousand steps of each
+/// loop of `examples/closed_loop` take fewer.
+const WARM: usize = 100;
+
+/// How a solve from a solution ended ([`Solver::track`](crate::Solver::track)).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tracked {
+    /// Why it ended. Where that is no solution, the last one stays.
+    pub status: InWords,
+    /// The objective at the point where it ended.
+    pub objective: f64,
+    /// Iterations that it took.
+    pub iterations: usize,
+    /// Wall-clock time.
+    pub seconds: f64,
+}
 
 impl Session {
     /// Solves a problem from a guess, by continuation where it says so.
@@ -81,6 +100,55 @@ impl Session {
     ) -> Result<Option<Report>, Error> {
         settings.validate()?;
         let began = Instant::now();
+        let (nlp, once) = self.attempt_from(problem, last, settings)?;
+        if !matches!(once.status, Status::Solved | Status::Cancelled | Status::TimeLimit) {
+            self.kept = Some(nlp.keep());
+            return Ok(None);
+        }
+        let step = record(&nlp, &[], &once, began);
+        let mut report = self.report(nlp, once, vec![step], settings)?;
+        report.seconds = began.elapsed().as_secs_f64();
+        Ok(Some(report))
+    }
+
+    /// As [`Session::solve_again`], without a report: the solution where there is one. An attempt from a solution that
+    /// does not end may have none to find, which one from the middle of all bounds tells sooner: so a second one starts
+    /// from the guess of the spec.
+    pub(crate) fn track(
+        &mut self,
+        problem: &dyn Problem,
+        last: &Solution,
+        settings: &Settings,
+    ) -> Result<(Tracked, Option<Solution>), Error> {
+        settings.validate()?;
+        let began = Instant::now();
+        let warm = Settings { max_iterations: settings.max_iterations.min(WARM), ..settings.clone() };
+        let (mut nlp, mut outcome) = self.attempt_from(problem, last, &warm)?;
+        let (spent, is_infeasible) = (outcome.iterations, matches!(outcome.status, Status::Infeasible { .. }));
+        let left = settings.max_iterations.saturating_sub(spent);
+        if !outcome.status.is_final() && !is_infeasible && left > 0 {
+            let rest = Settings { max_iterations: left, ..settings.after(began.elapsed()) };
+            let (x, _) = self.first_point(&nlp, None)?;
+            nlp.set_scales(&x, settings)?;
+            let second = self.solve_once(&nlp, FirstPoint { x: &x, from: Start::Cold }, &rest);
+            let iterations = spent + second.iterations;
+            outcome = Outcome { iterations, ..better(outcome, second) };
+        }
+        let (iterations, objective) = (outcome.iterations, user(&nlp, outcome.objective));
+        let status = in_words(&nlp, outcome.status.clone());
+        let found = status.has_solution().then(|| solution(&nlp, outcome));
+        self.kept = Some(nlp.keep());
+        let seconds = began.elapsed().as_secs_f64();
+        Ok((Tracked { status, objective, iterations, seconds }, found))
+    }
+
+    /// One attempt from a solution, of the program with the problem's present parameters.
+    fn attempt_from<'p>(
+        &mut self,
+        problem: &'p dyn Problem,
+        last: &Solution,
+        settings: &Settings,
+    ) -> Result<(Transcription<'p>, Outcome), Error> {
         let structure = self.structure_of(problem);
         let mut nlp = self.program(problem, &structure)?;
         self.structure = Some(structure);
@@ -91,13 +159,6 @@ impl Session {
             false => Start::Near,
         };
         let once = self.solve_once(&nlp, FirstPoint { x: &first, from }, settings);
-        if !matches!(once.status, Status::Solved | Status::Cancelled | Status::TimeLimit) {
-            self.kept = Some(nlp.keep());
-            return Ok(None);
-        }
-        let step = record(&nlp, &[], &once, began);
-        let mut report = self.report(nlp, once, vec![step], settings)?;
-        report.seconds = began.elapsed().as_secs_f64();
-        Ok(Some(report))
+        Ok((nlp, once))
     }
 }
