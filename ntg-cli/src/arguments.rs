@@ -91,6 +91,7 @@ pub(crate) enum Command {
     Sweep(crate::sweep::Arguments),
     Merge(crate::merge::Arguments),
     Summary(crate::summary::Arguments),
+    Embed(crate::embed::Embed),
     Export(crate::export::Export),
     CheckSolution(crate::export::CheckSolution),
     /// Start the language server on standard input and output; editors run `ntg lsp`.

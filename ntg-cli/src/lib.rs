@@ -7,6 +7,7 @@ mod arguments;
 mod certify;
 mod check;
 mod completions;
+mod embed;
 mod expand;
 mod explain;
 mod export;
@@ -81,6 +82,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Lsp => lsp::run(),
         Command::New(arguments) => new::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
+        Command::Embed(arguments) => said(embed::run(&arguments)),
         Command::Export(arguments) => said(export::export(&arguments)),
         Command::CheckSolution(arguments) => said(export::check(&arguments)),
         Command::Solve(arguments) => solve::run(&arguments),

@@ -38,6 +38,7 @@ use quote::{format_ident, quote};
 
 use crate::program::Program;
 use names::ident_at;
+pub use parameters::in_unit;
 
 /// The items that a spec expands to.
 pub fn generate(program: &Program) -> TokenStream {

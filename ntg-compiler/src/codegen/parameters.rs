@@ -157,7 +157,7 @@ fn nested(values: &[f64], sizes: &[usize]) -> TokenStream {
 
 /// A number of SI units in the declared unit: of the numbers that convert back to it exactly, the
 /// one that is shortest to write; the quotient where there is none.
-fn in_unit(si: f64, unit: &Unit) -> f64 {
+pub fn in_unit(si: f64, unit: &Unit) -> f64 {
     /// How many neighbours of the quotient on each side are tried. Division and multiplication
     /// are each rounded by half a last digit, so further ones cannot convert back.
     const NEIGHBOURS: usize = 2;
