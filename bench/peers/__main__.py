@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from . import robustness, table
+from . import fatrop_table, robustness, table
 from .check import check
 from .measure import measure
 from .publish import growths, publish
@@ -18,9 +18,9 @@ HERE = Path(__file__).resolve().parent.parent
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="bench/run", description="Compares ntg with CasADi + IPOPT, sqpmethod and ripopt.")
+    parser = argparse.ArgumentParser(prog="bench/run", description="Compares ntg with CasADi + IPOPT, FATROP, sqpmethod and ripopt.")
     parser.add_argument("--only", default="", help="rows whose names begin so, e.g. B1 or vdp,car,B1/l=")
-    parser.add_argument("--by", default="ntg,ipopt,sqp,ripopt,control", help="which solvers (default: all five)")
+    parser.add_argument("--by", default="ntg,ipopt,fatrop,sqp,ripopt,control", help="which solvers (default: all six)")
     parser.add_argument("--repeat", type=int, default=7, help="how often the solvers take turns (default 7)")
     parser.add_argument("--seconds", type=float, default=0.05, help="length of a turn, at least one solve (default 0.05)")
     parser.add_argument("--solves", type=int, default=50, help="most solves of a turn (default 50)")
@@ -69,14 +69,14 @@ def main():
     found = {"machine": machine(), "options": vars(options), "rows": {}}
     print(table.HEAD, flush=True)
     for row in rows:
-        variables = server.ask("start", row.ask)[0]["variables"]
-        result = measure(row, server, options)
+        program = row.program()
+        variables, result = program.variables, measure(row, program, server, options)
         found["rows"][row.name] = {"variables": variables, "solvers": result}
         print(table.line(row, variables, result), flush=True)
         for note in table.notes(row, result):
             print(note, flush=True)
         (HERE / "latest.json").write_text(json.dumps(found, indent=1))
-    print("\n".join(growths(rows, found["rows"])))
+    print("\n".join([*growths(rows, found["rows"]), "", *fatrop_table.lines(rows, found["rows"])]))
     if options.publish:
         publish(found)
 

@@ -21,6 +21,8 @@ import casadi as ca
 import numpy as np
 import scipy.sparse as sp
 
+EXPRESSION = {"mx": "mx", "mc": "mx"}  # One scalar expression for all other kinds.
+CLOCKS = ("wall", "cpu", "alone")  # Of a call; the last is FATROP's, without evaluations.
 CACHE = Path(__file__).resolve().parent.parent / "cache"
 IPOPT = {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "ipopt.tol": 1e-8}
 SQP = {
@@ -72,21 +74,14 @@ def expressions(program, kind, sizes):
 
 
 class Solver:
-    """One of CasADi's solvers on one program; `seconds_to_build` is not part of any comparison."""
+    """One of CasADi's solvers on one program; `seconds_to_build` is not part of any comparison.
+    `end` is where the last solve ended: parameters, point and multipliers of the rows, for the judge.
+    `said` are the solver's statistics of each of its steps."""
 
     def __init__(self, program, kind, scaled=False):
         began = time.perf_counter()
         self.sizes = program.sizes() if scaled else np.ones(program.variables)
-        nlp, lower, upper = expressions(program, {"mx": "mx", "mc": "mx"}.get(kind, "sx"), self.sizes)
-        self.arguments = {
-            "lbx": ca.DM(program.lower / self.sizes),
-            "ubx": ca.DM(program.upper / self.sizes),
-            "lbg": ca.DM(lower),
-            "ubg": ca.DM(upper),
-        }
-        self.start = ca.DM(program.start / self.sizes)
-        self.steps = [ca.DM(step) if step else ca.DM(0, 1) for step in program.steps]
-        self.functions = ca.Function("fg", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]])
+        nlp = self.state(program, *expressions(program, EXPRESSION.get(kind, "sx"), self.sizes))
         if kind in ("sx", "mx"):
             self.solver = ca.nlpsol("solver", "ipopt", nlp, IPOPT)
         elif kind in ("c", "mc"):
@@ -97,9 +92,22 @@ class Solver:
             self.solver = ca.nlpsol("solver", "sqpmethod", nlp, SQP | kinds[kind])
         self.seconds_to_build = time.perf_counter() - began
 
+    def state(self, program, nlp, lower, upper):
+        """Keeps what a call needs beside the solver."""
+        self.arguments = {
+            "lbx": ca.DM(program.lower / self.sizes),
+            "ubx": ca.DM(program.upper / self.sizes),
+            "lbg": ca.DM(lower),
+            "ubg": ca.DM(upper),
+        }
+        self.start = ca.DM(program.start / self.sizes)
+        self.steps = [ca.DM(step) if step else ca.DM(0, 1) for step in program.steps]
+        self.functions = ca.Function("fg", [nlp["x"], nlp["p"]], [nlp["f"], nlp["g"]])
+        return nlp
+
     def once(self):
         """All steps of the continuation, each solution the guess of the next; only the calls are timed."""
-        x, wall, cpu, iterations = self.start, 0.0, 0.0, 0
+        x, wall, cpu, iterations, self.said = self.start, 0.0, 0.0, 0, []
         for p in self.steps:
             clocks = time.perf_counter(), time.process_time()
             found = self.solver(x0=x, p=p, **self.arguments)
@@ -107,7 +115,9 @@ class Solver:
             cpu += time.process_time() - clocks[1]
             stats = self.solver.stats()
             iterations += stats.get("iter_count", 0)
+            self.said.append(stats)
             x = found["x"]
+        self.end = p, np.array(x).ravel() * self.sizes, np.array(found["lam_g"]).ravel()
         return {
             "wall": [wall],
             "cpu": [cpu],
@@ -119,23 +129,21 @@ class Solver:
 
     def answer(self, seconds, solves):
         """Solves again until there is enough to tell a median."""
-        wall, cpu = [], []
-        while True:
-            found = self.once()
-            wall += found["wall"]
-            cpu += found["cpu"]
-            if len(wall) >= solves or sum(wall) >= seconds:
-                return found | {"wall": wall, "cpu": cpu}
+        answers = [self.once()]
+        while len(answers) < solves and sum(answer["wall"][0] for answer in answers) < seconds:
+            answers.append(self.once())
+        clocks = {clock: [answer[clock][0] for answer in answers] for clock in CLOCKS if clock in answers[-1]}
+        return answers[-1] | clocks
 
     def at_start(self):
         """The objective at the first point, in each step of the continuation."""
         return [float(self.functions(self.start, p)[0]) for p in self.steps]
 
 
-def compiled(nlp):
+def compiled(nlp, plugin="ipopt", options=IPOPT):
     """The shared library of a program's functions, from the cache or by gcc."""
     CACHE.mkdir(exist_ok=True)
-    solver = ca.nlpsol("solver", "ipopt", nlp, IPOPT)
+    solver = ca.nlpsol("solver", plugin, nlp, options)
     with tempfile.TemporaryDirectory(dir=CACHE) as folder, contextlib.chdir(folder):
         solver.generate_dependencies("nlp.c")
         # CasADi copies nothing to nowhere where a formula has no parameter; gcc wants to know it is meant.

@@ -53,6 +53,11 @@ class Output:
     spline: object
     first: int
 
+    @property
+    def last(self):
+        """Where they end."""
+        return self.first + self.spline.size
+
     def at(self, tau, derivative=0):
         """The slot of a derivative with respect to scaled time, at points."""
         rows = self.spline.rows(tau, derivative)
@@ -71,7 +76,7 @@ class Program:
     lower: list = field(default_factory=list)
     upper: list = field(default_factory=list)
     units: list = field(default_factory=list)  # Of each variable, in SI.
-    outputs: list = field(default_factory=list)  # Where the coefficients of each begin and end.
+    outputs: list = field(default_factory=list)
 
     @property
     def variables(self):
@@ -81,14 +86,14 @@ class Program:
         """A typical size of each variable: the largest guessed coefficient of an output, and every
         other variable's own guess."""
         sizes = np.abs(self.start)
-        for first, last in self.outputs:
-            sizes[first:last] = sizes[first:last].max()
+        for output in self.outputs:
+            sizes[output.first : output.last] = sizes[output.first : output.last].max()
         return np.where(sizes > 0, sizes, 1.0)
 
     def output(self, spline, guess, unit=1.0):
         """A spline whose coefficients are fitted to a function of scaled time; `unit` in SI."""
         output = Output(spline, self.variables)
-        self.outputs.append((self.variables, self.variables + spline.size))
+        self.outputs.append(output)
         self.units.extend([unit] * spline.size)
         self.start.extend(spline.fit(guess))
         self.lower.extend([-np.inf] * spline.size)

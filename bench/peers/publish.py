@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from . import table
+from . import fatrop_table, table
 from .rows import all_rows
 
 HERE = Path(__file__).resolve().parent.parent
@@ -15,6 +15,11 @@ TEXT = """
 Median processor time in milliseconds, and how many times slower the peers are beside what ntg is meant to reach.
 bench/README.md says what is timed; `bench/results.json` holds every batch, on the processor and on the wall.
 Shares of a solve, and the column "without check" that follows from them, are measured on the wall within single solves: where the load is above the number of cores they are not to be relied on.
+"""
+
+CHAINS = """
+FATROP on the same programs, written as chains of stages (bench/README.md). Times in milliseconds: of the call on the processor, without evaluations on the wall.
+Errors are the largest of relative violation, stationarity and complementarity by a judge outside the solvers.
 """
 
 
@@ -38,6 +43,8 @@ def section(known):
     for row in rows:
         lines += [f"- {note}" for note in table.notes(row, known["rows"][row.name]["solvers"])]
     lines += growths(rows, known["rows"])
+    chains = fatrop_table.lines(rows, known["rows"])
+    lines += [CHAINS, *chains] if chains else []
     lines += ["", places(known["rows"].values()), "", "Where the time goes, in the same runs:", "", table.PARTS_HEAD]
     lines += [table.parts(row, known["rows"][row.name]["solvers"]) for row in rows]
     if known["routes"]:

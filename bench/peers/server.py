@@ -8,7 +8,12 @@ WORKSPACE = Path(__file__).resolve().parent.parent
 
 
 class Server:
+    """Built and started by the first question: the peers alone need no Rust."""
+
     def __init__(self):
+        self.process = None
+
+    def start(self):
         build = ["cargo", "build", "--release", "--quiet", "--package", "ntg-bench", "--manifest-path", str(WORKSPACE / "Cargo.toml")]
         subprocess.run(build, check=True)
         binary = WORKSPACE / "target" / "release" / "ntg-bench"
@@ -16,6 +21,8 @@ class Server:
 
     def ask(self, by, question, **more):
         """One answer; an error of the server is raised here."""
+        if self.process is None:
+            self.start()
         self.process.stdin.write(json.dumps({"by": by, **question, **more}) + "\n")
         self.process.stdin.flush()
         answer = json.loads(self.process.stdout.readline())

@@ -3,6 +3,7 @@
 import math
 
 AGREES = 1e-6
+FATROP = {"fatrop_sx": "FATROP, SX", "fatrop_c": "FATROP, C", "fatrop_mc": "FATROP, mapped C"}
 IPOPT = {"sx": "SX", "mx": "MX", "c": "C", "mc": "mapped C"}
 
 
@@ -93,7 +94,7 @@ def notes(row, result):
         yield f"{row.name}: python-control takes {milliseconds(result['control'])} ms{beside}."
     for name, answer in result.items():
         if not answer["solved"]:
-            yield f"{row.name}: {IPOPT.get(name, name)} ends with “{answer['status']}”."
+            yield f"{row.name}: {IPOPT.get(name) or FATROP.get(name) or name} ends with “{answer['status']}”."
 
 
 def growth(rows, results, solver):
