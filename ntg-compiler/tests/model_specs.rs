@@ -75,35 +75,3 @@ fn the_gallery_and_its_expected_optima_name_the_same_specs() {
         assert!(entry["source"].as_str().is_some_and(|source| !source.is_empty()), "{name}: no source");
     }
 }
-
-/// The blocks of the manual that are whole specs, with the code that each is to show, if any.
-fn manual() -> Vec<(Option<String>, String)> {
-    let text = include_str!("../../docs/language.md");
-    let mut blocks = Vec::new();
-    let mut open: Option<(Option<String>, String)> = None;
-    for line in text.lines() {
-        match (&mut open, line.strip_prefix("```")) {
-            (None, Some(info)) if info == "ntg" || info.starts_with("ntg,") => {
-                let code = info.split("error=").nth(1).map(|code| code.trim().to_owned());
-                open = Some((code, String::new()));
-            }
-            (Some(_), Some(_)) => blocks.extend(open.take()),
-            (Some((_, block)), None) => *block += &format!("{line}\n"),
-            _ => {}
-        }
-    }
-    blocks
-}
-
-#[test]
-fn the_manual_means_what_it_says() {
-    let blocks = manual();
-    assert!(blocks.len() > 5, "the manual has examples");
-    for (code, block) in blocks {
-        let found = findings_with(&block, &Folder);
-        match code {
-            None => assert!(!found.contains("error["), "{block}\n{found}"),
-            Some(_) => assert!(found.contains("error["), "{block}\n{found}"),
-        }
-    }
-}

@@ -21,6 +21,9 @@ const STATIONARY: f64 = 1e-6;
 /// A row is stationary only if a step of one size also changes it by less than this fraction of its own size: far beside
 /// the start, a row that falls or grows fast may have any slope. A law: rounding of terms that cancel.
 const ROUNDING: f64 = 1e-10;
+/// An inequality further away than this many steps of one size is not near, however flat it is. A fit: what a guess leaves
+/// between itself and a bound is some ten sizes in the gallery, and a saturated function is 1e10 of them away.
+const REACH: f64 = 1e3;
 
 /// Scaled variables, rows and objective are `x / variables`, `rows * c` and `objective * f`, entry by entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +69,10 @@ impl Scales {
         Self::from_slopes(
             nlp.limits(),
             scaling,
-            &at_start.or_beside(probe, nlp.limits()).within_relations(nlp.blocks()),
+            &at_start
+                .or_beside(probe, nlp.limits())
+                .within_relations(nlp.blocks())
+                .within_reach(&at.rows, nlp.limits()),
         )
     }
 
@@ -151,6 +157,18 @@ impl Slopes {
                 f64::EPSILON * rows().map(|row| self.rows[row]).filter(|slope| slope.is_finite()).fold(0.0, f64::max);
             for row in rows() {
                 self.rows[row] = self.rows[row].max(least);
+            }
+        }
+        self
+    }
+
+    /// An inequality that holds at the start and is further from its bounds than `REACH` steps of one size would lead
+    /// is measured by that distance. `values` are those of the rows.
+    pub fn within_reach(mut self, values: &[f64], limits: &Limits) -> Self {
+        for (row, (slope, value)) in self.rows.iter_mut().zip(values).enumerate() {
+            let distance = (value - limits.row_lower[row]).min(limits.row_upper[row] - value);
+            if distance.is_finite() {
+                *slope = slope.max(distance / REACH);
             }
         }
         self

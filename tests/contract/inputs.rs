@@ -106,7 +106,8 @@ fn find(structure: &Structure, kernel: usize) -> Option<&Call> {
         | GuessKind::Start { value } => value,
         GuessKind::Route { values, .. } => values,
     });
-    let mut calls = groups.chain(named).chain(durations).chain(starts).chain(variables).chain(guesses);
+    let measured = structure.measurements.iter().flat_map(|m| [&m.residual, &m.sigma]);
+    let mut calls = groups.chain(named).chain(measured).chain(durations).chain(starts).chain(variables).chain(guesses);
     calls.find_map(|call| inside(call, kernel))
 }
 

@@ -35,3 +35,26 @@ fn a_bound_that_all_but_vanishes_at_most_points_binds_nowhere() {
     // Rest to rest over a distance of 2: 12 * 2^2.
     close(spec.solve().objective, 48.0, 1e-8);
 }
+
+/// A zone far beside the way, whose function is 1e-170 along it.
+#[test]
+fn a_zone_that_is_far_away_changes_nothing() {
+    let spec = Shipped::text(
+        "problem Far {
+            duration T in 1 .. 60;
+            output x, y: spline(order = 5, intervals = 6, smoothness = 3);
+            collocation gauss(points = 3);
+            minimize T;
+            initial { x == 0;  y == 0; }
+            trajectory {
+                quiet: exp(-((x - 50)^2 + (y + 200)^2) / 100) <= 0.5;
+                der(x)^2 + der(y)^2 <= 400;
+            }
+            final { x == 100;  y == 0; }
+            guess { x = 100 * tau;  T = 20; }
+        }",
+    );
+    let report = spec.solve();
+    close(report.objective, 5.0, 1e-8);
+    assert!(report.iterations <= 40, "{} iterations", report.iterations);
+}

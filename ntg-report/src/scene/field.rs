@@ -63,9 +63,10 @@ impl<'a> Space<'a> {
         (field.depends.contains(&true) && field.is_still()).then_some(field)
     }
 
-    /// Whether an input goes into a row.
+    /// Whether an input goes into a row. A kernel that is only shown has no derivatives, and one row.
     fn enters(&self, kernel: usize, row: usize, input: usize) -> bool {
-        self.structure.kernels.get(kernel).is_none_or(|kernel| kernel.jacobian.contains(&(row, input)))
+        let kernel = self.structure.kernels.get(kernel);
+        kernel.is_none_or(|kernel| kernel.jacobian.is_empty() || kernel.jacobian.contains(&(row, input)))
     }
 
     /// The values of a call without slots: parameters and indices alone.
