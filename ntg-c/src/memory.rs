@@ -332,7 +332,7 @@ mod tests {
     fn exercise(rounds: usize) {
         let (mut state, mut held): (u64, Vec<(*mut u8, Layout, u8)>) = (0x1234_5678_9abc_def1, vec![]);
         for round in 0..rounds {
-            if held.len() < 200 && next(&mut state) % 3 > 0 {
+            if held.len() < 200 && !next(&mut state).is_multiple_of(3) {
                 let layout = Layout::from_size_align(next(&mut state) % 3000 + 1, 1 << (next(&mut state) % 8));
                 let layout = layout.expect("a layout");
                 let mark = round as u8;

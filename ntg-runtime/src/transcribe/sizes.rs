@@ -29,6 +29,8 @@ pub(super) struct Balance {
     groups: Vec<Vec<(usize, f64)>>,
     /// For each constraint its largest finite bound; 0 where there is none.
     bound: Vec<f64>,
+    /// Whether a constraint is an inequality.
+    is_inequality: Vec<bool>,
 }
 
 impl Transcription<'_> {
@@ -88,8 +90,11 @@ impl Transcription<'_> {
             constraint_of.push(*numbers.entry(kind).or_insert(next));
         }
         balance.bound = vec![0.0; numbers.len()];
+        balance.is_inequality = vec![false; numbers.len()];
         for (row, &constraint) in constraint_of.iter().enumerate() {
-            let bound = bound_size((self.limits.row_lower[row], self.limits.row_upper[row]));
+            let limits = (self.limits.row_lower[row], self.limits.row_upper[row]);
+            balance.is_inequality[constraint] |= limits.0 != limits.1;
+            let bound = bound_size(limits);
             if bound.is_finite() {
                 balance.bound[constraint] = balance.bound[constraint].max(bound);
             }
@@ -169,8 +174,10 @@ impl Balance {
                 return None;
             }
             let terms = others.filter_map(|(other, slope)| Some(self.size[*other]? * slope));
-            let row = terms.fold(self.bound[constraint], f64::max);
-            Some(row / slope).filter(|size| size.is_normal())
+            let (term, bound) = (terms.fold(0.0, f64::max), self.bound[constraint]);
+            // An inequality that is flat at the guess, such as a zone far away, balances nothing.
+            let is_flat = self.is_inequality[constraint] && term > 0.0 && term < ROUNDING * bound;
+            Some(bound.max(term) / slope).filter(|size| size.is_normal() && !is_flat)
         });
         own.into_iter().chain(balanced).reduce(f64::min)
     }
