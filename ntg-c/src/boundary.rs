@@ -210,7 +210,7 @@ unsafe fn with(solver: *mut Solver, work: impl FnOnce(&mut Planner<'static>) -> 
 /// Sets all parameters.
 ///
 /// # Safety
-/// As [`with`] and [`create`].
+/// `solver` is null or a solver that is not destroyed; otherwise as [`create`].
 pub unsafe fn set(solver: *mut Solver, parameters: *const f64) -> c_int {
     // SAFETY: what the caller promises. The number of parameters never changes.
     unsafe {
@@ -226,7 +226,7 @@ pub unsafe fn set(solver: *mut Solver, parameters: *const f64) -> c_int {
 /// Makes the next plan within limits.
 ///
 /// # Safety
-/// As [`with`].
+/// `solver` is null or a solver that is not destroyed.
 pub unsafe fn solve(solver: *mut Solver, max_iterations: c_int, max_seconds: f64) -> c_int {
     let solve = |planner: &mut Planner<'static>| {
         let Ok(max_iterations) = usize::try_from(max_iterations) else {
@@ -241,7 +241,7 @@ pub unsafe fn solve(solver: *mut Solver, max_iterations: c_int, max_seconds: f64
 /// Returns to the plan of create.
 ///
 /// # Safety
-/// As [`with`].
+/// `solver` is null or a solver that is not destroyed.
 pub unsafe fn reset(solver: *mut Solver) -> c_int {
     let reset = |planner: &mut Planner<'static>| {
         planner.reset();
@@ -254,7 +254,7 @@ pub unsafe fn reset(solver: *mut Solver) -> c_int {
 /// Reads the plan. Where that fails, nothing is written.
 ///
 /// # Safety
-/// As [`with`]; `out` is null or may be written.
+/// `solver` is null or a solver that is not destroyed; `out` is null or may be written.
 pub unsafe fn read(solver: *mut Solver, reading: c_int, derivative: c_int, time: f64, out: *mut f64) -> c_int {
     let Some(mut out) = NonNull::new(out) else { return Code::Null as c_int };
     let read = |planner: &mut Planner<'static>| {
@@ -303,7 +303,7 @@ pub unsafe fn info(solver: *mut Solver, out: *mut Info) -> c_int {
 /// call that fails.
 ///
 /// # Safety
-/// As [`with`], and no other thread is in a call with the solver.
+/// `solver` is null or a solver that is not destroyed, and no other thread is in a call with the solver.
 pub unsafe fn message(solver: *mut Solver) -> *const c_char {
     let Some(solver) = NonNull::new(solver) else {
         let text = NOT_CREATED.try_with(|text| text.try_borrow().map(|text| text.as_ptr()));
@@ -322,7 +322,7 @@ pub fn text(status: c_int) -> *const c_char {
 /// Ends a solver; nothing for null.
 ///
 /// # Safety
-/// As [`with`], and no other thread is in a call with the solver or uses it afterwards.
+/// `solver` is null or a solver that is not destroyed, and no other thread is in a call with the solver or uses it afterwards.
 pub unsafe fn destroy(solver: *mut Solver) {
     let Some(solver) = NonNull::new(solver) else { return };
     // SAFETY: what the caller promises: the solver is this thread's, and was boxed by create.
