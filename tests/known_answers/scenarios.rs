@@ -117,3 +117,11 @@ fn a_least_way_along_a_length_is_that_in_seconds() {
     assert!(along.to_string().contains("S           10 m"), "{along}");
     assert!(along.to_string().contains("s = ") || !along.to_string().contains(" at "), "{along}");
 }
+
+/// Both optima by CasADi and IPOPT: the lap on 400 intervals with Radau points and linear inputs, which lies a few parts in
+/// a million below, the twenty plants on the spec's own mesh.
+#[test]
+fn the_lap_and_the_twenty_plants_have_the_optima_of_another_transcription() {
+    close(Shipped::spec("racing").solve().objective, 28.0446, 1e-5);
+    close(Shipped::spec("robust").solve().objective, 0.036_766_960_8, 1e-6);
+}

@@ -14,9 +14,9 @@ const LEAST_BARRIER: f64 = 1e-6;
 const LARGEST_PUSH: f64 = 1e-3;
 
 impl<N: Nlp> State<'_, N> {
-    /// The first barrier parameter at a point that is said to be near a solution, relative to its unit: the square of the
-    /// largest violation. After a Newton step residuals are of the order of their squares, so that a lower barrier
-    /// parameter gains nothing; and a point whose violation is large is not near.
+    /// The first barrier parameter (11.9a) at a point that is said to be near a solution, relative to its unit: the square
+    /// of the largest violation. After a Newton step residuals are of the order of their squares, so that a lower
+    /// barrier parameter gains nothing; and a point whose violation is large is not near.
     pub(super) fn near_barrier(&self) -> f64 {
         self.slacks.violation(&self.values).powi(2).clamp(LEAST_BARRIER, FIRST_BARRIER)
     }
