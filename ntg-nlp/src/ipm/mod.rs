@@ -160,6 +160,7 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         if let Some(status) = ended {
             return state.end(status); // 10
         }
+        if std::env::var_os("NTG_TRACE").is_some() { let r = &state.record; eprintln!("{:4} {:4} f={:.16e} st={:.2e} fe={:.2e} co={:.2e} theta={:.3e} mu={:.2e} a={:.3e} cv={} sh={:.1e} px={:.1e} so={} |y|={:.2e} |z|={:.2e}", state.iterations, if state.penalty.is_some() {"pen"} else if state.restoration.is_some() {"rest"} else {""}, r.objective, r.residuals.scaled.dual, r.residuals.scaled.primal, r.residuals.scaled.complementarity, state.theta(), state.mu, r.step, r.convexified as u8, r.shift, state.proximal, r.corrected as u8, state.slacks.y.iter().fold(0.0f64, |a, b| a.max(b.abs())), state.slacks.z.iter().fold(0.0f64, |a, b| a.max(b.abs()))); }
         if let Err(status) = state.advance() {
             return state.end(status); // 11
         }

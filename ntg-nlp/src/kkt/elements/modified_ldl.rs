@@ -21,6 +21,10 @@ const GROWTH: f64 = 0.640_388_203_202_208;
 /// Entries below this fraction of the largest one of the matrix count as zero.
 const NEGLIGIBLE: f64 = 1e-14;
 
+/// A pivot is preferred to an earlier one only where it is larger by more than rounding: what is equal in the problem,
+/// such as two joints in line, may differ by rounding, and other pivots make another term.
+const TIE: f64 = 1.0 + 1e-8;
+
 /// Numbers side by side in memory.
 type Lanes = [f64; MOST_LANES];
 
@@ -159,17 +163,17 @@ impl ModifiedLdl {
             let (remaining_i, number) = (Pack::load(simd, &remaining[i]), Pack::splat(simd, i as f64));
             let own = &matrix[i * n..][..=i];
             let size = abs(Pack::load(simd, &own[i])) * remaining_i;
-            let larger = diagonal.less(size);
+            let larger = (diagonal * TIE).less(size);
             (diagonal, on) = (larger.select(size, diagonal), larger.select(number, on));
             // Every row is searched independently, so that the searches overlap in time.
             let (mut most, mut at) = (zero, none);
             for (j, (entry, remaining_j)) in own[..i].iter().zip(remaining).enumerate() {
                 let size = abs(Pack::load(simd, entry)) * Pack::load(simd, remaining_j);
-                let larger = most.less(size);
+                let larger = (most * TIE).less(size);
                 (most, at) = (larger.select(size, most), larger.select(Pack::splat(simd, j as f64), at));
             }
             let most = most * remaining_i;
-            let larger = beside.less(most);
+            let larger = (beside * TIE).less(most);
             beside = larger.select(most, beside);
             (row, column) = (larger.select(number, row), larger.select(at, column));
         }
