@@ -14,6 +14,7 @@ pub(crate) mod batch;
 mod calls;
 pub(crate) mod compose;
 mod contradictions;
+mod curvatures;
 pub(crate) mod elements;
 mod error;
 mod evaluate;

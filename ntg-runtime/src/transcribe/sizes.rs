@@ -1,12 +1,13 @@
-//! Typical sizes of what is guessed to be 0 (docs/maths.md, equations 5.5 and 5.7).
+//! Typical sizes of what is guessed to be 0 (docs/maths.md, equations 5.5, 5.7 and 5.8).
 //!
 //! Takes a guess, the first derivatives there, and bounds; gives sizes by *propagation*: what is not 0 in the guess has
 //! its own size, a row is as large as its largest term, and what is 0 in the guess is so large that it balances the rows
-//! in which it stands. Units cannot matter, because a slope of a row times a size has the unit of the row.
+//! in which it stands. What has no slope there either, such as a coordinate of a speed, is so large that its curvature
+//! balances them. Units cannot matter, because a slope of a row times a size has the unit of the row.
 
 use super::Transcription;
 use super::rows::{RowKind, bound_size};
-use ntg_nlp::{Evaluation, Nlp, Target};
+use ntg_nlp::{Block, Evaluation, Nlp, Target};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -31,6 +32,20 @@ pub(super) struct Balance {
     bound: Vec<f64>,
     /// Whether a constraint is an inequality.
     is_inequality: Vec<bool>,
+    /// The constraint of each row.
+    constraint_of: Vec<usize>,
+    /// The objective's size by slopes and known sizes.
+    objective: f64,
+    /// For pairs of groups the `k` of the largest term `k d_l d_m` beside the size of its constraint.
+    curvature: BTreeMap<(usize, usize), f64>,
+}
+
+/// The group of a slot of an element: that of its first variable.
+pub(super) fn slot_group(block: &Block, e: usize, slot: usize, balance: &Balance) -> Option<usize> {
+    let variables = block.variables(e);
+    let coefficients = &block.map(e)[slot * variables.len()..][..variables.len()];
+    let first = coefficients.iter().position(|c| *c != 0.0)?;
+    Some(balance.group[variables[first] as usize])
 }
 
 impl Transcription<'_> {
@@ -46,7 +61,12 @@ impl Transcription<'_> {
         self.collect_slopes(&at, &mut balance);
         balance.forget_rounding();
         let known = balance.size.clone();
-        balance.propagate();
+        balance.propagate(&[Balance::balanced]);
+        if balance.size.contains(&None) {
+            balance.objective = self.objective_size(&at, &balance);
+            balance.curvature = self.curvatures(guess, &balance);
+            balance.propagate(&[Balance::balanced, Balance::curved, Balance::partly_balanced]);
+        }
         for (scale, group) in scale.iter_mut().zip(&balance.group) {
             if known[*group].is_none()
                 && let Some(size) = balance.size[*group]
@@ -110,12 +130,10 @@ impl Transcription<'_> {
                 let mut run: Option<((usize, usize), f64)> = None;
                 for e in 0..block.elements {
                     let Target::Row(target) = block.target[row * block.elements + e] else { continue };
-                    let variables = block.variables(e);
-                    let coefficients = &block.map(e)[slot * variables.len()..][..variables.len()];
-                    let Some(first) = coefficients.iter().position(|c| *c != 0.0) else { continue };
+                    let Some(group) = slot_group(block, e, slot, balance) else { continue };
                     let weight = block.weight[row * block.elements + e];
                     let slope = (weight * values.jacobian[entry * block.elements + e]).abs();
-                    let key = (constraint_of[target as usize], balance.group[variables[first] as usize]);
+                    let key = (constraint_of[target as usize], group);
                     run = match run {
                         Some((same, largest)) if same == key => Some((key, largest.max(slope))),
                         other => {
@@ -127,6 +145,7 @@ impl Transcription<'_> {
                 run.into_iter().for_each(|(key, largest)| add(key, largest));
             }
         }
+        balance.constraint_of = constraint_of;
         balance.groups = vec![vec![]; numbers.len()];
         balance.constraints = vec![vec![]; balance.size.len()];
         for ((constraint, group), slope) in slopes.into_iter().filter(|(_, slope)| *slope > 0.0) {
@@ -147,20 +166,73 @@ impl Balance {
         rounding.into_iter().for_each(|group| self.size[group] = None);
     }
 
-    /// Gives sizes to groups, those first whose constraints have no other group without one.
-    fn propagate(&mut self) {
+    /// Gives sizes to groups. A later way is tried where the ones before it find nothing.
+    fn propagate(&mut self, ways: &[fn(&Self) -> Vec<(usize, f64)>]) {
         for _ in 0..self.size.len() {
-            let without = || (0..self.size.len()).filter(|group| self.size[*group].is_none());
-            let sizes = |group, partly| Some((group, self.candidate(group, partly)?));
-            let mut found: Vec<(usize, f64)> = without().filter_map(|group| sizes(group, false)).collect();
-            if found.is_empty() {
-                found = without().filter_map(|group| sizes(group, true)).take(1).collect();
-            }
-            if found.is_empty() {
-                return;
-            }
+            let Some(found) = ways.iter().map(|way| way(self)).find(|found| !found.is_empty()) else { return };
             found.into_iter().for_each(|(group, size)| self.size[group] = Some(size));
         }
+    }
+
+    /// What has no size yet, with the sizes that are found.
+    fn sizes_by(&self, size: impl Fn(usize) -> Option<f64>) -> impl Iterator<Item = (usize, f64)> {
+        (0..self.size.len()).filter(|group| self.size[*group].is_none()).filter_map(move |group| Some((group, size(group)?)))
+    }
+
+    /// All groups that balance constraints in which no other group is without a size.
+    fn balanced(&self) -> Vec<(usize, f64)> {
+        self.sizes_by(|group| self.candidate(group, false)).collect()
+    }
+
+    /// The first group that balances the known terms of a constraint.
+    fn partly_balanced(&self) -> Vec<(usize, f64)> {
+        self.sizes_by(|group| self.candidate(group, true)).take(1).collect()
+    }
+
+    /// All groups whose curvature balances something, alone or with a group of known size.
+    fn curved(&self) -> Vec<(usize, f64)> {
+        self.sizes_by(|group| {
+            let sizes = self.curvature.iter().filter_map(|(&(l, m), curvature)| match (l == group, m == group) {
+                (true, true) => Some(1.0 / curvature.sqrt()),
+                (true, false) => Some(1.0 / (curvature * self.size[m]?)),
+                (false, true) => Some(1.0 / (curvature * self.size[l]?)),
+                (false, false) => None,
+            });
+            sizes.filter(|size| size.is_normal()).reduce(f64::min)
+        })
+        .collect()
+    }
+
+    /// The size of a group, if it is known.
+    pub(super) fn size_of(&self, group: usize) -> Option<f64> {
+        self.size[group]
+    }
+
+    /// The objective's size; 0 where that is not known.
+    pub(super) fn objective(&self) -> f64 {
+        self.objective
+    }
+
+    /// The size of each row, which is that of its constraint: its bound or its largest known term; 0 where neither is
+    /// known or the constraint is flat at the guess.
+    pub(super) fn row_sizes(&self) -> impl Iterator<Item = f64> {
+        let sizes = (0..self.bound.len()).map(|constraint| {
+            let term = self.largest_term(constraint, usize::MAX);
+            if self.is_flat(constraint, term) { 0.0 } else { self.bound[constraint].max(term) }
+        });
+        let sizes: Vec<f64> = sizes.collect();
+        self.constraint_of.iter().map(move |constraint| sizes[*constraint])
+    }
+
+    /// The largest known term of a constraint beside those of one group.
+    fn largest_term(&self, constraint: usize, beside: usize) -> f64 {
+        let others = self.groups[constraint].iter().filter(|(other, _)| *other != beside);
+        others.filter_map(|(other, slope)| Some(self.size[*other]? * slope)).fold(0.0, f64::max)
+    }
+
+    /// Whether a constraint is an inequality that is flat at the guess, such as a zone far away: it balances nothing.
+    fn is_flat(&self, constraint: usize, term: f64) -> bool {
+        self.is_inequality[constraint] && term > 0.0 && term < ROUNDING * self.bound[constraint]
     }
 
     /// The least size with which a group balances one of its constraints or reaches its own bound: a larger one would
@@ -169,15 +241,13 @@ impl Balance {
     fn candidate(&self, group: usize, partly: bool) -> Option<f64> {
         let own = Some(self.own_bound[group]).filter(|bound| *bound > 0.0);
         let balanced = self.constraints[group].iter().filter_map(|&(constraint, slope)| {
-            let others = self.groups[constraint].iter().filter(|(other, _)| *other != group);
-            if !partly && others.clone().any(|(other, _)| self.size[*other].is_none()) {
+            let mut others = self.groups[constraint].iter().filter(|(other, _)| *other != group);
+            if !partly && others.any(|(other, _)| self.size[*other].is_none()) {
                 return None;
             }
-            let terms = others.filter_map(|(other, slope)| Some(self.size[*other]? * slope));
-            let (term, bound) = (terms.fold(0.0, f64::max), self.bound[constraint]);
-            // An inequality that is flat at the guess, such as a zone far away, balances nothing.
-            let is_flat = self.is_inequality[constraint] && term > 0.0 && term < ROUNDING * bound;
-            Some(bound.max(term) / slope).filter(|size| size.is_normal() && !is_flat)
+            let term = self.largest_term(constraint, group);
+            let size = self.bound[constraint].max(term) / slope;
+            (size.is_normal() && !self.is_flat(constraint, term)).then_some(size)
         });
         own.into_iter().chain(balanced).reduce(f64::min)
     }
