@@ -87,6 +87,9 @@ pub struct Options {
     /// Whether sequential quadratic programming tries Newton's step with the exact Hessian once the set of
     /// active constraints has settled. The interior-point method always has the exact Hessian. Default true.
     pub exact_hessian: bool,
+    /// Whether the interior-point method damps its steps where searches cut them short (docs/maths.md, equation 11.5b).
+    /// It then solves other programs, not more of them. Default false.
+    pub damping: bool,
 }
 
 impl Default for Options {
@@ -101,6 +104,7 @@ impl Default for Options {
             scaling: Scaling::Automatic,
             second_order_correction: true,
             exact_hessian: true,
+            damping: false,
         }
     }
 }
@@ -117,6 +121,7 @@ impl fmt::Debug for Options {
             .field("scaling", &self.scaling)
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
+            .field("damping", &self.damping)
             .finish()
     }
 }

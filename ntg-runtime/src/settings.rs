@@ -86,6 +86,9 @@ pub struct Settings {
     /// set of active constraints has settled; without it, the last digits come slowly. The interior-point method always
     /// has the exact Hessian. Default true.
     pub exact_hessian: bool,
+    /// Whether the interior-point method damps its steps where searches cut them short (docs/maths.md, equation 11.5b).
+    /// Without it [`Method::Auto`] does so where the first attempt fails. Default false.
+    pub damping: bool,
 }
 
 impl Default for Settings {
@@ -105,6 +108,7 @@ impl Default for Settings {
             between_tolerance: 0.01,
             second_order_correction: true,
             exact_hessian: true,
+            damping: false,
         }
     }
 }
@@ -126,6 +130,7 @@ impl fmt::Debug for Settings {
             .field("between_tolerance", &self.between_tolerance)
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
+            .field("damping", &self.damping)
             .finish()
     }
 }
@@ -160,6 +165,7 @@ impl Settings {
             scaling: self.scaling,
             second_order_correction: self.second_order_correction,
             exact_hessian: self.exact_hessian,
+            damping: self.damping,
         }
     }
 

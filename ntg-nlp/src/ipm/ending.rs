@@ -88,6 +88,8 @@ impl<N: Nlp> State<'_, N> {
         let x = self.system.unscaled(self.nlp, &self.x).to_vec();
         let residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
         let row_factors = self.system.scales.rows.clone();
+        if std::env::var_os("NTG_TRACE").is_some() { eprintln!("END {status} after {}", self.iterations); }
+        self.analysis.rows_hold = !status.has_solution() || self.rows_hold_here();
         self.analysis.system = Some(self.system);
         self.analysis.is_unchanged = true;
         Outcome {

@@ -80,6 +80,7 @@ impl<'a, N: Nlp> State<'a, N> {
             estimate: Estimate::default(),
             proximal: LARGEST_PROXIMAL,
             convex_fraction: FIRST_FRACTION,
+            damping: 0.0,
             step,
             trial: Trial::new(&x, functions, slacks.s.clone()),
             record: IterationRecord::default(),

@@ -14,6 +14,7 @@
 
 mod barrier;
 mod best;
+mod damping;
 mod ending;
 mod equalities;
 mod filter;
@@ -22,6 +23,7 @@ mod line_search;
 mod penalty;
 mod penalty_search;
 mod polish;
+mod remeasure;
 mod restoration;
 mod second_order;
 mod slacks;
@@ -38,9 +40,13 @@ use crate::status::Status;
 use line_search::SearchOutcome;
 pub use state::Analysis;
 use state::State;
+use std::time::Instant;
 
 /// Tiny steps in a row that end a solve. A law: one may be an accident of rounding.
 const TINY_STEPS: usize = 3;
+/// How often a solve goes on with scales from where it has ended, because rows do not hold by those. A law: each time the
+/// slopes of the end are those of the next start; a row whose slope vanishes at its solution would never end.
+const REMEASURED: usize = 3;
 
 /// Solves `nlp` from `start`, which is first moved to within the bounds of the variables.
 ///
@@ -65,9 +71,35 @@ pub fn solve_again<N: Nlp>(
     from: Start<'_>,
     options: &Options,
 ) -> Outcome {
+    let mut outcome = solve_with_first_scales(analysis, nlp, start, from, options);
+    let began = Instant::now();
+    for _ in 0..REMEASURED {
+        if analysis.rows_hold {
+            return outcome;
+        }
+        let left = options.max_iterations.saturating_sub(outcome.iterations);
+        let options = Options { max_iterations: left, ..options.after(began.elapsed()) };
+        let next = solve_with_first_scales(analysis, nlp, &outcome.x, Start::Cold, &options);
+        let (iterations, seconds) = (outcome.iterations + next.iterations, outcome.seconds + next.seconds);
+        outcome = Outcome { iterations, seconds, ..next };
+    }
+    outcome
+}
+
+/// Solves with the scales that the start gives.
+fn solve_with_first_scales<N: Nlp>(
+    analysis: &mut Analysis<N::Workspace>,
+    nlp: &N,
+    start: &[f64],
+    from: Start<'_>,
+    options: &Options,
+) -> Outcome {
     match initial(nlp, start, from, options, analysis) {
         Ok(state) => iterate(state),
-        Err(status) => Outcome::failed(nlp, start, status),
+        Err(status) => {
+            analysis.rows_hold = true;
+            Outcome::failed(nlp, start, status)
+        }
     }
 }
 
@@ -128,6 +160,7 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
             return state.end(status); // 6
         }
         let searched = state.step_and_search(); // 7 to 9
+        state.update_damping(searched);
         tiny_steps = if searched == SearchOutcome::Tiny { tiny_steps + 1 } else { 0 };
         let ended = match searched {
             // WB, section 3.9: a barrier problem whose steps are rounding is solved.

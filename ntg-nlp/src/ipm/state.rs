@@ -54,6 +54,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) proximal: f64,
     /// The fraction of the convexifying term that the last matrix needed.
     pub(super) convex_fraction: f64,
+    /// What is added to the diagonal of the matrix to make steps shorter, (11.5b).
+    pub(super) damping: f64,
     /// Set in penalty mode, where bounds are elastic.
     pub(super) penalty: Option<Penalty>,
     /// Set while feasibility is restored.
@@ -82,6 +84,8 @@ pub struct Analysis<W> {
     pub(super) system: Option<System<W>>,
     /// Whether the next program has the very numbers of the last one, but for the sizes of its variables.
     pub(super) is_unchanged: bool,
+    /// Whether the rows of the last solution hold by their slopes at the solution; true where there was none.
+    pub(super) rows_hold: bool,
 }
 
 impl<W> Analysis<W> {
@@ -94,7 +98,7 @@ impl<W> Analysis<W> {
 
 impl<W> Default for Analysis<W> {
     fn default() -> Self {
-        Self { system: None, is_unchanged: false }
+        Self { system: None, is_unchanged: false, rows_hold: true }
     }
 }
 

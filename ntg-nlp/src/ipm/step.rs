@@ -198,7 +198,7 @@ impl<N: Nlp> State<'_, N> {
     /// proximal term is tried before.
     fn factorise(&mut self, proximal: f64) -> bool {
         self.record.shift = 0.0;
-        let proximity = self.proximity_weight();
+        let proximity = self.proximity_weight() + self.damping;
         let is_settled = self.mu <= SETTLED * self.barrier_unit;
         self.assemble_exact(proximal);
         if self.system.factorise(0.0, proximity) {

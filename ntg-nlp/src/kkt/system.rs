@@ -201,6 +201,12 @@ impl<W> System<W> {
         Slopes { rows, variation: variation(nlp.blocks(), &self.latest, &self.scales.variables) }
     }
 
+    /// Raises entries of `out`, one a function, to the largest slopes of the scaled functions at the latest point by a
+    /// scaled variable. Those of border rows are left.
+    pub(crate) fn scaled_slopes(&mut self, out: &mut [f64]) {
+        self.elements.slopes(out);
+    }
+
     /// Writes a point in the program's own units, within the bounds to the last bit.
     fn unscale<N: Nlp<Workspace = W>>(&mut self, nlp: &N, scaled: &[f64]) {
         let limits = nlp.limits();

@@ -1,20 +1,22 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
 //!
 //! ```text
-//! interior point -> the same with sizes taken anew -> from fewer knots -> sequential quadratic programming
+//! interior point -> the same with damped steps -> the same with sizes taken anew -> from fewer knots -> sequential quadratic programming
 //! ```
 
 use super::budget::{Budget, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
 use crate::guess::{Guess, start};
-use crate::settings::Method;
+use crate::settings::{Method, Settings};
 use crate::transcribe::{SetupError, Transcription};
-use ntg_nlp::{Outcome, Start, method};
+use ntg_nlp::{Outcome, Start, Status, method};
 
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Attempt {
+    /// From the first point, with damped steps.
+    Damped,
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
     /// what it guesses.
     SizesAnew,
@@ -36,13 +38,13 @@ impl Session {
         budget: &mut Budget<'_>,
     ) -> Result<Outcome, SetupError> {
         let Some(settings) = budget.attempt() else {
-            return Ok(Outcome::failed(nlp, first.x, ntg_nlp::Status::IterationLimit));
+            return Ok(Outcome::failed(nlp, first.x, Status::IterationLimit));
         };
         let spent = budget.spent();
         let mut outcome = self.solve_once(nlp, first, &settings);
         budget.spend(outcome.iterations);
         if settings.method == Method::Auto && !is_guess {
-            for attempt in [Attempt::SizesAnew, Attempt::FewerKnots, Attempt::Sqp] {
+            for attempt in [Attempt::Damped, Attempt::SizesAnew, Attempt::FewerKnots, Attempt::Sqp] {
                 if outcome.status.is_final() {
                     break;
                 }
@@ -67,6 +69,10 @@ impl Session {
     ) -> Result<Option<Outcome>, SetupError> {
         let Some(settings) = budget.attempt() else { return Ok(None) };
         let next = match attempt {
+            Attempt::Damped => {
+                let settings = Settings { damping: true, ..settings };
+                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
+            }
             Attempt::SizesAnew => {
                 if failed.x.iter().any(|x| !x.is_finite()) {
                     return Ok(None);
