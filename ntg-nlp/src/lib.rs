@@ -54,6 +54,7 @@ pub mod method;
 pub mod options;
 pub mod outcome;
 mod reductions;
+mod remeasure;
 pub mod residuals;
 pub mod scaling;
 pub mod sensitivity;

@@ -24,6 +24,7 @@ of_both_methods! {
     complementarity_with_a_choice
     complementarity_without_multipliers
     a_start_far_outside_its_bounds
+    a_start_that_is_far_too_steep
     a_logarithm_and_a_root_and_a_reciprocal_beyond_their_domains
     rows_beyond_their_domains
     objectives_without_a_lower_bound
@@ -190,6 +191,18 @@ fn a_start_far_outside_its_bounds(method: Method) {
     });
     solved(method, &p, &[1e9, -1e9, -1e9], &[0.3, 1.0, 0.5], 1e-6);
     solved(method, &p, &[-1e15, 1e15, 0.0], &[0.3, 1.0, 0.5], 1e-6);
+}
+
+/// The slope of the row at the start is 1e15 times the one at the solution: scaled by it, the row would hold anywhere.
+fn a_start_that_is_far_too_steep(method: Method) {
+    let p = dense(&[FREE; 2], &[(1.0, 1.0)], |x| {
+        vec![(x[0] - 0.1).powi(2) + (x[1] - 5.0).powi(2), (x[0] * -500.0).exp() + x[1]]
+    });
+    let found = end(method, &p, &[-0.06, 2.0]);
+    if found.status.has_solution() {
+        assert!(violation(&p, &found.x) <= 1e-6, "{}: {:?}", found.status, found.x);
+    }
+    solved(method, &p, &[-0.04, 2.0], &[0.1, 1.0], 1e-6);
 }
 
 fn a_logarithm_and_a_root_and_a_reciprocal_beyond_their_domains(method: Method) {

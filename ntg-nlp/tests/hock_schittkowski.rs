@@ -74,6 +74,16 @@ fn all_by(exceptions: &[(u32, &str)], solve: impl Fn(&Problem) -> Outcome) {
 }
 
 #[test]
+fn damped_steps_solve_them_too() {
+    let options = Options { damping: true, ..Options::default() };
+    let is_solved = |problem: &&Problem| is_right(problem, &ipm::solve(&problem.program(), &problem.start, &options));
+    let problems = hs::all();
+    let unsolved: Vec<u32> =
+        problems.iter().filter(|problem| !is_solved(problem)).map(|problem| problem.number).collect();
+    assert!(problems.len() - unsolved.len() >= 100, "{unsolved:?}");
+}
+
+#[test]
 fn interior_point_method() {
     all_by(&EXCEPTIONS_OF_IPM, |problem| ipm::solve(&problem.program(), &problem.start, &Options::default()));
 }

@@ -3,6 +3,7 @@
 use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::Outcome;
+use crate::remeasure;
 use crate::residuals::{self, Residuals};
 use crate::status::{Bounded, Status, Violation};
 use crate::stopping::ACCEPTABLE;
@@ -74,6 +75,22 @@ impl<N: Nlp> State<'_, N> {
         }
     }
 
+    /// Whether the rows hold by their slopes at the present point.
+    fn rows_hold(&mut self) -> bool {
+        let (limits, factors) = (self.nlp.limits(), &self.system.scales.rows);
+        let rows = self.system.latest().rows.iter().enumerate();
+        let missed =
+            rows.map(|(i, value)| factors[i] * residuals::violation(*value, limits.row_lower[i], limits.row_upper[i]));
+        if missed.fold(0.0, f64::max) <= remeasure::certain(self.options) {
+            return true;
+        }
+        let mut slopes = vec![0.0; self.system.functions()];
+        self.system.scaled_slopes(&mut slopes);
+        let (factors, rows) = (&self.system.scales.rows, &self.system.latest().rows);
+        slopes.iter_mut().zip(factors).for_each(|(slope, factor)| *slope /= factor);
+        remeasure::rows_hold(self.nlp, rows, &mut slopes[..rows.len()], self.options)
+    }
+
     /// Ends the solve at the present point.
     pub(super) fn outcome(mut self, status: Status) -> Outcome {
         self.history.push(self.record);
@@ -88,8 +105,7 @@ impl<N: Nlp> State<'_, N> {
         let x = self.system.unscaled(self.nlp, &self.x).to_vec();
         let residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
         let row_factors = self.system.scales.rows.clone();
-        if std::env::var_os("NTG_TRACE").is_some() { eprintln!("END {status} after {}", self.iterations); }
-        self.analysis.rows_hold = !status.has_solution() || self.rows_hold_here();
+        self.analysis.rows_hold = !status.has_solution() || self.rows_hold();
         self.analysis.system = Some(self.system);
         self.analysis.is_unchanged = true;
         Outcome {

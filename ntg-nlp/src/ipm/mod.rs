@@ -23,7 +23,6 @@ mod line_search;
 mod penalty;
 mod penalty_search;
 mod polish;
-mod remeasure;
 mod restoration;
 mod second_order;
 mod slacks;
@@ -36,17 +35,14 @@ use crate::check::refusal;
 use crate::contract::Nlp;
 use crate::options::Options;
 use crate::outcome::{Outcome, Start};
+use crate::remeasure::until_rows_hold;
 use crate::status::Status;
 use line_search::SearchOutcome;
 pub use state::Analysis;
 use state::State;
-use std::time::Instant;
 
 /// Tiny steps in a row that end a solve. A law: one may be an accident of rounding.
 const TINY_STEPS: usize = 3;
-/// How often a solve goes on with scales from where it has ended, because rows do not hold by those. A law: each time the
-/// slopes of the end are those of the next start; a row whose slope vanishes at its solution would never end.
-const REMEASURED: usize = 3;
 
 /// Solves `nlp` from `start`, which is first moved to within the bounds of the variables.
 ///
@@ -71,19 +67,11 @@ pub fn solve_again<N: Nlp>(
     from: Start<'_>,
     options: &Options,
 ) -> Outcome {
-    let mut outcome = solve_with_first_scales(analysis, nlp, start, from, options);
-    let began = Instant::now();
-    for _ in 0..REMEASURED {
-        if analysis.rows_hold {
-            return outcome;
-        }
-        let left = options.max_iterations.saturating_sub(outcome.iterations);
-        let options = Options { max_iterations: left, ..options.after(began.elapsed()) };
-        let next = solve_with_first_scales(analysis, nlp, &outcome.x, Start::Cold, &options);
-        let (iterations, seconds) = (outcome.iterations + next.iterations, outcome.seconds + next.seconds);
-        outcome = Outcome { iterations, seconds, ..next };
-    }
-    outcome
+    until_rows_hold(options, |next, options| {
+        let (start, from) = next.map_or((start, from), |start| (start, Start::Cold));
+        let outcome = solve_with_first_scales(analysis, nlp, start, from, options);
+        (outcome, analysis.rows_hold)
+    })
 }
 
 /// Solves with the scales that the start gives.
@@ -193,7 +181,6 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         if let Some(status) = ended {
             return state.end(status); // 10
         }
-        if std::env::var_os("NTG_TRACE").is_some() { let r = &state.record; eprintln!("{:4} {:4} f={:.16e} st={:.2e} fe={:.2e} co={:.2e} theta={:.3e} mu={:.2e} a={:.3e} cv={} sh={:.1e} px={:.1e} so={} |y|={:.2e} |z|={:.2e}", state.iterations, if state.penalty.is_some() {"pen"} else if state.restoration.is_some() {"rest"} else {""}, r.objective, r.residuals.scaled.dual, r.residuals.scaled.primal, r.residuals.scaled.complementarity, state.theta(), state.mu, r.step, r.convexified as u8, r.shift, state.proximal, r.corrected as u8, state.slacks.y.iter().fold(0.0f64, |a, b| a.max(b.abs())), state.slacks.z.iter().fold(0.0f64, |a, b| a.max(b.abs()))); }
         if let Err(status) = state.advance() {
             return state.end(status); // 11
         }

@@ -27,6 +27,7 @@ use crate::check::refusal;
 use crate::contract::Nlp;
 use crate::options::Options;
 use crate::outcome::{Multipliers, Outcome};
+use crate::remeasure::{rows_hold_at_end, until_rows_hold};
 use crate::status::Status;
 use run::Run;
 use std::time::Instant;
@@ -41,6 +42,21 @@ pub fn solve<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
 
 /// As [`solve`], with multipliers to start from, as after a small change of the program.
 pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
+    until_rows_hold(options, |next, options| {
+        let (start, from) = next.map_or((start, from), |start| (start, None));
+        let outcome = solve_with_first_scales(nlp, start, from, options);
+        let rows_hold = rows_hold_at_end(nlp, &outcome, options);
+        (outcome, rows_hold)
+    })
+}
+
+/// Solves with the scales that the start gives.
+fn solve_with_first_scales<N: Nlp>(
+    nlp: &N,
+    start: &[f64],
+    from: Option<Multipliers<'_>>,
+    options: &Options,
+) -> Outcome {
     let begin = Instant::now();
     if let Some(status) = refusal(nlp, start) {
         return Outcome::failed(nlp, start, status);

@@ -176,7 +176,9 @@ impl Balance {
 
     /// What has no size yet, with the sizes that are found.
     fn sizes_by(&self, size: impl Fn(usize) -> Option<f64>) -> impl Iterator<Item = (usize, f64)> {
-        (0..self.size.len()).filter(|group| self.size[*group].is_none()).filter_map(move |group| Some((group, size(group)?)))
+        (0..self.size.len())
+            .filter(|group| self.size[*group].is_none())
+            .filter_map(move |group| Some((group, size(group)?)))
     }
 
     /// All groups that balance constraints in which no other group is without a size.

@@ -340,6 +340,19 @@ mod tests {
     }
 
     #[test]
+    fn rounding_decides_between_no_equal_pivots() {
+        // Two joints in line: the diagonals are equal, and either may come first.
+        let rows = [-2.0, 0.5, 1.0, 0.5, -2.0, -1.0, 1.0, -1.0, 3.0];
+        let plain = modified_ldl(&DMatrix::from_row_slice(3, 3, &rows)).1;
+        for (i, change) in [(0, 1e-15), (4, 1e-15), (0, -1e-15), (4, -1e-15)] {
+            let mut rows = rows;
+            rows[i] += change;
+            let (_, term) = modified_ldl(&DMatrix::from_row_slice(3, 3, &rows));
+            assert!((term - &plain).abs().max() < 1e-12, "{i} {change:e}");
+        }
+    }
+
+    #[test]
     fn a_convex_matrix_stays() {
         let mut seed = 3;
         let (convexified, term) = modified_ldl(&random(5, 5, &mut seed, |_| 1.0));
