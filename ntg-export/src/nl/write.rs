@@ -62,6 +62,7 @@ struct Text<'a> {
 enum Pending {
     Expression(Id),
     Word(&'static str),
+    Count(usize),
 }
 
 impl Text<'_> {
@@ -192,6 +193,10 @@ impl Text<'_> {
                     self.line(format_args!("{word}"));
                     continue;
                 }
+                Pending::Count(count) => {
+                    self.line(format_args!("{count}"));
+                    continue;
+                }
                 Pending::Expression(id) => id,
             };
             match (self.reference[id.index()], program.graph.node(id)) {
@@ -201,11 +206,6 @@ impl Text<'_> {
                     self.line(format_args!("v{place}"));
                 }
                 (None, Node::Constant(value)) => self.line(format_args!("n{:?}", value.value())),
-                (None, Node::Least(all) | Node::Greatest(all)) => {
-                    let code = if matches!(program.graph.node(id), Node::Least(_)) { 11 } else { 12 };
-                    self.line(format_args!("o{code}\n{}", all.len()));
-                    pending.extend(all.iter().rev().map(|id| Pending::Expression(*id)));
-                }
                 _ => {
                     let first = pending.len();
                     operation(&program.graph, id, &mut pending);
@@ -281,8 +281,13 @@ fn operation(graph: &Graph, id: Id, out: &mut Vec<Pending>) {
             out.extend([Pending::Word("o35"), Pending::Word(compare)]);
             out.extend([*a, *b, *then, *otherwise].map(Pending::Expression));
         }
+        Node::Least(all) | Node::Greatest(all) => {
+            let code = if matches!(graph.node(id), Node::Least(_)) { "o11" } else { "o12" };
+            out.extend([Pending::Word(code), Pending::Count(all.len())]);
+            out.extend(all.iter().copied().map(Pending::Expression));
+        }
         // The others are written where they stand.
-        Node::Constant(_) | Node::Variable(_) | Node::Linear(..) | Node::Least(_) | Node::Greatest(_) => {
+        Node::Constant(_) | Node::Variable(_) | Node::Linear(..) => {
             out.push(Pending::Expression(id));
         }
     }

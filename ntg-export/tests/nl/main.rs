@@ -126,6 +126,7 @@ fn every_operation_is_written() {
             + atan(x[1]) + sinh(x[1]) + cosh(x[2]) + tanh(x[1]) + abs(x[1]) + min(x[1], x[2]) + max(x[1], 2 * x[2])
             + (1 + x[1]^2)^1.5 + x[1]^3 + sign(x[1]) + smooth_max(x[1], x[2], 0.1) + smooth_abs(x[2], 0.2)
             + clamped(x[1]) + clamped(4 * x[2]) + onward(x[1]) + onward(3 * x[2]) + flat(x[1]) + flat(2 * x[2])
+            + (if x[1] <= x[2] smooth 3 { sin(x[1]) } else { x[2]^2 }) + min(x[1], 2 * x[2])^2 * (1 + min(x[1], 2 * x[2]))
             + logistic(x[1]) + softplus(x[2]) + mirrored(x[1], 3 * x[2]) + partial(mirrored(x[1], x[2]), a));
         initial { x[1] == 1;  x[2] == -2; }
         trajectory {
