@@ -58,3 +58,13 @@ fn a_zone_that_is_far_away_changes_nothing() {
     close(report.objective, 5.0, 1e-8);
     assert!(report.iterations <= 40, "{} iterations", report.iterations);
 }
+
+/// `x == 150 [m] * sin(pi)` has a bound of 1.8e-14 m, which rounding alone misses by a third.
+#[test]
+fn a_bound_that_is_what_rounding_left_of_0_is_0() {
+    let report = Shipped::spec("gallery/formation_4").solve();
+    close(report.objective, 0.001_164_772_794, 1e-6);
+    let words: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
+    assert_eq!(words, Vec::<String>::new());
+    assert!(report.violation.points < 1e-9 && report.violation.between < 1e-9, "{report}");
+}

@@ -82,8 +82,11 @@ fn set_sizes(nlp: &Transcription, outcome: &Outcome, reports: &mut [ConstraintRe
     }
 }
 
+/// A bound that is smaller than this part of the size of its terms is what rounding left of 0: `sin(pi)` is 1.2e-16.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// The larger finite bound, or the size of the terms where both are zero or missing (equation 9.3).
 pub(super) fn scale(lower: f64, upper: f64, size: f64) -> f64 {
     let largest = bound_size((lower, upper));
-    if largest > 0.0 { largest } else { size }
+    if largest > ROUNDING * size { largest } else { size }
 }
