@@ -125,3 +125,61 @@ fn the_lap_and_the_twenty_plants_have_the_optima_of_another_transcription() {
     close(Shipped::spec("racing").solve().objective, 28.0446, 1e-5);
     close(Shipped::spec("robust").solve().objective, 0.036_766_960_8, 1e-6);
 }
+
+/// Each member of an array, and so of a scenario, begins in the middle of its own bounds.
+#[test]
+fn what_is_not_guessed_begins_in_the_middle_of_the_members_own_bounds() {
+    let begins = |guess: &str| {
+        let spec = Shipped::text(&format!(
+            "problem P {{
+                duration T = 1 [s];
+                scenario a[k in 1 .. 3] {{
+                    output x [m]: spline(order = 3, intervals = 2);
+                    minimize integral(der(x)^2) * 1 [s/m^2];
+                    trajectory {{ x in k * 1 [m] .. (k + 2) * 1 [m]; }}
+                    {guess}
+                }}
+            }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        (report.iterations, report.solution.coefficients().to_vec())
+    };
+    let (own, told) = (begins(""), begins("guess { x = (k + 1) * 1 [m]; }"));
+    assert_eq!(own.0, told.0);
+    // Constants are optimal: what is begun with stays.
+    for (a, b) in own.1.into_iter().zip(told.1) {
+        close(a, b, 1e-12);
+    }
+}
+
+/// Every member has measurements of its own; they tell of what is common to all.
+#[test]
+fn members_of_a_scenario_are_measured() {
+    let measured = |items: &str| {
+        let head = "duration T = 2 [s];  collocation gauss(points = 3, intervals = 4);
+            variable drag in 0 .. 2 [1/s];  param seen[2] = (1.2, 1.9) [m];  guess { drag = 0.5 [1/s]; }";
+        Shipped::text(&format!("problem P {{ {head} {items} }}")).solve()
+    };
+    let short = measured(
+        "scenario run[k in 1 .. 2] {
+            state x [m], v [m/s];
+            dynamics { der(x) == v;  der(v) == -drag * v; }
+            initial { x == 0;  v == k * 1 [m/s]; }
+            measure { place: final(x) == seen[k] sigma 0.1 [m]; }
+        }",
+    );
+    let long = measured(
+        "state x[1 .. 2] [m], v[1 .. 2] [m/s];
+        dynamics { for k in 1 .. 2 { der(x[k]) == v[k];  der(v[k]) == -drag * v[k]; } }
+        initial { for k in 1 .. 2 { x[k] == 0;  v[k] == k * 1 [m/s]; } }
+        measure { for k in 1 .. 2 { place: final(x[k]) == seen[k] sigma 0.1 [m]; } }",
+    );
+    let [short_estimate, long_estimate] =
+        [&short, &long].map(|report| report.estimate.clone().expect("measurements were made"));
+    assert_eq!(short_estimate.count, 2);
+    assert_eq!(short_estimate.measurements[0].residuals, long_estimate.measurements[0].residuals);
+    assert_eq!(short_estimate.deviations[0].sigma.to_bits(), long_estimate.deviations[0].sigma.to_bits());
+    // x(2) = k s with s = (1 - exp(-2 drag)) / drag: the best s is (1.2 + 2 * 1.9) / 5 = 1.
+    let drag = short_estimate.deviations[0].variable.value;
+    close((1.0 - (-2.0 * drag).exp()) / drag, 1.0, 1e-4);
+}

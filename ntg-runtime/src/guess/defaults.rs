@@ -120,33 +120,32 @@ fn line(known: &[(f64, f64)], t: f64) -> Option<f64> {
     }
 }
 
-/// Bounds along the phase on the output itself: rows of one slot whose coefficients are one
-/// multiple of the B-splines' values, which add up to 1.
+/// Bounds along the phase on the output itself, each member of an array by its own: rows of one slot whose
+/// coefficients are one multiple of the B-splines' values, which add up to 1.
 pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)> {
     let layout = &nlp.model.layout;
     let coefficients = &layout.phases[phase].outputs[output].coefficients;
     let mut found: Option<(f64, f64)> = None;
     for (group, block) in nlp.elements.batches.iter().zip(&nlp.elements.blocks) {
         let declared = &nlp.model.structure.groups[group.group];
-        let here = |e: usize| group.batch.sites[e].point.phase == Some(phase);
-        let Some(element) = (0..block.elements).find(|e| here(*e)) else { continue };
         if !matches!(declared.domain, Domain::Path { .. }) {
             continue;
         }
         for row in (0..block.rows).filter(|row| group.degree[*row] == Degree::Linear) {
-            let Target::Row(target) = block.target[row * block.elements + element] else { continue };
             let slots: Vec<usize> = block.jacobian.iter().filter(|e| e.0 == row).map(|e| e.1).collect();
             let &[slot] = &slots[..] else { continue };
-            let variables = block.variables(element);
-            let map = &block.map(element)[slot * variables.len()..][..variables.len()];
-            let active = || variables.iter().zip(map).filter(|(_, c)| **c != 0.0);
-            let total: f64 = active().map(|(_, c)| c).sum();
-            let own = active().all(|(v, c)| coefficients.contains(v) && *c > 0.0);
-            let Some((slope, offset)) =
-                (own && (total - 1.0).abs() < 1e-9).then(|| nlp.frame().line(group, element, row, slot)).flatten()
-            else {
-                continue;
+            // Whether a row is about nothing but the value of this very member of its array.
+            let is_own = |element: usize| {
+                let variables = block.variables(element);
+                let map = &block.map(element)[slot * variables.len()..][..variables.len()];
+                let active = || variables.iter().zip(map).filter(|(_, c)| **c != 0.0);
+                active().all(|(v, c)| coefficients.contains(v) && *c > 0.0)
+                    && (active().map(|(_, c)| c).sum::<f64>() - 1.0).abs() < 1e-9
             };
+            let here = |element: &usize| group.batch.sites[*element].point.phase == Some(phase) && is_own(*element);
+            let Some(element) = (0..block.elements).find(here) else { continue };
+            let Target::Row(target) = block.target[row * block.elements + element] else { continue };
+            let Some((slope, offset)) = nlp.frame().line(group, element, row, slot) else { continue };
             let rows = &nlp.limits;
             let ends = [rows.row_lower[target as usize], rows.row_upper[target as usize]].map(|b| (b - offset) / slope);
             let (lower, upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
