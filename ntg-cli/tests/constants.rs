@@ -85,3 +85,33 @@ fn names_that_are_no_constants_are_told_of() {
     assert!(err.contains("error[E074]: \"data/run.csv\" has 5 rows, `time` has 4"), "{err}");
     said(&ntg(folder.path(), &["check", "spec.ntg", "--set", "pieces=3"]), 0);
 }
+
+#[test]
+fn saved_runs_and_reports_hold_the_estimate() {
+    let folder = folder();
+    let printed = solved(folder.path(), &["--save", "run.json"]);
+    let saved = std::fs::read_to_string(folder.path().join("run.json")).expect("the saved run");
+    let saved: Value = serde_json::from_str(&saved).expect("JSON");
+    assert_eq!(saved["estimate"], printed["estimate"]);
+    said(&ntg(folder.path(), &["report", "run.json", "-o", "run.html"]), 0);
+    let page = std::fs::read_to_string(folder.path().join("run.html")).expect("the page");
+    let section = page.split("id=\"estimate\"").nth(1).and_then(|rest| rest.split("</section>").next());
+    let section = section.expect("a section about the estimate");
+    for words in ["5 measured numbers", ">offset<", "standard deviation", ">track<", "100 %"] {
+        assert!(section.contains(words), "`{words}` is missing in {section}");
+    }
+    // Without measurements there is no such section.
+    let plain = SPEC
+        .replace("measure {", "trajectory {")
+        .replace(" sigma noise", "")
+        .replace("at(time[i], x) == seen[i]", "x >= 0 [m]");
+    std::fs::write(
+        folder.path().join("plain.ntg"),
+        plain.replace("variable offset", "minimize integral(x);\n    variable offset"),
+    )
+    .expect("a file can be written");
+    said(&ntg(folder.path(), &["solve", "plain.ntg", "--save", "plain.json"]), 0);
+    said(&ntg(folder.path(), &["report", "plain.json", "-o", "plain.html"]), 0);
+    let page = std::fs::read_to_string(folder.path().join("plain.html")).expect("the page");
+    assert!(!page.contains("id=\"estimate\""));
+}

@@ -1,7 +1,7 @@
 //! The solution for programs. Numbers that are not finite are null.
 
 use ntg_runtime::problem::Problem;
-use ntg_runtime::report::{ConstraintReport, Estimate, Report, Worst};
+use ntg_runtime::report::{ConstraintReport, Report, Worst};
 use ntg_runtime::structure::{Independent, Parameter};
 use serde_json::{Map, Value, json};
 
@@ -42,7 +42,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "history": history(report),
     });
     if let Some(estimate) = &report.estimate {
-        document["estimate"] = estimated(estimate);
+        document["estimate"] = json!(ntg_report::run::Estimate::from(estimate));
     }
     if let Some(explanation) = solved.explanation {
         document["explanation"] = json!(ntg_report::run::Explanation::from(explanation));
@@ -64,31 +64,6 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         document["starts"] = super::starts::document(starts);
     }
     document
-}
-
-fn estimated(estimate: &Estimate) -> Value {
-    let measurements = estimate.measurements.iter().map(|measurement| {
-        let residuals = measurement.residuals.iter();
-        json!({
-            "name": measurement.name, "unit": measurement.unit.symbol,
-            "chi2": measurement.chi2, "share": measurement.share,
-            "residuals": residuals.map(|residual| json!({
-                "indices": residual.indices, "value": residual.value, "ratio": residual.ratio,
-            })).collect::<Vec<_>>(),
-        })
-    });
-    json!({
-        "chi2": estimate.chi2,
-        "count": estimate.count,
-        "measurements": measurements.collect::<Vec<_>>(),
-        "deviations": estimate.deviations.iter().map(|deviation| {
-            let variable = &deviation.variable;
-            let about = json!({ "unit": variable.unit.symbol, "value": variable.value, "sigma": deviation.sigma });
-            (variable.name.clone(), about)
-        }).collect::<Map<_, _>>(),
-        "correlations": estimate.correlations,
-        "unknown": estimate.unknown,
-    })
 }
 
 fn parameter(parameter: &Parameter) -> (String, Value) {

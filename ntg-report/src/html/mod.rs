@@ -4,6 +4,7 @@
 //! small one of ours for maps) and its data.
 
 mod data;
+mod estimate;
 mod extremes;
 mod spec;
 mod study;
@@ -57,6 +58,7 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                     (summary(first))
                     (study::explanation(first))
                     (study::minima(first))
+                    (estimate::section(first))
                     @if runs.len() > 1 { (tables::comparison(runs)) }
                     (charts("tracks", "Tracks", &data.tracks, &first.independent))
                     (extremes::section(runs, page.all))
@@ -94,7 +96,7 @@ fn head(run: &Run) -> Markup {
             @let doc = run.doc.split("\n\n").next().unwrap_or("");
             @if !doc.is_empty() { p.doc { (tables::prose(doc)) } }
             nav {
-                @for (anchor, name) in [("minima", "Local minima"), ("tracks", "Tracks"), ("extremes", "Extremes"), ("outputs", "Outputs"), ("constraints", "Constraints"), ("spec", "Spec"), ("table", "Table"), ("convergence", "Convergence"), ("discretisation", "Discretisation")] {
+                @for (anchor, name) in [("minima", "Local minima"), ("estimate", "Estimate"), ("tracks", "Tracks"), ("extremes", "Extremes"), ("outputs", "Outputs"), ("constraints", "Constraints"), ("spec", "Spec"), ("table", "Table"), ("convergence", "Convergence"), ("discretisation", "Discretisation")] {
                     a href={ "#" (anchor) } { (name) }
                 }
             }

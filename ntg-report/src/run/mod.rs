@@ -3,6 +3,7 @@
 //! The fields are those of docs/solution-format.md. What an older or hand-written file does not
 //! say is empty. Numbers that are not finite are `null` in the file and NaN here.
 
+mod estimate;
 mod layout;
 mod numbers;
 mod reading;
@@ -10,6 +11,7 @@ mod record;
 mod scene;
 mod study;
 
+pub use estimate::{Deviation, Estimate, Measurement, Residual};
 pub use layout::layout;
 pub use record::Recording;
 pub use scene::{Ball, Coordinate, Level, Moving, Outline, Place, Scene, Surface};
@@ -71,6 +73,9 @@ pub struct Run {
     /// How the mesh was refined; none where it was not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refinement: Option<Refinement>,
+    /// What the measurements say; none where nothing was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<Estimate>,
     /// What the meaning of `unknowns` depends on.
     pub layout: Value,
     /// All variables of the optimisation problem, SI.

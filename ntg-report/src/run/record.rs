@@ -77,6 +77,7 @@ impl Recording<'_> {
             explanation: self.explanation.map(Into::into),
             starts: self.starts.map(Into::into),
             refinement: report.refined.as_ref().map(Into::into),
+            estimate: report.estimate.as_ref().map(Into::into),
             layout: layout(structure),
             unknowns: solution.coefficients().to_vec(),
             outputs: self.outputs(),
