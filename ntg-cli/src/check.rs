@@ -63,8 +63,8 @@ fn check(read: Result<(Source, BesideSpec), Failure>, set: &[String]) -> Checked
         Ok((source, loader)) => {
             // What is no constant here is told of by the compiler.
             let given: Vec<Given> = set.iter().filter_map(|set| values::given(set)).collect();
-            let (problem, found) = match ntg_compiler::compile_with(&source, &loader, &given) {
-                Ok(compiled) => (Some(compiled.program.structure.name), compiled.notes),
+            let (problem, found) = match ntg_compiler::check_with(&source, &loader, &given) {
+                Ok((name, notes)) => (Some(name), notes),
                 Err(found) => (None, found.into_iter().collect()),
             };
             Checked {

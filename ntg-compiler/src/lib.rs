@@ -50,10 +50,32 @@ pub fn compile(source: &Source, loader: &dyn Loader) -> Result<Compiled, Diagnos
 /// # Errors
 /// Everything that is wrong with the spec or with the values, in source order.
 pub fn compile_with(source: &Source, loader: &dyn Loader, given: &[Given]) -> Result<Compiled, Diagnostics> {
+    let (problem, notes) = meant(source, loader, given)?;
+    Ok(Compiled { program: program::lower(problem, source), notes })
+}
+
+/// Everything that [`compile_with`] finds, without the derivatives, which take most of its time: the problem's name,
+/// and what the user should know though nothing is wrong.
+///
+/// # Errors
+/// As [`compile_with`].
+pub fn check_with(
+    source: &Source,
+    loader: &dyn Loader,
+    given: &[Given],
+) -> Result<(String, Vec<Diagnostic>), Diagnostics> {
+    meant(source, loader, given).map(|(problem, notes)| (problem.name, notes))
+}
+
+/// What a spec means, and the notes about it.
+fn meant(
+    source: &Source,
+    loader: &dyn Loader,
+    given: &[Given],
+) -> Result<(model::problem::Problem, Vec<Diagnostic>), Diagnostics> {
     let spec = syntax::parse(source)?;
     let (problem, found) = model::build_with(&spec, source, loader, given);
     let (errors, notes) = found.into_iter().partition(|d: &Diagnostic| d.severity == Severity::Error);
     Diagnostics::or(errors)?;
-    let problem = problem.expect("a problem is missing only where there are errors");
-    Ok(Compiled { program: program::lower(problem, source), notes })
+    Ok((problem.expect("a problem is missing only where there are errors"), notes))
 }
