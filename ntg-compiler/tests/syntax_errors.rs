@@ -42,6 +42,7 @@ messages! {
     a_number_that_overflows: inside("let a = 1e400;");
     ranges_of_other_languages: inside("variable m in 1...2;\nvariable n in 1..=2;");
     primes: inside("let v = x';\nlet a = x'';\nlet s = 'text';");
+    words_of_other_languages: inside("parameter m = 2;\nReal x;\nobjective: T;\nsubject_to x;\node x;\nstate r(3);\nstate r[1:3];\nstate r[3] m;\nlet a = u' * u;\nlet b = J \\ u;\nlet c = r[1](t - 1);\ninitial { r := 0; }");
     characters: inside("trajectory { x ≤ 1; x ≥ 1; x ≠ 1; x² == 1; }\nlet a = 30°;\nlet b = ∫x;\nlet c = a && b;\nlet d = x % 3;\nlet e = a − b;\nlet f = a\u{a0}+ b;\nlet g = 😀;\nlet h = a#b;\nlet i = !a;");
     strings: inside("table q(a) = linear from\"a.csv\";\ntable q(a) = linear from \"a.csv\"x;\ntable q(a) = linear from \"a\\b.csv\";");
     a_string_that_never_ends: inside("table q(a) = linear from \"a.csv;\nlet b = 1;");

@@ -98,6 +98,13 @@ const HABITS: &[(&str, &str)] = &[
     ("sigmoid", "logistic(x)"),
     ("diff", "der(x)"),
     ("int", "integral(x)"),
+    ("d", "der(x)"),
+    ("sumsqr", "dot(u, u)"),
+    ("norm_2", "norm(u)"),
+    ("mtimes", "A * B"),
+    ("zeros", "0"),
+    ("eye", "identity(n)"),
+    ("diag", "diagonal(v)"),
     ("softmax", "smooth_max(x, y, width)"),
     ("smooth_min", "-smooth_max(-x, -y, width)"),
 ];
@@ -232,6 +239,10 @@ impl<'a> Elaborator<'a> {
             Some(Rule::SmoothAbs) => "write `smooth_abs(u, width)`".to_owned(),
             Some(Rule::SmoothMax) => "write `smooth_max(u, v, width)`".to_owned(),
             Some(Rule::Angle) => "write `atan2(y, x)`".to_owned(),
+            // A dot over a name is a derivative in mechanics.
+            None if name == "dot" && given == 1 => {
+                "the product of two vectors is `dot(a, b)`, a derivative `der(x)`".to_owned()
+            }
             _ if given > most => "remove what is too much".to_owned(),
             _ => "add what is missing".to_owned(),
         };

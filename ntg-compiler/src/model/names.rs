@@ -17,6 +17,21 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 use crate::syntax::ast::{Ident, Path, Segment};
 
+/// `r_dot`, `rddot` and the `dr` of `dr/dt` mean derivatives of `r`, where there is one.
+fn as_derivative(name: &str, known: &[&str]) -> Option<String> {
+    if name == "dt" {
+        return Some("the time is `t`, and a derivative `der(x)`".to_owned());
+    }
+    let is_known = |base: &&str| known.contains(base);
+    let behind = |ending: &str| name.strip_suffix(ending).map(|base| base.trim_end_matches('_')).filter(is_known);
+    let twice = behind("ddot").or_else(|| name.strip_prefix("d2").filter(is_known));
+    if let Some(base) = twice {
+        return Some(format!("write `der({base}, 2)` for the second derivative"));
+    }
+    let once = behind("dot").or_else(|| name.strip_prefix('d').filter(is_known));
+    once.map(|base| format!("write `der({base})` for the derivative"))
+}
+
 impl<'a> Elaborator<'a> {
     /// The meaning of a path as a value.
     pub(super) fn path(&mut self, cx: &Context<'a>, path: &'a Path, at: &[Form]) -> Value {
@@ -98,6 +113,7 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding.label(*bound, "bound here").help(help), segment.span);
         }
         let elsewhere = self.lacking_in_phase(cx, text).or_else(|| self.elsewhere(text));
+        let elsewhere = elsewhere.or_else(|| as_derivative(text, &names));
         let finding = match (elsewhere, nearest(text, names.iter().copied())) {
             (Some(help), _) => finding.help(help),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),

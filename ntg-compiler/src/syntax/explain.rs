@@ -96,6 +96,19 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
     let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
     match nearest_item_word(word) {
         _ if matches!(word, "control" | "controls") => finding.help("what is chosen freely is an `input`"),
+        _ if matches!(word, "parameter" | "parameters" | "constant") => {
+            finding.help("a number that may be set is a `param`, one that never changes a `const`")
+        }
+        _ if matches!(word, "Real" | "real" | "var" | "variables" | "free") => {
+            finding.help("what moves is a `state`, an `input` or an `output`, a number that is sought a `variable`, a time a `duration`")
+        }
+        _ if matches!(word, "objective" | "cost" | "J") => finding.help("write `minimize name: e;` or `maximize name: e;`"),
+        _ if matches!(word, "subject_to" | "constraint" | "constraints" | "path") => {
+            finding.help("constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`")
+        }
+        _ if matches!(word, "equation" | "equations" | "ode" | "system") => {
+            finding.help("equations of motion stand in `dynamics { der(x) == ...; }`")
+        }
         _ if matches!(word, "vector" | "matrix") => {
             finding.help("a vector is declared by its size: `output r[3]: ...`, `param J[3, 3] = ...`")
         }
@@ -233,6 +246,24 @@ impl Here<'_> {
         }
         if this == "at" && self.expected.has(Rule::part) {
             return Some("one time has a block of its own: `at 2.5 [s] { ... }`".into());
+        }
+        let in_declaration = matches!(self.first_word(), Some("state" | "input" | "output" | "param" | "const"));
+        if in_declaration && this == "(" {
+            return Some(format!("a size stands in brackets: `{before}[3]`"));
+        }
+        if in_declaration && this == ":" && after_number {
+            return Some("a range is written `1 .. 3`".into());
+        }
+        let is_called = word(self.scan.tokens.get(self.index + 1)) == "(";
+        let may_be_unit = is_word && !is_called && !matches!(this, "from" | "spline" | "column" | "columns");
+        if in_declaration && may_be_unit && self.expected.has(Rule::semicolon) && self.expected.has(Rule::comma) {
+            return Some(format!("a unit stands in brackets, `[{this}]`"));
+        }
+        if this == "=" && before == ":" {
+            return Some("write `==` for what shall hold, `=` for what is defined".into());
+        }
+        if this == "(" && before == "]" {
+            return Some("a value at a time is `at(time, x)`; a delay is not in the language".into());
         }
         if this == "**" {
             return Some("write `^` for a power".into());

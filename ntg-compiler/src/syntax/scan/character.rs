@@ -29,6 +29,9 @@ impl Scanner<'_> {
     fn prime(&self, count: usize) -> String {
         let before = self.text[..self.pos].rsplit(|c| !unicode_ident::is_xid_continue(c)).next();
         match (before.filter(|name| name.starts_with(unicode_ident::is_xid_start)), count) {
+            (Some(name), 1) if self.text[self.pos + 1..].trim_start().starts_with(['*', '@']) => format!(
+                "write `dot({name}, b)` for a product of vectors, `transpose({name})` for a matrix, `der({name})` for the derivative"
+            ),
             (Some(name), 1) => format!("write `der({name})` for the derivative"),
             (Some(name), _) => format!("write `der({name}, {count})` for the derivative"),
             (None, _) => "derivatives are written `der(x)`, strings in double quotes".into(),
@@ -63,6 +66,7 @@ fn advice(c: char) -> (&'static str, String) {
         '#' => ("", "comments begin with `//`"),
         '@' => ("*", "write `*`, which is the product of matrices too"),
         '!' => ("", "write each constraint with `==`, `<=` or `>=`"),
+        '\\' => ("", "write the equation: `A * x == b`, with `x` a state, an input or an output"),
         '?' => ("", "write `if a <= b { ... } else { ... }`"),
         '&' => ("", "write two statements: all of them hold"),
         '|' => ("", "write `abs(x)` for a magnitude"),
