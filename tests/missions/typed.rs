@@ -66,3 +66,39 @@ fn generated_code_and_interpreter_see_the_same_mission() {
     let paths = |s: &Solution| s.trajectories().iter().map(|t| t.name().to_owned()).collect::<Vec<_>>();
     assert_eq!(paths(generated.untyped()), paths(&by_tape.solution));
 }
+
+mod whole {
+    ntg::ntg! {
+        /// Two drones keep a vector between them while they rise.
+        problem Pair {
+            duration T = 4 [s];
+            output r[3] [km], p[1 .. 2, 1 .. 3] [m]: spline(order = 4, intervals = 2);
+            let v[3] [m/s] = der(r);
+            let speed[i in 1 .. 2] [m/s] = norm((der(p[i, 1]), der(p[i, 2]), der(p[i, 3])));
+            minimize (integral(dot(der(r, 2), der(r, 2))) + sum(i in 1 .. 2, integral(dot(der(p[i], 2), der(p[i], 2))))) * 1 [s^3/m^2];
+            initial { r == (0, 1, 2) [km];  p[1] == (0, 0, 1) [m];  p[2] == (5, 6, 7) [m]; }
+            final { r == (4, 1, 0) [km];  p[1] == (0, 4, 1) [m];  p[2] == (9, 6, 7) [m]; }
+        }
+    }
+}
+
+#[test]
+fn vectors_and_matrices_are_arrays_of_numbers() {
+    let solution = whole::Pair::default().solve(&Settings::default()).expect("it can be set up");
+    assert!(solution.is_solved(), "{}", solution.report());
+    // Straight lines, as nothing bends them.
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
+    let (place, rate): ([f64; 3], [f64; 3]) = (solution.r().at(1.0), solution.r.derivative(1.0, 1));
+    place.into_iter().zip([1.0, 1.0, 1.5]).for_each(|(a, b)| near(a, b));
+    rate.into_iter().zip([1.0, 0.0, -0.5]).for_each(|(a, b)| near(a, b));
+    let both: [[f64; 3]; 2] = solution.p().at(2.0);
+    both.into_iter().flatten().zip([0.0, 2.0, 1.0, 7.0, 6.0, 7.0]).for_each(|(a, b)| near(a, b));
+    let speeds: [f64; 2] = solution.speed().at(3.0);
+    speeds.into_iter().for_each(|speed| near(speed, 1.0));
+    // In the declared unit, and the same bits as element by element.
+    near(solution.v().at(1.0)[0], 1000.0);
+    assert_eq!(place.map(f64::to_bits), [1, 2, 3].map(|k| solution.r[k].at(1.0).to_bits()));
+    let element = solution.p().element(2, 1).expect("an element");
+    assert_eq!(element.at(2.0).to_bits(), both[1][0].to_bits());
+    assert_eq!(element.name(), solution.p[4].name());
+}

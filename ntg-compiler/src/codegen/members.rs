@@ -24,16 +24,51 @@ pub(super) enum Question {
     Duration,
 }
 
+/// The elements of a vector, or of a matrix row by row.
+#[derive(Clone, Copy)]
+pub(super) struct Shape {
+    /// All elements.
+    pub(super) family: Family,
+    /// How many columns a matrix has.
+    pub(super) columns: Option<usize>,
+}
+
+impl Shape {
+    /// `Vector<T, 3>`, `Matrix<T, 4, 3>`.
+    fn kind(self, of: &TokenStream) -> TokenStream {
+        let count = Literal::usize_unsuffixed(self.family.len());
+        let Some(columns) = self.columns else { return quote! { ::ntg::runtime::solution::Vector<#of, #count> } };
+        let rows = Literal::usize_unsuffixed(self.family.len() / columns.max(1));
+        let columns = Literal::usize_unsuffixed(columns);
+        quote! { ::ntg::runtime::solution::Matrix<#of, #rows, #columns> }
+    }
+
+    /// The value for what each element is at its index `i`.
+    fn value(self, one: &TokenStream) -> TokenStream {
+        let Family { first, last } = self.family;
+        let (first, last) = (first.to_rust(), last.to_rust());
+        let name = if self.columns.is_some() {
+            quote! { Matrix }
+        } else {
+            quote! { Vector }
+        };
+        quote! { ::ntg::runtime::solution::#name::new(#first, (#first..=#last).map(|i| #one).collect()) }
+    }
+}
+
 /// The type of an output's field.
-pub(super) fn trajectory(family: Option<Family>) -> TokenStream {
-    in_family(quote! { ::ntg::runtime::solution::Trajectory }, family)
+pub(super) fn trajectory(shape: Option<Shape>) -> TokenStream {
+    let one = quote! { ::ntg::runtime::solution::Trajectory };
+    shape.map_or_else(|| one.clone(), |shape| shape.kind(&one))
 }
 
 /// The value of an output's field, in a function that has `solution`, and `path` where it is not the
 /// problem's own.
-pub(super) fn output(name: &str, family: Option<Family>, in_root: bool) -> TokenStream {
+pub(super) fn output(name: &str, shape: Option<Shape>, in_root: bool) -> TokenStream {
+    let family = shape.map(|shape| shape.family);
     let path = path(name, family, if in_root { None } else { Some(quote! { path }) });
-    members(family, quote! { known(solution.output(#path)) })
+    let one = quote! { known(solution.output(#path)) };
+    shape.map_or_else(|| one.clone(), |shape| shape.value(&one))
 }
 
 /// A documented method that asks a question.
@@ -51,7 +86,11 @@ pub(super) fn method(
         Question::Variable => (quote! { known(self._solution.variable(#path)) }, quote! { f64 }),
         Question::Duration => (quote! { known(self._solution.time(#path)) }, quote! { f64 }),
     };
-    let (answer, kind) = (members(family, answer), in_family(kind, family));
+    let shape = family.filter(|_| matches!(question, Question::Signal)).map(|family| Shape { family, columns: None });
+    let (answer, kind) = match shape {
+        Some(shape) => (shape.value(&answer), shape.kind(&kind)),
+        None => (members(family, answer), in_family(kind, family)),
+    };
     quote! {
         #(#[doc = #doc])*
         pub fn #ident(&self) -> #kind {

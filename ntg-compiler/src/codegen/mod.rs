@@ -51,7 +51,7 @@ pub fn generate_at(program: &Program, place_of: &dyn Fn(&str) -> Span) -> TokenS
     let name = &program.structure.name;
     let kernels = kernels::kernels(program);
     let problem = problem::problem(program, &kernels, place_of);
-    let solution = solution::solution(&program.structure, place_of);
+    let solution = solution::solution(program, place_of);
     let structure = structure::structure(&program.structure);
 
     let public = ident_at(name, place_of(name));

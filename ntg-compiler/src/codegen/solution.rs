@@ -1,8 +1,9 @@
 //! The typed solution: outputs are fields, everything else that has a name is a method.
 //!
-//! Takes a `Structure`, gives `VanDerPolSolution` and one such struct for each named agent and
+//! Takes a `Program`, gives `VanDerPolSolution` and one such struct for each named agent and
 //! phase, nested as in the spec: `solution.x`, `solution.covert.x`, `solution.uav(1).x`.
-//! A member of a family is reached by a call, anything single by a field. All of them share the
+//! A member of a family is reached by a call, anything single by a field. Vectors and matrices are fields and
+//! methods: `solution.r.at(t)` and `solution.r().at(t)` are `[f64; 3]`. All of them share the
 //! runtime's untyped solution and ask it by path; the paths are the spec's own.
 //!
 //! Fields are the user's names and one of ours that begins with `_`, as no name of a spec does.
@@ -12,10 +13,11 @@ use ntg_structure::{Domain, Family, Named, Structure, Unit, Variable};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
-use super::members::{self, Question};
+use super::members::{self, Question, Shape};
 use super::names::{self, camel, ident_at};
 use super::parameters::{doc_lines, unit_in_words};
 use super::tree::{Kind, Scope, scopes};
+use crate::program::Program;
 
 /// Methods that are ours.
 const OURS: [&str; 12] = [
@@ -95,12 +97,13 @@ pub(super) fn solve(structure: &Structure, name: &Ident) -> TokenStream {
 }
 
 /// The solution's struct, and those of the agents and phases within.
-pub(super) fn solution(structure: &Structure, place_of: &dyn Fn(&str) -> Span) -> TokenStream {
+pub(super) fn solution(program: &Program, place_of: &dyn Fn(&str) -> Span) -> TokenStream {
+    let structure = &program.structure;
     let mut types = names::Scope::with(&[]);
     types.take(&structure.name, |_| false);
     let own = type_name(&structure.name);
     types.take(&own.to_string(), |_| false);
-    let writer = Writer { structure, place_of };
+    let writer = Writer { program, structure, place_of };
 
     let mut items = vec![];
     // A list of scopes still to be written, instead of a recursion.
@@ -122,6 +125,7 @@ pub(super) fn solution(structure: &Structure, place_of: &dyn Fn(&str) -> Span) -
 
 /// What every part of the solution needs.
 struct Writer<'a> {
+    program: &'a Program,
     structure: &'a Structure,
     place_of: &'a dyn Fn(&str) -> Span,
 }
@@ -144,10 +148,20 @@ impl Writer<'_> {
         for output in &scope.outputs {
             let ident = self.ident(&output.name);
             let doc = doc_lines(&output.doc, &in_unit(&output.unit));
-            let (kind, value) =
-                (members::trajectory(output.family), members::output(&output.name, output.family, in_root));
+            let columns = self.program.columns.get(&(scope.agent, output.name.clone())).copied();
+            let shape = output.family.map(|family| Shape { family, columns });
+            let (kind, value) = (members::trajectory(shape), members::output(&output.name, shape, in_root));
             parts.fields.push(quote! { #(#[doc = #doc])* pub #ident: #kind });
             parts.values.push(quote! { #ident: #value });
+            if shape.is_some() {
+                let method = parts.method(self, &output.name);
+                parts.methods.push(quote! {
+                    #(#[doc = #doc])*
+                    pub fn #method(&self) -> &#kind {
+                        &self.#ident
+                    }
+                });
+            }
         }
         for (child, kind) in scope.children.iter().zip(children) {
             self.child(child, kind, in_root, &mut parts);

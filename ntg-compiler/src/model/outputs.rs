@@ -126,8 +126,12 @@ impl<'a> Elaborator<'a> {
             Some((quantity, shown)) => (quantity.dimension, shown),
             None => self.unit_of_bounds(scope, name),
         };
-        let output =
-            Output { name: name.name.text.clone(), doc, unit, family, spline: spline.clone(), span: name.name.span };
+        let columns = match axes.as_slice() {
+            [_, columns] => columns.extent().and_then(|extent| usize::try_from(extent).ok()),
+            _ => None,
+        };
+        let (name, span, spline) = (name.name.text.clone(), name.name.span, spline.clone());
+        let output = Output { name, doc, unit, family, columns, spline, span };
         Declared { output, axes, dimension, has_unit }
     }
 

@@ -199,6 +199,8 @@ pub struct Output {
     pub unit: Unit,
     /// Its members `first ..= last`, when it is an array (ends are constants).
     pub family: Option<(i64, i64)>,
+    /// How many columns it has, when it is a matrix, whose members go row by row.
+    pub columns: Option<usize>,
     /// Its spline in this phase.
     pub spline: Spline,
     /// Where it is declared.

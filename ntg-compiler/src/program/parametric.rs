@@ -22,7 +22,7 @@ use crate::expr::{Dag, InputId, Node, NodeId};
 
 /// The program whose variables include the parameters.
 pub fn parametric(program: &Program) -> Program {
-    let Program { structure, kernels } = program;
+    let Program { structure, kernels, columns } = program;
     let mut promotion = Promotion {
         structure,
         bodies: kernels,
@@ -32,7 +32,8 @@ pub fn parametric(program: &Program) -> Program {
         known: HashMap::new(),
     };
     let promoted = promotion.structure();
-    Program { structure: Structure { kernels: promotion.shapes, ..promoted }, kernels: promotion.made }
+    let structure = Structure { kernels: promotion.shapes, ..promoted };
+    Program { structure, kernels: promotion.made, columns: columns.clone() }
 }
 
 /// Where a call stands, which decides what becomes of it.

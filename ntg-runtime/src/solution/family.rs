@@ -20,6 +20,11 @@ impl<T> Family<T> {
         usize::try_from(index.checked_sub(self.first)?).ok().and_then(|i| self.members.get(i))
     }
 
+    /// All members in order.
+    pub(super) fn members(&self) -> &[T] {
+        &self.members
+    }
+
     /// How many members there are.
     pub fn len(&self) -> usize {
         self.members.len()

@@ -8,11 +8,13 @@ mod family;
 mod meaning;
 mod signal;
 mod trajectory;
+mod vector;
 
 pub use family::Family;
 pub use meaning::{Meaning, SplineView};
 pub use signal::Signal;
 pub use trajectory::Trajectory;
+pub use vector::{Matrix, Vector};
 
 use crate::transcribe::instances::family_members;
 use crate::transcribe::rows::RowInfo;
