@@ -240,6 +240,12 @@ impl Found {
         Ok(explained.ok().flatten().map_or_else(String::new, |explanation| explanation.to_string()))
     }
 
+    /// What the measurements say, as JSON with the fields of the saved form; none where nothing was measured.
+    #[getter]
+    fn estimate(&self) -> Option<String> {
+        self.report.estimate.as_ref().map(|found| ntg_report::run::Estimate::from(found).text())
+    }
+
     /// The saved form: what `ntg solve --save` writes.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
         self.record(py, ntg_report::Run::text)

@@ -31,7 +31,7 @@ mod _ntg {
     #[pymodule_export]
     use super::found::Found;
     #[pymodule_export]
-    use super::problem::{Compiled, compile};
+    use super::problem::{Compiled, compile, constants};
     #[pymodule_export]
     use super::sensitivity::{Derivatives, Predicted};
     #[pymodule_export]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ntg_compiler::diagnostic::Diagnostic;
-use ntg_compiler::model::Loader;
+use ntg_compiler::model::{self, Loader};
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::Guess;
@@ -26,6 +26,8 @@ pub(crate) struct Spec {
     pub(crate) notes: Vec<Diagnostic>,
     /// The tables that it names, by path: with these it compiles anywhere.
     tables: BTreeMap<String, String>,
+    /// The constants that were set, as text.
+    constants: BTreeMap<String, String>,
 }
 
 /// A compiled spec.
@@ -66,20 +68,30 @@ pub(crate) fn compile(
     text: String,
     folder: Option<PathBuf>,
     tables: BTreeMap<String, String>,
+    constants: BTreeMap<String, String>,
 ) -> PyResult<Compiled> {
     let source = Source::new(name, text);
     let loader = Tables { folder, found: Mutex::new(tables) };
-    match py.detach(|| ntg_compiler::compile(&source, &loader)) {
+    let given =
+        constants.iter().map(|(name, text)| model::Given { name: name.clone(), text: ntg_interp::bracketed(text) });
+    let given: Vec<model::Given> = given.collect();
+    match py.detach(|| ntg_compiler::compile_with(&source, &loader, &given)) {
         Ok(compiled) => {
             let problem = Arc::new(Interpreted::new(&compiled.program));
             let tables = loader.found.into_inner().unwrap_or_else(PoisonError::into_inner);
-            Ok(Compiled { spec: Arc::new(Spec { source, notes: compiled.notes, tables }), problem })
+            Ok(Compiled { spec: Arc::new(Spec { source, notes: compiled.notes, tables, constants }), problem })
         }
         Err(found) => {
             let data = errors::findings(py, found.iter(), &source)?;
             Err(errors::raise(py, "SpecError", &found.render(&source), data))
         }
     }
+}
+
+/// The names of the constants of a spec that can be set where it is compiled.
+#[pyfunction]
+pub(crate) fn constants(text: String) -> Vec<String> {
+    model::constants(&Source::new("spec", text))
 }
 
 /// Sets parameters: numbers and sequences in declared units, or text with a unit.
@@ -157,6 +169,11 @@ impl Compiled {
     #[getter]
     fn tables(&self) -> BTreeMap<String, String> {
         self.spec.tables.clone()
+    }
+
+    #[getter]
+    fn constants(&self) -> BTreeMap<String, String> {
+        self.spec.constants.clone()
     }
 
     #[getter]

@@ -283,3 +283,56 @@ def test_a_fork_solves_too(flight):
 def test_text_of_the_example_is_kept(move):
     assert move.text == MOVE and move.name == "Move" and "least effort" in move.doc
     assert repr(move) == "<ntg.Problem Move: 2 parameters>"
+
+
+FALL = """
+problem Fall {
+    const n = 4;
+    const pull = 9.8 [m/s^2];
+    param noise = 0.1 [m];
+    param seen[5] = (0.1, 5, 19.5, 44.2, 78.3) [m];
+    duration T = n * 1 [s];
+    output y [m]: spline(order = 3, intervals = n);
+    variable start [m];
+    temporal { initial(y) == start; }
+    initial { der(y) == 0; }
+    trajectory { der(y, 2) == pull; }
+    measure { for i in 0 .. 4 { track: at(i * 1 [s], y) == seen[i + 1] sigma noise; } }
+}
+"""
+
+
+def test_measurements_give_values_with_their_deviations():
+    found = ntg.loads(FALL).solve().estimate
+    # One height shifts all five places: their mean difference to the fall, known to 0.1 m / sqrt(5).
+    places = [0, 4.9, 19.6, 44.1, 78.4]
+    shift = np.mean(np.array([0.1, 5, 19.5, 44.2, 78.3]) - places)
+    assert found.values["start"] == pytest.approx(shift, abs=1e-8)
+    assert found.deviations["start"] == pytest.approx(0.1 / np.sqrt(5), rel=1e-6)
+    track = found.measurements["track"]
+    assert (found.count, len(track.residuals), track.unit, track.indices[4]) == (5, 5, "m", (4,))
+    assert sum(ratio**2 for ratio in track.ratios) == pytest.approx(found.chi2)
+    assert found.unknown is None and found.correlations == [[1.0]]
+
+
+def test_nothing_measured_is_no_estimate(move):
+    assert move.solve().estimate is None
+
+
+def test_constants_are_set_where_a_spec_is_loaded(tmp_path):
+    path = tmp_path / "fall.ntg"
+    path.write_text(FALL)
+    slow = ntg.load(path, pull="8 m/s^2", noise=0.2)
+    assert slow.solve().estimate.deviations["start"] == pytest.approx(0.2 / np.sqrt(5), rel=1e-6)
+    assert slow.solve()["y"].derivative(4.0) == pytest.approx(32, rel=1e-9)
+    assert ntg.loads(FALL, values={"pull": 8}).solve().objective == pytest.approx(
+        slow.with_parameters(noise=0.1).solve().objective, rel=1e-9
+    )
+    # What was set goes with a pickled problem.
+    assert pickle.loads(pickle.dumps(slow)).solve().objective == slow.solve().objective
+    with pytest.raises(ntg.ParameterError, match="neither a parameter nor a constant `pul`; constants are `n`, `pull`"):
+        ntg.load(path, pul=8)
+    with pytest.raises(ntg.ParameterError, match="constant `n`: NoneType is neither a number"):
+        ntg.load(path, n=None)
+    with pytest.raises(ntg.SpecError, match="E0"):
+        ntg.load(path, pull="8 kg")

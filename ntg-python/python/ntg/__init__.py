@@ -30,7 +30,7 @@ from ._ntg import __version__
 from ._problem import Parameter, Problem, load, loads
 from ._sensitivity import Prediction, Sensitivity, Weak
 from ._settings import Progress, Settings
-from ._solution import Constraint, Phase, Solution, Worst
+from ._solution import Constraint, Estimate, Measurement, Phase, Solution, Worst
 from ._solver import Solver
 
 __all__ = [
@@ -38,7 +38,9 @@ __all__ = [
     "Constraint",
     "Curve",
     "Error",
+    "Estimate",
     "Finding",
+    "Measurement",
     "Parameter",
     "ParameterError",
     "Phase",

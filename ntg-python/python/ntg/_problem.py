@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import os
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, Sequence, Union
 
 from . import _ntg
-from ._errors import Finding
+from ._errors import Finding, ParameterError
 from ._settings import DEFAULT, Settings, watcher
 from ._solution import Solution
 from ._solver import Solver
@@ -161,17 +162,21 @@ class Problem:
 
     def __reduce__(self) -> Any:
         name, text = self._core.source
-        return _restored, (name, text, self._core.tables, self._core.state)
+        return _restored, (name, text, self._core.tables, self._core.constants, self._core.state)
 
     def __repr__(self) -> str:
         count = len(self._core.parameters)
         return f"<ntg.Problem {self.name}: {count} parameter{'' if count == 1 else 's'}>"
 
 
-def load(path: "str | os.PathLike[str]") -> Problem:
+def load(path: "str | os.PathLike[str]", values: "Mapping[str, Value] | None" = None, /, **named: "Value") -> Problem:
     """Compiles a spec file; tables that it names are read beside it.
 
-    Raises `SpecError` with all findings of the compiler, and `OSError` where the file cannot be read.
+    Constants and parameters are set as by `--set` of the command: `ntg.load("chain.ntg", n=50, mass="2 kg")`. Constants
+    are numbers in their units or texts with units, and everything that is made of them follows.
+
+    Raises `SpecError` with all findings of the compiler, `ParameterError` for names that are neither, and `OSError`
+    where the file cannot be read.
     """
     place = Path(path)
     try:
@@ -180,7 +185,7 @@ def load(path: "str | os.PathLike[str]") -> Problem:
         from ._errors import SpecError
 
         raise SpecError(f"`{place}` is not UTF-8 text: {error}") from None
-    return Problem(_ntg.compile(str(path), text, place.parent, {}))
+    return _with_values(str(path), text, (place.parent, {}), merged(values, named))
 
 
 def loads(
@@ -189,12 +194,46 @@ def loads(
     name: str = "<text>",
     folder: "str | os.PathLike[str] | None" = None,
     tables: Optional[Mapping[str, str]] = None,
+    values: "Mapping[str, Value] | None" = None,
 ) -> Problem:
     """Compiles the text of a spec. Tables come from `tables`, texts by the paths that the spec names, or from `folder`.
 
-    Raises `SpecError` with all findings of the compiler.
+    `values` sets constants and parameters, as `load` does. Raises `SpecError` with all findings of the compiler.
     """
-    return Problem(_ntg.compile(name, text, None if folder is None else Path(folder), dict(tables or {})))
+    files = (None if folder is None else Path(folder), dict(tables or {}))
+    return _with_values(name, text, files, merged(values, {}))
+
+
+def _with_values(
+    name: str, text: str, files: "tuple[Optional[Path], dict[str, str]]", values: "Mapping[str, Value]"
+) -> Problem:
+    """Constants are set where the spec is compiled, parameters afterwards."""
+    known = _ntg.constants(text) if values else []
+    constants = {one: _constant(one, value) for one, value in values.items() if one in known}
+    others = {one: value for one, value in values.items() if one not in known}
+    core = _ntg.compile(name, text, *files, constants)
+    if others:
+        names = [one.split("[")[0] for one in others]
+        unknown = [one for one in names if one not in {parameter[0] for parameter in core.parameters}]
+        if unknown and known:
+            constant_names = ", ".join(f"`{one}`" for one in known)
+            raise ParameterError(f"there is neither a parameter nor a constant `{unknown[0]}`; constants are {constant_names}")
+        core = core.with_parameters(others)
+    return Problem(core)
+
+
+def _constant(name: str, value: "Value") -> str:
+    """A constant as text in the language."""
+    if isinstance(value, str):
+        return value
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        kind = type(value).__name__
+        raise ParameterError(f'constant `{name}`: {kind} is neither a number nor a text such as "240 m/s"') from None
+    if not math.isfinite(number):
+        raise ParameterError(f"constant `{name}`: {number} is no finite number")
+    return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
 
 
 def merged(parameters: "Mapping[str, Value] | None", named: "Mapping[str, Value]") -> dict[str, Any]:
@@ -207,11 +246,16 @@ def merged(parameters: "Mapping[str, Value] | None", named: "Mapping[str, Value]
     return {**parameters, **named}
 
 
-def _restored(name: str, text: str, tables: dict[str, str], state: list[tuple[str, list[float]]]) -> Problem:
-    return Problem(_compiled(name, text, tuple(sorted(tables.items()))).with_state(state))
+def _restored(
+    name: str, text: str, tables: dict[str, str], constants: dict[str, str], state: list[tuple[str, list[float]]]
+) -> Problem:
+    compiled = _compiled(name, text, tuple(sorted(tables.items())), tuple(sorted(constants.items())))
+    return Problem(compiled.with_state(state))
 
 
 @lru_cache(maxsize=8)
-def _compiled(name: str, text: str, tables: tuple[tuple[str, str], ...]) -> "_ntg.Compiled":
+def _compiled(
+    name: str, text: str, tables: tuple[tuple[str, str], ...], constants: tuple[tuple[str, str], ...]
+) -> "_ntg.Compiled":
     """A worker gets the same problem with every batch, and compiles it once."""
-    return _ntg.compile(name, text, None, dict(tables))
+    return _ntg.compile(name, text, None, dict(tables), dict(constants))

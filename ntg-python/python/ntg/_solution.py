@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import json
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterator, NamedTuple, Optional, Sequence, Union
@@ -66,6 +67,44 @@ class Constraint(NamedTuple):
     """When, in seconds."""
     sensitivity: float
     """Derivative of the objective by the bound, moved everywhere at once: objective's unit per `unit`."""
+
+
+class Measurement(NamedTuple):
+    """One statement of `measure`."""
+
+    name: str
+    """Its name, or its text in the spec."""
+    unit: str
+    """The unit of its residuals."""
+    chi2: float
+    """Its part of chi^2."""
+    share: float
+    """That part of the whole, from 0 to 1."""
+    indices: list[tuple[int, ...]]
+    """For each measured number the indices of its loops: those of `for`, then the element of a vector."""
+    residuals: list[float]
+    """By how much each number is missed, in the unit."""
+    ratios: list[float]
+    """The same as multiples of their standard deviations."""
+
+
+class Estimate(NamedTuple):
+    """What the measurements of a problem say at its solution."""
+
+    values: dict[str, float]
+    """The declared variables, in their units; empty where `unknown` says why."""
+    deviations: dict[str, float]
+    """Their standard deviations, in the same units."""
+    correlations: list[list[float]]
+    """Their correlations, row by row."""
+    chi2: float
+    """The sum of all squared ratios of residuals to their standard deviations; about `count` where the model is right."""
+    count: int
+    """How many numbers were measured."""
+    measurements: dict[str, Measurement]
+    """The statements of `measure` by name; `name (2)` for the second of a name."""
+    unknown: Optional[str]
+    """Why there are no standard deviations."""
 
 
 class Solution:
@@ -168,6 +207,12 @@ class Solution:
             one = Constraint(**data)
             found[one.name if one.name not in found else f"{one.name} (line {one.line})"] = one
         return found
+
+    @property
+    def estimate(self) -> Optional[Estimate]:
+        """What the measurements say: values and standard deviations of the variables, residuals; none without `measure`."""
+        found = json.loads(self._core.estimate) if self._core.estimate is not None else None
+        return None if found is None else _estimate(found)
 
     @property
     def problem(self) -> "Problem":
@@ -391,3 +436,29 @@ class Solution:
             f'<iframe srcdoc="{html.escape(self._page, quote=True)}" title="report of {html.escape(self.problem.name)}" '
             'style="width: 100%; height: 720px; border: 1px solid #8884; border-radius: 4px" loading="lazy"></iframe>'
         )
+
+
+def _estimate(found: dict[str, Any]) -> Estimate:
+    """From the fields of docs/solution-format.md."""
+    measurements: dict[str, Measurement] = {}
+    for one in found["measurements"]:
+        residuals = one["residuals"]
+        same = sum(1 for other in measurements.values() if other.name == one["name"])
+        measurements[one["name"] if same == 0 else f"{one['name']} ({same + 1})"] = Measurement(
+            name=one["name"],
+            unit=one["unit"],
+            chi2=one["chi2"],
+            share=one["share"],
+            indices=[tuple(residual["indices"]) for residual in residuals],
+            residuals=[residual["value"] for residual in residuals],
+            ratios=[residual["ratio"] for residual in residuals],
+        )
+    return Estimate(
+        values={name: one["value"] for name, one in found["deviations"].items()},
+        deviations={name: one["sigma"] for name, one in found["deviations"].items()},
+        correlations=found["correlations"],
+        chi2=found["chi2"],
+        count=found["count"],
+        measurements=measurements,
+        unknown=found["unknown"],
+    )
