@@ -6,12 +6,14 @@
 //! Tape and generated code compute the same operations in the same order through the same `math`
 //! module, so that they agree bit for bit.
 
+mod embedded;
 mod finding;
 mod parameters;
 mod run;
 mod tape;
 mod text;
 
+pub use embedded::{Embedded, Spec};
 pub use finding::finding;
 pub use parameters::{Place, SetError};
 pub use text::{bracketed, quantity, target};

@@ -3,9 +3,9 @@
 //! Takes the tokens, gives the generated items or errors, and in either case the constants that
 //! make cargo watch every file that was read: a build that failed is repeated when one is mended.
 
-use ntg_compiler::codegen;
 use ntg_compiler::model::{Given, Loader};
 use ntg_compiler::source::Source;
+use ntg_compiler::{Compiled, codegen};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
@@ -22,7 +22,11 @@ pub(crate) fn inline(spec: TokenStream) -> TokenStream {
         Err(message) => return here(&message),
     };
     let items = match ntg_compiler::compile(&source, &files) {
-        Ok(compiled) => codegen::generate_at(&compiled.program, &|name| map.name(name)),
+        Ok(compiled) => {
+            let form = parametric(&compiled, &source, &files, &[]);
+            let items = codegen::generate_at(&compiled.program, &|name| map.name(name));
+            quote! { #items #form }
+        }
         Err(found) => report::inline(&found, &source, &map),
     };
     let watch = files.watch();
@@ -49,11 +53,23 @@ pub(crate) fn file(argument: TokenStream) -> TokenStream {
     let source = Source::new(path, text);
     let tables = files.beside(&source.name);
     let items = match ntg_compiler::compile_with(&source, &tables, &given) {
-        Ok(compiled) => codegen::generate_at(&compiled.program, &|_| Span::call_site()),
+        Ok(compiled) => {
+            let form = parametric(&compiled, &source, &tables, &given);
+            let items = codegen::generate_at(&compiled.program, &|_| Span::call_site());
+            quote! { #items #form }
+        }
         Err(found) => report::in_file(&found, &source, place),
     };
     let (watch, watch_tables) = (files.watch(), tables.watch());
     quote! { #items #watch #watch_tables }
+}
+
+/// What was read, for `Parametric`: nothing remains of it where `ntg` is built without its feature `sensitivity`.
+fn parametric(compiled: &Compiled, source: &Source, files: &Files, given: &[Given]) -> TokenStream {
+    let problem = codegen::type_name(&compiled.program.structure.name);
+    let (name, text, files) = (&source.name, &source.text, files.texts());
+    let given = given.iter().map(|Given { name, text }| quote! { (#name, #text) });
+    quote! { ::ntg::parametric! { #problem, #name, #text, #files, [#(#given),*] } }
 }
 
 /// What stands between the parentheses of `ntg_file!`.

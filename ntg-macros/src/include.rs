@@ -1,8 +1,8 @@
 //! Files that a spec is made of: where they are, what they hold, and that cargo watches them.
 //!
-//! Takes paths as the user wrote them, gives texts, and the tokens that make cargo rebuild when
-//! one of the files changes. A macro cannot tell cargo so directly; a constant that includes the
-//! file's bytes can, and costs nothing in the binary.
+//! Takes paths as the user wrote them, gives texts, the tokens that make cargo rebuild when one of
+//! the files changes, and those by which the program itself has the texts. A macro cannot tell cargo
+//! so directly; a constant that includes the file's bytes can, and costs nothing in the binary.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,8 @@ use quote::quote;
 /// Reads files, all relative to one folder, and remembers them.
 pub(crate) struct Files {
     root: PathBuf,
-    read: RefCell<Vec<PathBuf>>,
+    /// As the spec writes the path, and as it was opened.
+    read: RefCell<Vec<(String, PathBuf)>>,
 }
 
 impl Files {
@@ -42,8 +43,16 @@ impl Files {
     /// The tokens that make cargo watch every file that was read.
     pub(crate) fn watch(&self) -> TokenStream {
         let read = self.read.borrow();
-        let paths = read.iter().filter_map(|path| path.to_str());
+        let paths = read.iter().filter_map(|(_, path)| path.to_str());
         quote! { #(const _: &[u8] = ::core::include_bytes!(#paths);)* }
+    }
+
+    /// The tokens of an array of all files: the path as the spec writes it, and the text.
+    pub(crate) fn texts(&self) -> TokenStream {
+        let read = self.read.borrow();
+        let pairs = read.iter().filter_map(|(name, path)| Some((name, path.to_str()?)));
+        let (names, paths): (Vec<_>, Vec<_>) = pairs.unzip();
+        quote! { [#((#names, ::core::include_str!(#paths))),*] }
     }
 }
 
@@ -52,8 +61,8 @@ impl Loader for Files {
         let place = absolute(&self.root.join(path));
         let text = std::fs::read_to_string(&place).map_err(|error| format!("`{}`: {error}", place.display()))?;
         let mut read = self.read.borrow_mut();
-        if !read.contains(&place) {
-            read.push(place);
+        if read.iter().all(|(name, _)| name != path) {
+            read.push((path.to_owned(), place));
         }
         Ok(text)
     }

@@ -38,6 +38,11 @@ pub trait Problem: Sync {
 
 /// A problem that has a form in which its parameters are variables, by which solutions are differentiated
 /// ([`Report::sensitivity`](crate::report::Report::sensitivity)).
+#[diagnostic::on_unimplemented(
+    message = "solutions of `{Self}` cannot be differentiated by its parameters",
+    note = "problems of `ntg!` and `ntg_file!` can where ntg has its feature `sensitivity`: \
+            `ntg = {{ version = \"0.1\", features = [\"sensitivity\"] }}`"
+)]
 pub trait Parametric: Problem {
     /// The same functions, in which everything that parameters decide is a variable (docs/maths.md, section 16.1).
     ///

@@ -9,7 +9,7 @@ mod inputs;
 mod specs;
 
 use inputs::Sample;
-use ntg::runtime::problem::{Derivatives, Lanes, Problem};
+use ntg::runtime::problem::{Derivatives, Lanes, Parametric, Problem};
 use ntg::runtime::splines::Table;
 use ntg::runtime::structure::Kernel;
 
@@ -61,6 +61,26 @@ fn generated_code_and_interpreter_agree_bit_for_bit() {
             assert!(same_bits(&generated.hessian, &interpreted.hessian), "second derivatives of {what}");
             assert!(same_bits(&generated.probes, &interpreted.probes), "probes of {what}");
             assert!(kernel.rows == 0 || generated.values.iter().any(|v| v.is_finite()), "{what} is never finite");
+        }
+    }
+}
+
+#[test]
+fn generated_code_and_interpreter_have_one_parametric_form() {
+    for spec in specs::all() {
+        let generated = spec.generated.parametric();
+        let interpreted = spec.interpreted.parametric();
+        let structure = generated.structure();
+        assert_eq!(structure, interpreted.structure(), "{}", spec.name);
+        assert!(structure.variables.len() > spec.interpreted.structure().variables.len(), "{}", spec.name);
+        for (number, kernel) in structure.kernels.iter().enumerate() {
+            let sample = Sample::new(&structure, number, 3, 1);
+            let one = evaluate(&*generated, number, kernel, &sample, &spec.tables);
+            let other = evaluate(&*interpreted, number, kernel, &sample, &spec.tables);
+            let what = format!("{}: {}", spec.name, kernel.name);
+            assert!(same_bits(&one.values, &other.values), "values of {what}");
+            assert!(same_bits(&one.jacobian, &other.jacobian), "first derivatives of {what}");
+            assert!(same_bits(&one.hessian, &other.hessian), "second derivatives of {what}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ntg::runtime::problem::Problem;
+use ntg::runtime::problem::{Parametric, Problem};
 use ntg::runtime::splines::Table;
 use ntg_compiler::program::Program;
 use ntg_compiler::source::Source;
@@ -11,7 +11,7 @@ use ntg_interp::Interpreted;
 /// One spec, compiled both ways.
 pub(crate) struct Spec {
     pub(crate) name: &'static str,
-    pub(crate) generated: Box<dyn Problem>,
+    pub(crate) generated: Box<dyn Parametric>,
     pub(crate) program: Program,
     pub(crate) interpreted: Interpreted,
     pub(crate) tables: Vec<Table>,
@@ -80,7 +80,7 @@ impl ntg_compiler::model::Loader for BesideSpecs {
     }
 }
 
-fn spec(name: &'static str, generated: Box<dyn Problem>) -> Spec {
+fn spec(name: &'static str, generated: Box<dyn Parametric>) -> Spec {
     let source = source(name);
     let compiled = ntg_compiler::compile(&source, &BesideSpecs)
         .unwrap_or_else(|found| panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n")));

@@ -33,7 +33,7 @@ mod solution;
 mod structure;
 mod tree;
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::program::Program;
@@ -43,6 +43,11 @@ pub use parameters::in_unit;
 /// The items that a spec expands to.
 pub fn generate(program: &Program) -> TokenStream {
     generate_at(program, &|_| Span::call_site())
+}
+
+/// What the generated type of a problem is called.
+pub fn type_name(problem: &str) -> Ident {
+    ident_at(problem, Span::call_site())
 }
 
 /// As [`generate`]; identifiers that stand for a name in the spec take the place that `place_of`
