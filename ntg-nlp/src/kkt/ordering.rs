@@ -49,20 +49,40 @@ const MANY: f64 = 10.0;
 /// See [`MANY`]. Where all unknowns meet as many, as vehicles that keep apart do, the order among them matters.
 const TYPICAL: usize = 4;
 
-/// The unknowns in the program's order and in that of minimum degree, those that meet very many last.
-pub(super) fn candidates(count: usize, cliques: &Cliques) -> [Vec<u32>; 2] {
-    let holding = cliques.holding(count);
-    let meets = meeting(cliques, &holding);
-    let mut sorted = meets.clone();
-    sorted.sort_unstable();
-    let median = sorted.get(count / 2).copied().unwrap_or(0);
-    let most = ((MANY * (count as f64).sqrt()) as usize).max(TYPICAL * median);
-    let (late, early): (Vec<u32>, Vec<u32>) = (0..count as u32).partition(|&u| meets[u as usize] > most);
-    let is_late: Vec<bool> = meets.iter().map(|&meets| meets > most).collect();
-    let natural = early.iter().chain(&late).copied().collect();
-    let mut by_degree = minimum_degree(cliques, holding, &is_late);
-    by_degree.extend(&late);
-    [natural, by_degree]
+/// What orders are made from.
+pub(super) struct Orders {
+    /// The cliques that hold each unknown.
+    holding: Vec<Vec<u32>>,
+    /// Whether each unknown meets very many.
+    late: Vec<bool>,
+}
+
+impl Orders {
+    /// Finds the unknowns that meet very many: they come last in every order.
+    pub(super) fn new(count: usize, cliques: &Cliques) -> Self {
+        let holding = cliques.holding(count);
+        let meets = meeting(cliques, &holding);
+        let mut sorted = meets.clone();
+        sorted.sort_unstable();
+        let median = sorted.get(count / 2).copied().unwrap_or(0);
+        let most = ((MANY * (count as f64).sqrt()) as usize).max(TYPICAL * median);
+        Self { holding, late: meets.iter().map(|&meets| meets > most).collect() }
+    }
+
+    /// The program's order.
+    pub(super) fn natural(&self) -> Vec<u32> {
+        let (late, mut early): (Vec<u32>, Vec<u32>) =
+            (0..self.late.len() as u32).partition(|&unknown| self.late[unknown as usize]);
+        early.extend(&late);
+        early
+    }
+
+    /// The order of minimum degree.
+    pub(super) fn by_degree(self, cliques: &Cliques) -> Vec<u32> {
+        let mut order = minimum_degree(cliques, self.holding, &self.late);
+        order.extend((0..self.late.len() as u32).filter(|&unknown| self.late[unknown as usize]));
+        order
+    }
 }
 
 /// How many others each unknown meets.
@@ -207,7 +227,8 @@ mod tests {
         // A star: its centre is the first in the program's order.
         let mut cliques = Cliques::default();
         (1..300).for_each(|leaf| cliques.add(&mut vec![0, leaf]));
-        for order in candidates(300, &cliques) {
+        let orders = Orders::new(300, &cliques);
+        for order in [orders.natural(), orders.by_degree(&cliques)] {
             assert_eq!(order.len(), 300);
             assert_eq!(order.last(), Some(&0));
         }

@@ -12,7 +12,7 @@
 //! padding fills up the last one: unknowns with a diagonal of 1 and no other entries. Loops over a block thus have a
 //! constant length, which makes them fast.
 
-use super::ordering::{Cliques, Tree, candidates};
+use super::ordering::{Cliques, Orders, Tree};
 use std::ops::Range;
 
 /// Unknowns of a block.
@@ -57,10 +57,16 @@ pub(super) struct Storage {
 }
 
 impl Storage {
-    /// The storage for cliques of unknowns, in the order that costs least.
+    /// The storage for cliques of unknowns, in the order that costs least. Where the program's order makes the factors
+    /// fill nothing, there is no better one.
     pub(super) fn new(unknowns: usize, cliques: &Cliques) -> Self {
-        let [natural, by_degree] =
-            candidates(unknowns, cliques).map(|order| Fill::new(&Tree::new(&order, cliques), cliques));
+        let fill = |order: &[u32]| Fill::new(&Tree::new(order, cliques), cliques);
+        let orders = Orders::new(unknowns, cliques);
+        let natural = fill(&orders.natural());
+        if !natural.fills {
+            return Self::of(unknowns, &natural);
+        }
+        let by_degree = fill(&orders.by_degree(cliques));
         let fill = if by_degree.cost() < GAIN * natural.cost() { by_degree } else { natural };
         Self::of(unknowns, &fill)
     }
@@ -172,6 +178,8 @@ struct Fill {
     padded: Vec<usize>,
     /// For each column of blocks the rows below its diagonal, increasing.
     rows: Vec<Vec<usize>>,
+    /// Whether the factors have blocks that the matrix has not.
+    fills: bool,
 }
 
 impl Fill {
@@ -195,22 +203,35 @@ impl Fill {
                 add(&mut rows[*first], below);
             }
         }
-        for j in 0..rows.len() {
-            let mut column = std::mem::take(&mut rows[j]);
+        for column in &mut rows {
             column.sort_unstable();
             column.dedup();
-            if let [parent, below @ ..] = &column[..] {
-                add(&mut rows[*parent], below);
-            }
-            rows[j] = column;
         }
-        Self { padded, rows }
+        let mut fills = false;
+        for j in 0..rows.len() {
+            let (done, later) = rows.split_at_mut(j + 1);
+            let [parent, below @ ..] = &done[j][..] else { continue };
+            let parent = &mut later[*parent - j - 1];
+            if !includes(parent, below) {
+                fills = true;
+                add(parent, below);
+                parent.sort_unstable();
+                parent.dedup();
+            }
+        }
+        Self { padded, rows, fills }
     }
 
     /// How many products of blocks the factors take.
     fn cost(&self) -> f64 {
         self.rows.iter().map(|rows| ((rows.len() + 1) * (rows.len() + 2)) as f64 / 2.0).sum()
     }
+}
+
+/// Whether all of `some` are among `all`; both increase.
+fn includes(all: &[usize], some: &[usize]) -> bool {
+    let mut all = all.iter();
+    some.iter().all(|wanted| all.any(|found| found == wanted))
 }
 
 /// Columns that follow one another and have the same rows but for themselves, at most [`TOGETHER`] of them.

@@ -27,8 +27,17 @@ pub(super) struct Supports {
     pub(super) of: Vec<Option<usize>>,
     /// The number of element variables of each element.
     pub(super) element_variables: usize,
-    /// For each element and support the element variables.
-    lists: Vec<Vec<Vec<ElementVariable>>>,
+    lists: Lists,
+}
+
+/// The element variables of each element and support.
+#[derive(Clone, Debug)]
+struct Lists {
+    supports: usize,
+    /// Element by element, support by support.
+    all: Vec<ElementVariable>,
+    /// Where those of each element and support begin, and the end.
+    starts: Vec<usize>,
 }
 
 /// An element variable of one element.
@@ -54,27 +63,10 @@ impl Supports {
             all[at].slots.push(slot);
             of[slot] = Some(at);
         }
-        let mut lists = vec![vec![]; block.elements];
-        for (e, lists) in lists.iter_mut().enumerate() {
-            let (width, map) = (block.variables(e).len(), block.map(e));
-            for c in &all {
-                let touches =
-                    |element_variable: &usize| c.slots.iter().any(|slot| map[slot * width + element_variable] != 0.0);
-                let element_variable =
-                    |position| ElementVariable { variable: block.variables(e)[position], position: Some(position) };
-                lists.push((0..width).filter(touches).map(element_variable).collect::<Vec<ElementVariable>>());
-            }
-        }
-        for e in 0..block.elements {
-            if let Some(wide) =
-                [e + 1, e.wrapping_sub(1)].iter().find_map(|&beside| widened(&lists[e], lists.get(beside)?))
-            {
-                lists[e] = wide;
-            }
-        }
+        let lists = Lists::of_elements(block, &all).widened(block.elements);
         let mut element_variables = 0;
         for (c, support) in all.iter_mut().enumerate() {
-            let width = lists.iter().map(|lists: &Vec<Vec<ElementVariable>>| lists[c].len()).max().unwrap_or(0);
+            let width = (0..block.elements).map(|e| lists.list(e, c).len()).max().unwrap_or(0);
             (support.first, support.last) = (element_variables, element_variables + width);
             element_variables += width;
         }
@@ -89,8 +81,8 @@ impl Supports {
     /// The element variables of an element without padding, each with its number, its variable, its position in
     /// `Block::variables` if the element depends on it, and its support.
     pub(super) fn element_variables_of(&self, e: usize) -> impl Iterator<Item = (usize, u32, Option<usize>, &Support)> {
-        self.all.iter().zip(&self.lists[e]).flat_map(|(support, list)| {
-            let all = list.iter().enumerate();
+        self.all.iter().enumerate().flat_map(move |(c, support)| {
+            let all = self.lists.list(e, c).iter().enumerate();
             all.map(move |(i, element_variable)| {
                 (support.first + i, element_variable.variable, element_variable.position, support)
             })
@@ -106,25 +98,82 @@ impl Supports {
     }
 }
 
-/// The element variables that `own` gets from another element, whose variables include all of `own` and more; a list
-/// for each support. None where the other element has no more, or lacks one.
-fn widened(own: &[Vec<ElementVariable>], other: &[Vec<ElementVariable>]) -> Option<Vec<Vec<ElementVariable>>> {
-    let find = |list: &[ElementVariable], variable| {
-        list.iter().find(|element_variable| element_variable.variable == variable).copied()
-    };
-    let mut pairs = own.iter().zip(other);
-    let within =
-        pairs.all(|(own, other)| own.iter().all(|element_variable| find(other, element_variable.variable).is_some()));
-    let count = |lists: &[Vec<ElementVariable>]| lists.iter().map(Vec::len).sum::<usize>();
-    (within && count(own) < count(other)).then(|| {
-        let element_variable = |own: &[ElementVariable], variable| {
-            find(own, variable).unwrap_or(ElementVariable { variable, position: None })
-        };
-        let list = |(own, other): (&Vec<ElementVariable>, &Vec<ElementVariable>)| {
-            other.iter().map(|o| element_variable(own, o.variable)).collect()
-        };
-        own.iter().zip(other).map(list).collect()
-    })
+impl Default for Lists {
+    fn default() -> Self {
+        Self::new(0)
+    }
+}
+
+impl Lists {
+    fn new(supports: usize) -> Self {
+        Self { supports, all: vec![], starts: vec![0] }
+    }
+
+    /// Those that the elements of a block depend on.
+    fn of_elements(block: &Block, supports: &[Support]) -> Self {
+        let mut lists = Self::new(supports.len());
+        for e in 0..block.elements {
+            let (variables, map) = (block.variables(e), block.map(e));
+            for support in supports {
+                let touches =
+                    |position: &usize| support.slots.iter().any(|slot| map[slot * variables.len() + position] != 0.0);
+                let positions = (0..variables.len()).filter(touches);
+                lists.add(positions.map(|at| ElementVariable { variable: variables[at], position: Some(at) }));
+            }
+        }
+        lists
+    }
+
+    /// Adds the list of the next support.
+    fn add(&mut self, list: impl Iterator<Item = ElementVariable>) {
+        self.all.extend(list);
+        self.starts.push(self.all.len());
+    }
+
+    /// The list of an element and a support.
+    fn list(&self, e: usize, support: usize) -> &[ElementVariable] {
+        let at = e * self.supports + support;
+        &self.all[self.starts[at]..self.starts[at + 1]]
+    }
+
+    /// How many element variables an element has.
+    fn count(&self, e: usize) -> usize {
+        self.starts[(e + 1) * self.supports] - self.starts[e * self.supports]
+    }
+
+    /// Gives elements the element variables of the element after or before, where these include all of their own and more.
+    fn widened(&self, elements: usize) -> Self {
+        let (mut wide, mut list) = (Self::new(self.supports), vec![]);
+        for e in 0..elements {
+            let by_next = e + 1 < elements && self.is_within(e, self, e + 1);
+            let by_last = !by_next && e > 0 && self.is_within(e, &wide, e - 1);
+            for support in 0..self.supports {
+                let own = self.list(e, support);
+                let from = match (by_next, by_last) {
+                    (true, _) => self.list(e + 1, support),
+                    (_, true) => wide.list(e - 1, support),
+                    _ => own,
+                };
+                list.extend(from.iter().map(|of| {
+                    let nothing = ElementVariable { position: None, ..*of };
+                    own.iter().find(|own| own.variable == of.variable).copied().unwrap_or(nothing)
+                }));
+                wide.add(list.drain(..));
+            }
+        }
+        wide
+    }
+
+    /// Whether all element variables of an element are among those of another one, which has more.
+    fn is_within(&self, e: usize, others: &Self, other: usize) -> bool {
+        self.count(e) < others.count(other)
+            && (0..self.supports).all(|support| {
+                let has = |own: &ElementVariable| {
+                    others.list(other, support).iter().any(|other| other.variable == own.variable)
+                };
+                self.list(e, support).iter().all(has)
+            })
+    }
 }
 
 /// For each slot the first slot of the same support; none for a slot that depends on nothing.

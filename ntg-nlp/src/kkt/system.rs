@@ -19,6 +19,7 @@ use super::unknowns::Unknowns;
 use crate::contract::{Block, Evaluation, Nlp, NotFinite};
 use crate::options::Scaling;
 use crate::scaling::{Scales, Slopes, beside, variation};
+use std::sync::Arc;
 
 /// A program, the symbolic analysis of its matrix, and its derivatives at the latest point. `W` is the program's
 /// workspace.
@@ -64,7 +65,7 @@ impl<W> System<W> {
     pub(crate) fn new<N: Nlp<Workspace = W>>(nlp: &N) -> Self {
         let (n, m) = (nlp.variables(), nlp.rows());
         let sizes = Scales::sizes(nlp.limits());
-        let supports: Vec<Supports> = nlp.blocks().iter().map(Supports::new).collect();
+        let supports: Vec<Arc<Supports>> = nlp.blocks().iter().map(|block| Arc::new(Supports::new(block))).collect();
         let unknowns = Unknowns::new(nlp, &supports);
         let mut elements = Elements::new(nlp.blocks(), &supports, &unknowns, &sizes);
         let mut cliques = Cliques::default();

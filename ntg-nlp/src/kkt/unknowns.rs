@@ -5,6 +5,7 @@
 
 use super::supports::Supports;
 use crate::contract::{Block, Nlp, Target};
+use std::sync::Arc;
 
 /// A reach beyond this multiple of the median is far.
 const FAR: usize = 4;
@@ -24,7 +25,7 @@ pub(super) struct Unknowns {
 
 impl Unknowns {
     /// Chooses the border rows of a program.
-    pub(super) fn new<N: Nlp>(nlp: &N, supports: &[Supports]) -> Self {
+    pub(super) fn new<N: Nlp>(nlp: &N, supports: &[Arc<Supports>]) -> Self {
         let variables = nlp.variables();
         // Globals, and variables that second derivatives connect with far ones, have no place in the order.
         let mut placeless = vec![false; variables];

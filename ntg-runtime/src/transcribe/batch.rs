@@ -8,7 +8,8 @@ use super::error::SetupError;
 use super::frame::Frame;
 use super::node::{Node, NodeWork, Site};
 use super::shape::{Traced, trace};
-use super::slots::{AffineMap, SlotMaps, Source};
+use super::slot_maps::SlotMaps;
+use super::slots::{AffineMap, Source};
 use crate::problem::{Derivatives, Lanes, Problem};
 use ntg_nlp::BlockValues;
 use ntg_splines::Table;
@@ -47,7 +48,7 @@ pub(crate) fn batches(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Ve
             traced[*of].sources.iter().map(|source| frame.layout.affine(*source, &site.point)).collect()
         };
         let maps: Vec<Vec<AffineMap>> = sites.iter().zip(&of).map(map).collect();
-        let slots = SlotMaps::new(&traced[0].sources, &maps);
+        let slots = SlotMaps::new(frame.layout, &sites, &of, &traced);
         Ok((Batch::new(frame, call, sites, slots, &traced[0])?, maps))
     });
     mapped.collect()
@@ -57,7 +58,7 @@ pub(crate) fn batches(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Ve
 pub(crate) fn evaluators(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Batch>, SetupError> {
     let shaped = shaped(frame, call, sites)?.into_iter();
     let batch = shaped.map(|Shaped { sites, of, traced }| {
-        let slots = SlotMaps::of_sources(frame.layout, &sites, |element| &traced[of[element]].sources);
+        let slots = SlotMaps::new(frame.layout, &sites, &of, &traced);
         Batch::new(frame, call, sites, slots, &traced[0])
     });
     batch.collect()

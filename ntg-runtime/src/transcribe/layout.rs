@@ -14,6 +14,7 @@ use super::points::union;
 use ntg_splines::Knots;
 use ntg_structure::{Duration, Family, Phase, PhaseRef, Place, Start, Structure};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A duration or a start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +64,8 @@ pub(crate) struct OutputMember {
     pub(crate) output: usize,
     /// Its index, when the output is an array.
     pub(crate) index: Option<i64>,
-    /// Its knots.
-    pub(crate) knots: Knots,
+    /// Its knots; equal ones of a problem are the same.
+    pub(crate) knots: Arc<Knots>,
     /// The variable that is each of its coefficients.
     pub(crate) coefficients: Vec<u32>,
 }
@@ -209,7 +210,7 @@ impl Layout {
         index: Option<i64>,
     ) -> Result<(), SetupError> {
         let declared = &structure.phases[phase];
-        let (mut outputs, mut output_first) = (vec![], vec![]);
+        let (mut outputs, mut output_first): (Vec<OutputMember>, _) = (vec![], vec![]);
         for (output, found) in declared.outputs.iter().enumerate() {
             let spline = &found.spline;
             let knots = Knots::new(spline.order, spline.breakpoints.clone(), spline.smoothness);
@@ -218,12 +219,15 @@ impl Layout {
                 error,
                 place: declared.place.clone(),
             })?;
+            let earlier = self.phases.iter().flat_map(|phase| &phase.outputs).chain(&outputs);
+            let same = earlier.map(|output| &output.knots).find(|known| ***known == knots).cloned();
+            let knots = same.unwrap_or_else(|| Arc::new(knots));
             output_first.push(outputs.len());
             for index in family_members(found.family) {
-                outputs.push(OutputMember { output, index, knots: knots.clone(), coefficients: vec![] });
+                outputs.push(OutputMember { output, index, knots: Arc::clone(&knots), coefficients: vec![] });
             }
         }
-        let breakpoints = union(outputs.iter().map(|o: &OutputMember| o.knots.breakpoints()));
+        let breakpoints = union(outputs.iter().map(|o| o.knots.breakpoints()));
         let common = common(structure, phase, &outputs, &output_first);
         self.number_coefficients(&mut outputs, &common);
         let duration = Time::Fixed(f64::NAN);

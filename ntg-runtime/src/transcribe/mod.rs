@@ -10,6 +10,7 @@
 //! up while solving; only slots are refreshed.
 
 pub(crate) mod backward;
+mod basis;
 pub(crate) mod batch;
 mod calls;
 pub(crate) mod compose;
@@ -33,6 +34,7 @@ mod scale;
 pub(crate) mod shape;
 mod singular;
 mod sizes;
+pub(crate) mod slot_maps;
 pub(crate) mod slots;
 mod tables;
 pub(crate) mod times;

@@ -8,7 +8,7 @@
 use super::super::pack::{LANES, NONE};
 use super::super::supports::Supports;
 use crate::contract::Block;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 /// Elements in packs of `L` lanes.
 #[derive(Clone, Debug, Default)]
@@ -34,15 +34,21 @@ pub(super) fn batch_elements(block: &Block, supports: &Supports) -> (Batching<LA
 
 /// The elements of each set of variables, in order of first appearance.
 fn same_variables(block: &Block, supports: &Supports) -> Vec<Vec<u32>> {
-    let mut known: BTreeMap<Vec<(usize, u32)>, usize> = BTreeMap::new();
+    let mut known: HashMap<Box<[(u32, u32)]>, usize> = HashMap::new(); // Looked up, never iterated.
     let mut same: Vec<Vec<u32>> = vec![];
+    let (mut last, mut at, mut own): (Vec<(u32, u32)>, usize, Vec<(u32, u32)>) = (vec![], 0, vec![]);
     for e in 0..block.elements {
-        let element_variables =
-            supports.element_variables_of(e).map(|(element_variable, variable, ..)| (element_variable, variable));
-        let at = *known.entry(element_variables.collect()).or_insert_with(|| {
-            same.push(vec![]);
-            same.len() - 1
-        });
+        own.clear();
+        own.extend(supports.element_variables_of(e).map(|(at, variable, ..)| (at as u32, variable)));
+        // Elements that follow one another mostly have the same.
+        if e == 0 || own != last {
+            at = known.get(&*own).copied().unwrap_or_else(|| {
+                known.insert(own.as_slice().into(), same.len());
+                same.push(vec![]);
+                same.len() - 1
+            });
+            std::mem::swap(&mut last, &mut own);
+        }
         same[at].push(e as u32);
     }
     same

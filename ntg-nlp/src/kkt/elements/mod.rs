@@ -27,6 +27,7 @@ use crate::scaling::{Scales, slot_sizes};
 use batching::Batching;
 use condense::Workspace;
 use plan::{Plan, Program};
+use std::sync::Arc;
 
 /// All elements of a program, and their derivatives at the latest point.
 #[derive(Clone, Debug)]
@@ -74,7 +75,7 @@ pub(crate) struct Weights<'a> {
 
 impl Elements {
     /// Plans the elements of blocks whose variables have these sizes, once the border rows are known.
-    pub(super) fn new(blocks: &[Block], supports: &[Supports], unknowns: &Unknowns, sizes: &[f64]) -> Self {
+    pub(super) fn new(blocks: &[Block], supports: &[Arc<Supports>], unknowns: &Unknowns, sizes: &[f64]) -> Self {
         let program = Program { unknowns, sizes };
         let (mut packed, mut remainder) = (Plans::default(), Plans::default());
         for (number, (block, supports)) in blocks.iter().zip(supports).enumerate() {
@@ -134,7 +135,14 @@ impl Elements {
 }
 
 impl<const L: usize> Plans<L> {
-    fn add(&mut self, number: usize, block: &Block, supports: &Supports, batching: Batching<L>, program: &Program<'_>) {
+    fn add(
+        &mut self,
+        number: usize,
+        block: &Block,
+        supports: &Arc<Supports>,
+        batching: Batching<L>,
+        program: &Program<'_>,
+    ) {
         if batching.packs() > 0 {
             let plan = Plan::new(number, block, supports, batching, program);
             self.workspace.fit(&plan);

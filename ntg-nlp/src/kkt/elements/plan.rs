@@ -11,6 +11,8 @@ use super::products::{Entries, Products, closure};
 use super::range_map::RangeMap;
 use crate::contract::{Block, BlockValues, Target};
 use crate::scaling::Scales;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Some elements of one block, and their derivatives at the latest point.
 #[derive(Clone, Debug)]
@@ -21,7 +23,7 @@ pub(super) struct Plan<const L: usize> {
     pub(super) slots: usize,
     pub(super) batching: Batching<L>,
     pub(super) map: RangeMap<L>,
-    pub(super) supports: Supports,
+    pub(super) supports: Arc<Supports>,
     /// Rows of elements.
     pub(super) rows: Vec<Row>,
     /// The function of each row of each pack.
@@ -81,7 +83,7 @@ impl<const L: usize> Plan<L> {
     pub(super) fn new(
         number: usize,
         block: &Block,
-        supports: &Supports,
+        supports: &Arc<Supports>,
         batching: Batching<L>,
         program: &Program<'_>,
     ) -> Self {
@@ -123,7 +125,7 @@ impl<const L: usize> Plan<L> {
             add_transposed_map: supports.all.iter().map(terms).collect(),
             position: vec![],
             has_equalities: false,
-            supports: supports.clone(),
+            supports: Arc::clone(supports),
             condensed: condensed.collect(),
             function,
             pair_of,
@@ -214,7 +216,7 @@ impl<const L: usize> Plan<L> {
 
     /// The unknowns that meet in the matrix, as lists of which every two meet.
     pub(super) fn cliques(&self, unknowns: &Unknowns, mut visit: impl FnMut(&mut Vec<u32>)) {
-        let pairs = Entries::new(&self.supports, &self.filled.pairs).pairs;
+        let meeting = meeting(&self.filled.pairs, &self.supports);
         let mut list = vec![];
         for batch in 0..self.batching.batches() {
             for lane in 0..L {
@@ -222,10 +224,10 @@ impl<const L: usize> Plan<L> {
                     let variables = self.map.variables(batch)[range].iter();
                     variables.filter_map(move |lanes| unknowns.of_variable(lanes[lane]))
                 };
-                for &(a, b) in &pairs {
-                    let (a, b) = (&self.supports.all[a], &self.supports.all[b]);
+                for supports in &meeting {
                     list.clear();
-                    list.extend(of(a.first..a.last).chain(of(b.first..b.last)));
+                    let supports = supports.iter().map(|&c| &self.supports.all[c]);
+                    list.extend(supports.flat_map(|support| of(support.first..support.last)));
                     visit(&mut list);
                 }
                 for (border, pack) in
@@ -292,6 +294,24 @@ impl<const L: usize> Plan<L> {
             }
         }
     }
+}
+
+/// The supports that meet, as lists of which every two do. `pairs` are all pairs of slots that a chain of pairs connects.
+fn meeting(pairs: &[(usize, usize)], supports: &Supports) -> Vec<Vec<usize>> {
+    // The first slot of a chain meets all others.
+    let mut firsts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for slot in 0..supports.of.len() {
+        let first = pairs.iter().filter(|(i, _)| *i == slot).map(|(_, j)| *j).min();
+        if let (Some(first), Some(support)) = (first, supports.of[slot]) {
+            firsts.entry(first).or_default().push(support);
+        }
+    }
+    let mut all: Vec<Vec<usize>> = firsts.into_values().collect();
+    for list in &mut all {
+        list.sort_unstable();
+        list.dedup();
+    }
+    all
 }
 
 /// The Jacobian patterns of all rows.
