@@ -1,4 +1,4 @@
-//! Generated code does not grow with the number of vehicles.
+//! Generated code does not grow with the number of vehicles, nor with that of joints.
 
 use crate::{compile, shipped};
 
@@ -19,4 +19,10 @@ fn eight_vehicles_take_no_more_code_than_two() {
         assert!(eight as f64 <= 1.3 * two as f64, "{spec}: {eight} characters for 8 vehicles, {two} for 2");
         assert!(hundred as f64 <= 1.3 * two as f64, "{spec}: {hundred} characters for 100 vehicles, {two} for 2");
     }
+}
+
+#[test]
+fn seven_joints_take_no_more_code_than_two() {
+    let [two, seven] = ["gallery/arm_2", "gallery/arm_7"].map(|spec| generated(&shipped(spec)).len());
+    assert!(seven as f64 <= 1.1 * two as f64, "{seven} characters for 7 joints, {two} for 2");
 }
