@@ -1,4 +1,5 @@
 //! Solves and certifies specs, and prints a table: `cargo run --release -p ntg-certify --example all SPEC ...`
+//! With `TUBE=1` also the tube, with `GUARANTEE=1` also what a guarantee does, with `VERBOSE=1` every finding.
 
 use ntg_certify::statement::Kind;
 use ntg_certify::{Options, Verdict};
@@ -51,6 +52,9 @@ fn main() {
         if let Ok(folder) = std::env::var("CERTIFICATES") {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             std::fs::write(std::path::Path::new(&folder).join(format!("{name}.cert")), &text).expect("a folder");
+        }
+        if std::env::var("TUBE").is_ok() {
+            print!("{}", ntg_certify::tube(&certificate, &report.solution));
         }
         if std::env::var("GUARANTEE").is_ok() {
             let task = ntg_certify::guarantee::Task { program: &compiled.program, problem: &problem, spec: &text };

@@ -58,6 +58,11 @@ pub struct Certificate {
 
 /// Bounds every subject of a statement.
 pub fn certify(statement: Statement, options: &Options) -> Certificate {
+    constraints(statement, options).completed(options)
+}
+
+/// Bounds the constraints of a statement; of terms and named expressions nothing is said yet.
+pub fn constraints(statement: Statement, options: &Options) -> Certificate {
     let began = std::time::Instant::now();
     let mut machine = Machine::new(&statement);
     let mut integrals: Vec<(Interval, Vec<Vec<Leaf>>)> = vec![];
@@ -68,13 +73,40 @@ pub fn certify(statement: Statement, options: &Options) -> Certificate {
         machine.integrals[number] = value;
         integrals.push((value, covers));
     }
-    let findings = statement.subjects.iter().map(|subject| finding(&machine, subject, options)).collect();
+    let each = statement.subjects.iter().map(|subject| match subject.kind {
+        Kind::Constraint(_) => finding(&machine, subject, options),
+        Kind::Term(_) | Kind::Named(_) => Finding::unknown(),
+    });
+    let findings = each.collect();
     let seconds = began.elapsed().as_secs_f64();
     drop(machine);
     Certificate { statement, integrals, findings, seconds }
 }
 
+impl Finding {
+    /// Nothing is said.
+    fn unknown() -> Self {
+        Self { verdict: Verdict::Bounded, values: Interval::ENTIRE, required: None, witness: None, covers: vec![] }
+    }
+}
+
 impl Certificate {
+    /// With the bounds of terms and named expressions.
+    #[must_use]
+    pub fn completed(mut self, options: &Options) -> Self {
+        let began = std::time::Instant::now();
+        let mut machine = Machine::new(&self.statement);
+        machine.integrals = self.integrals.iter().map(|(value, _)| *value).collect();
+        for (subject, found) in self.statement.subjects.iter().zip(&mut self.findings) {
+            if !matches!(subject.kind, Kind::Constraint(_)) {
+                *found = finding(&machine, subject, options);
+            }
+        }
+        drop(machine);
+        self.seconds += began.elapsed().as_secs_f64();
+        self
+    }
+
     /// Whether every constraint is proved, equalities to within their stated residual.
     pub fn is_proved(&self) -> bool {
         self.findings.iter().all(|finding| finding.verdict.holds())
@@ -137,7 +169,7 @@ fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Findi
                 _ => Goal::Range,
             };
             let found = search(machine, (*function, *phase, cells.clone()), &goal, options);
-            path(found, (required, equality), below)
+            path(found, (required, equality), (below, subject.unit.factor))
         }
         Quantity::Sum(summands) => {
             let (value, covers) = sum(machine, summands, options);
@@ -145,7 +177,7 @@ fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Findi
             let total = value.is_bounded();
             let verdict = match (required, equality) {
                 (None, _) => Verdict::Bounded,
-                (Some(_), true) => Verdict::Within(residual(outward(value), below)),
+                (Some(_), true) => Verdict::Within(residual(outward(value), below, subject.unit.factor)),
                 (Some(required), false) => judge(required.missed(value), total),
             };
             let values = within_required(value, &verdict, required);
@@ -156,12 +188,16 @@ fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Findi
 }
 
 /// What was found of a function along a phase.
-fn path(found: Search, (required, equality): (Option<Required>, bool), below: Option<Interval>) -> Finding {
+fn path(
+    found: Search,
+    (required, equality): (Option<Required>, bool),
+    (below, unit): (Option<Interval>, f64),
+) -> Finding {
     let total = found.leaves.iter().all(|leaf| leaf.total);
     let verdict = match required {
         None => Verdict::Bounded,
         Some(_) if equality => {
-            Verdict::Within(if total { residual(outward(found.values), below) } else { f64::INFINITY })
+            Verdict::Within(if total { residual(outward(found.values), below, unit) } else { f64::INFINITY })
         }
         Some(_) => judge((found.witness.map_or(0.0, |witness| witness.missed), found.missed), total),
     };
@@ -181,9 +217,14 @@ fn judge((least, most): (f64, f64), total: bool) -> Verdict {
     }
 }
 
-/// The largest difference of values from the two ends of what they should be.
-fn residual(values: Interval, bound: Option<Interval>) -> f64 {
-    (values - bound.unwrap_or(Interval::ENTIRE)).size()
+/// A sine that all but vanishes is known to sixty bits of what it is multiplied with, and not of itself; factors of
+/// thousands of units are common.
+const OF_UNIT: f64 = 1e-14;
+
+/// The largest difference of values from the two ends of what they should be, with [`OF_UNIT`] of room.
+fn residual(values: Interval, bound: Option<Interval>, unit: f64) -> f64 {
+    let size = (values - bound.unwrap_or(Interval::ENTIRE)).size();
+    (Interval::point(size) + Interval::point(OF_UNIT * unit.abs())).high()
 }
 
 /// Four to eight units of the last place.

@@ -15,7 +15,7 @@ use ntg_runtime::settings::Settings;
 use ntg_runtime::status::Status;
 use ntg_runtime::{Error, solve_from};
 
-use crate::certify::{Certificate, Verdict, certify};
+use crate::certify::{Certificate, Verdict, constraints};
 use crate::prove::Options;
 use crate::statement::{Kind, Quantity};
 use crate::tightened::{Change, Tightened};
@@ -25,8 +25,8 @@ use crate::tightened::{Change, Tightened};
 pub struct Guarantee {
     /// Most solves after the first. Default 10.
     pub rounds: usize,
-    /// A constraint along a phase that misses its bound by more than this part of its size is held at four times as many
-    /// points; below, it is tightened. Default 1e-4: what tightening by as much costs is of that order.
+    /// A constraint along a phase that misses its bound by more than this part of its size is held at four or sixteen
+    /// times as many points there; below, it is tightened. Default 1e-4: what tightening by as much costs is of that order.
     pub coarse: f64,
     /// Most times as many points. Default 64.
     pub points: usize,
@@ -52,6 +52,9 @@ pub enum Ending {
     NotSolved,
     /// The rounds are over; the certificate says what is not proved.
     Rounds,
+    /// What is not proved is missed by no more than rounding ([`Guarantee::margin`]), and with it tightened there is no
+    /// solution: an end condition meets a bound with equality.
+    Rounding,
     /// With the constraints tightened there is no solution; the certificate is that of the last one.
     Tightened(Status),
 }
@@ -136,6 +139,8 @@ pub fn proved_from<'p>(
 ) -> Result<Guaranteed<'p>, Error> {
     let mut changes: BTreeMap<usize, Change> = BTreeMap::new();
     let (mut rounds, mut certificate) = (vec![], of(task, &report, wanted)?);
+    // Constraints that are missed by less, as a part of their size, stay as they are.
+    let mut least = 0.0;
     let ending = loop {
         rounds.push(round(&report, &certificate));
         if !report.is_solved() {
@@ -144,26 +149,49 @@ pub fn proved_from<'p>(
         if certificate.is_proved() {
             break Ending::Proved;
         }
-        let mut more = changes.clone();
-        if rounds.len() > wanted.rounds || !change(&certificate, &mut more, wanted) {
+        if rounds.len() > wanted.rounds {
             break Ending::Rounds;
         }
-        let next = again(task, &report, &more, settings)?;
+        let mut more = changes.clone();
+        if !change(&certificate, &mut more, wanted, least) {
+            break unchanged(&rounds, wanted);
+        }
+        let mut next = again(task, &report, &more, settings)?;
+        if !next.is_solved() && least == 0.0 {
+            least = wanted.margin;
+            more = changes.clone();
+            if !change(&certificate, &mut more, wanted, least) {
+                break unchanged(&rounds, wanted);
+            }
+            next = again(task, &report, &more, settings)?;
+        }
         if !next.is_solved() {
             break Ending::Tightened(next.status);
         }
         certificate = of(task, &next, wanted)?;
         (report, changes) = (next, more);
     };
+    let before = certificate.seconds;
+    let certificate = certificate.completed(&wanted.options);
+    if let Some(last) = rounds.last_mut() {
+        last.certify += certificate.seconds - before;
+    }
     own_bounds(&mut report, &certificate, &changes);
     let problem = Tightened::new(task.problem, &changes, true);
     Ok(Guaranteed { problem, report, certificate, changes, rounds, ending })
 }
 
+/// How a guarantee ends where nothing is left to be changed.
+fn unchanged(rounds: &[Round], wanted: &Guarantee) -> Ending {
+    let is_rounding = rounds.last().is_some_and(|last| last.missed <= wanted.margin);
+    if is_rounding { Ending::Rounding } else { Ending::Rounds }
+}
+
 fn of(task: Task<'_>, report: &Report, wanted: &Guarantee) -> Result<Certificate, Error> {
     let began = Instant::now();
     let statement = crate::collect::statement(task.program, &report.solution, task.spec).map_err(Error::Setup)?;
-    let mut certificate = certify(statement, &wanted.options);
+    // What only the last certificate says, of costs and named expressions, waits for it.
+    let mut certificate = constraints(statement, &wanted.options);
     certificate.seconds = began.elapsed().as_secs_f64();
     Ok(certificate)
 }
@@ -227,8 +255,9 @@ fn size(required: Option<(f64, f64)>) -> f64 {
     if most > 0.0 { most } else { 1.0 }
 }
 
-/// Changes every constraint that is not proved; whether any could be changed.
-fn change(certificate: &Certificate, changes: &mut BTreeMap<usize, Change>, wanted: &Guarantee) -> bool {
+/// Changes every constraint that is not proved, and misses more than the `least` part of its size; whether any could be
+/// changed.
+fn change(certificate: &Certificate, changes: &mut BTreeMap<usize, Change>, wanted: &Guarantee, least: f64) -> bool {
     let mut needs: BTreeMap<usize, (f64, f64, bool, f64)> = BTreeMap::new();
     for (subject, finding) in certificate.each() {
         let (Kind::Constraint(number), false) = (subject.kind, finding.verdict.holds()) else { continue };
@@ -245,9 +274,17 @@ fn change(certificate: &Certificate, changes: &mut BTreeMap<usize, Change>, want
         if !below.is_finite() || !above.is_finite() {
             continue; // It may have no value; no bound helps.
         }
+        let [below, above] = [below, above].map(|missed| if missed <= least * scale { 0.0 } else { missed });
+        if least > 0.0 && below.max(above) <= 0.0 {
+            continue;
+        }
         let change = changes.entry(number).or_insert(Change { points: 1, ..Change::default() });
-        if along && below.max(above) > wanted.coarse * scale && change.points < wanted.points {
-            change.points *= 4;
+        let excess = below.max(above) / (wanted.coarse * scale);
+        if along && excess > 1.0 && change.points < wanted.points {
+            // What is missed between points falls with the square of their distance.
+            let factor = if excess > 16.0 { 16 } else { 4 };
+            change.points = (change.points * factor).min(wanted.points);
+            mark(certificate, number, change, wanted.coarse * scale);
         } else {
             // A quarter more than is missed: the trajectory moves a little when it is held back.
             let more = |missed: f64| if missed > 0.0 { 1.25 * missed + wanted.margin * scale } else { 0.0 };
@@ -257,4 +294,18 @@ fn change(certificate: &Certificate, changes: &mut BTreeMap<usize, Change>, want
         changed = true;
     }
     changed
+}
+
+/// Marks the times at which a constraint may miss its bounds by more than this.
+fn mark(certificate: &Certificate, number: usize, change: &mut Change, most: f64) {
+    for (subject, finding) in certificate.each().filter(|(subject, _)| subject.kind == Kind::Constraint(number)) {
+        let (Quantity::Path(_, phase, _), Some((low, high))) = (&subject.quantity, finding.required) else { continue };
+        let cuts = &certificate.statement.phases[*phase].cuts;
+        for leaf in finding.covers.iter().flatten() {
+            if leaf.values.low() < low - most || leaf.values.high() > high + most {
+                let tau = |part: f64| cuts[leaf.cell] + (cuts[leaf.cell + 1] - cuts[leaf.cell]) * part;
+                change.mark(tau(leaf.start()), tau(leaf.start() + leaf.length()));
+            }
+        }
+    }
 }

@@ -21,6 +21,7 @@ pub mod statement;
 pub mod summary;
 mod table;
 pub mod tightened;
+pub mod tube;
 pub mod write;
 
 pub use certify::{Certificate, Finding, Verdict, certify};
@@ -28,3 +29,4 @@ pub use collect::statement;
 pub use guarantee::{Guarantee, Guaranteed, guarantee};
 pub use interval::Interval;
 pub use prove::Options;
+pub use tube::{Tube, tube};

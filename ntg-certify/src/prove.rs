@@ -32,6 +32,10 @@ impl Default for Options {
     }
 }
 
+/// How many times the width of the value in its centre, which is wide by rounding alone, the values of a box may be
+/// farther out than those that are attained.
+const ROUNDINGS: f64 = 16.0;
+
 /// How often a cell is halved at most: its length then reaches the last place of its ends.
 const MOST_HALVINGS: u32 = 48;
 
@@ -154,18 +158,18 @@ pub(crate) fn search(
     let mut leaves: Vec<Leaf> = vec![];
     let mut budget = options.boxes.saturating_mul(cells);
     while !open.is_empty() {
-        let looked: Vec<(Open, Leaf)> = open
+        let looked: Vec<(Open, Leaf, f64)> = open
             .into_iter()
             .map(|open| {
                 let (leaf, centre) = look(machine, function, (&needs, &open));
                 judge.see(&leaf, &centre);
-                (open, leaf)
+                (open, leaf, centre.c[0].width())
             })
             .collect();
         budget = budget.saturating_sub(looked.len());
         open = vec![];
-        for (of, leaf) in looked {
-            let done = judge.is_done(&leaf);
+        for (of, leaf, rounding) in looked {
+            let done = judge.is_done(&leaf, rounding);
             if done || leaf.halvings >= judge.deepest() || budget == 0 {
                 leaves.push(Leaf { open: !done, ..leaf });
             } else {
@@ -264,7 +268,11 @@ impl Judge<'_> {
         }
     }
 
-    fn is_done(&self, leaf: &Leaf) -> bool {
+    /// Whether halving a box would tell nothing more; `rounding` is how wide the value in its centre is.
+    fn is_done(&self, leaf: &Leaf, rounding: f64) -> bool {
+        // Nothing is known better than to some roundings: the residual of an equation that splines satisfy exactly is no
+        // more than rounding.
+        let rounding = ROUNDINGS * rounding;
         match self.goal {
             Goal::Bounds(required) => {
                 let missed = if leaf.total { required.missed_at_most(leaf.values) } else { f64::INFINITY };
@@ -276,11 +284,11 @@ impl Judge<'_> {
                 }
             }
             Goal::Range => self.inner.is_some_and(|inner| {
-                let slack = self.options.sharpness * inner.width() + 1e-12 * inner.size();
+                let slack = self.options.sharpness * inner.width() + 1e-12 * inner.size() + rounding;
                 leaf.values.low() >= inner.low() - slack && leaf.values.high() <= inner.high() + slack
             }),
             Goal::Integral(relative) => {
-                leaf.mean.is_bounded() && leaf.mean.width() <= relative * self.size + f64::MIN_POSITIVE
+                leaf.mean.is_bounded() && leaf.mean.width() <= relative * self.size + rounding + f64::MIN_POSITIVE
             }
         }
     }

@@ -86,6 +86,32 @@ impl Piece {
         Self { coefficients: vec![low, high] }
     }
 
+    /// The polynomial with these Bernstein coefficients.
+    pub(crate) fn of(coefficients: Vec<Interval>) -> Self {
+        Self { coefficients }
+    }
+
+    /// The integral from where the box begins, over a box of this length, and `first`: its Bernstein coefficients are
+    /// sums of those of the integrand (docs/maths.md, equation 15.8).
+    pub(crate) fn integral(&self, first: Interval, length: Interval) -> Self {
+        let step = length.over(Interval::point(self.coefficients.len() as f64));
+        let mut coefficients = vec![first];
+        coefficients.extend(self.coefficients.iter().scan(first, |sum, c| {
+            *sum = *sum + *c * step;
+            Some(*sum)
+        }));
+        Self { coefficients }
+    }
+
+    /// About the value at a part of the box.
+    pub(crate) fn near(&self, part: f64) -> f64 {
+        let mut row: Vec<f64> = self.coefficients.iter().map(|c| c.middle()).collect();
+        for left in (1..row.len()).rev() {
+            (0..left).for_each(|i| row[i] += part * (row[i + 1] - row[i]));
+        }
+        row[0]
+    }
+
     /// Both halves.
     pub fn halves(&self) -> (Self, Self) {
         let mut row = self.coefficients.clone();

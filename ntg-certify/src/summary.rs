@@ -23,6 +23,8 @@ pub struct Proof {
     pub independent: Independent,
     /// How many members and phases it has.
     pub members: usize,
+    /// Whether it is about all times of a phase; else about ends or the whole.
+    pub along: bool,
     /// The unit of all of these.
     pub unit: Unit,
 }
@@ -119,6 +121,7 @@ impl Certificate {
             values,
             witness,
             members: own().count(),
+            along: matches!(subject.quantity, Quantity::Path(..)),
             unit: declared.unit.clone(),
             independent: structure.independent.clone(),
         })

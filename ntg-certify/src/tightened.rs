@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use ntg_runtime::problem::{Derivatives, Lanes, Problem};
 use ntg_splines::Table;
-use ntg_structure::{Call, Domain, Group, Kernel, Points, Row, Structure};
+use ntg_structure::{Call, Domain, Group, Instant, Kernel, Part, Points, Row, Structure};
 
 /// What is done to one constraint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,8 +16,47 @@ pub struct Change {
     pub below: f64,
     /// By how much its upper bound is lowered, SI.
     pub above: f64,
-    /// How many times as many points hold it along a phase; 1 adds none.
+    /// How many times as many points hold it along a phase, where `parts` says so; 1 adds none.
     pub points: usize,
+    /// In which of the [`PARTS`] equal parts of its phases more points are, bit by bit.
+    pub parts: u64,
+}
+
+/// Into how many equal parts of scaled time a phase is divided for points that are added.
+pub const PARTS: usize = 64;
+
+impl Change {
+    /// Marks the parts that lie between two scaled times, and their neighbours.
+    pub(crate) fn mark(&mut self, from: f64, to: f64) {
+        let part = |tau: f64| ((tau * PARTS as f64) as usize).min(PARTS - 1);
+        for own in part(from).saturating_sub(1)..=(part(to) + 1).min(PARTS - 1) {
+            self.parts |= 1 << own;
+        }
+    }
+
+    /// The part of its phases' time in which more points are.
+    pub fn share(&self) -> f64 {
+        f64::from(self.parts.count_ones()) / PARTS as f64
+    }
+
+    /// Marked parts that follow each other, as stretches of scaled time inside a part of the phase.
+    fn stretches(&self, within: &Part) -> Vec<Part> {
+        let is_marked = |own: usize| own < PARTS && self.parts >> own & 1 == 1;
+        let firsts = (0..PARTS).filter(|own| is_marked(*own) && (*own == 0 || !is_marked(own - 1)));
+        let stretch = |first: usize| {
+            let end = (first..=PARTS).find(|own| !is_marked(*own)).unwrap_or(PARTS);
+            let (from, to) = (first as f64 / PARTS as f64, end as f64 / PARTS as f64);
+            let mut part = *within;
+            if from > part.from.tau() {
+                (part.from, part.with_first) = (Instant::new(from), true);
+            }
+            if to < part.to.tau() {
+                (part.to, part.with_last) = (Instant::new(to), true);
+            }
+            (part.from.tau() < part.to.tau()).then_some(part)
+        };
+        firsts.filter_map(stretch).collect()
+    }
 }
 
 /// A problem with changed constraints.
@@ -111,25 +150,27 @@ impl<'p> Tightened<'p> {
                 continue;
             };
             let is_uniform = matches!(own.points[*points], Points::Uniform { .. });
-            let mut by_factor: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+            let mut by_factor: BTreeMap<(usize, u64), Vec<usize>> = BTreeMap::new();
             for (row, meaning) in group.rows.iter().enumerate() {
                 let Row::Constraint { constraint, lower, upper } = meaning else { continue };
                 if lower != upper
                     && !held.contains(&(*constraint, number))
                     && let Some(change) = wanted(constraint)
                 {
-                    by_factor.entry(change.points).or_default().push(row);
+                    by_factor.entry((change.points, change.parts)).or_default().push(row);
                     held.push((*constraint, number));
                 }
             }
-            for (factor, rows) in by_factor {
+            for ((factor, parts), rows) in by_factor {
                 let stretches = if is_uniform { count.saturating_sub(1).max(1) } else { intervals * (count + 1) };
                 let more = Points::Uniform { points: stretches * factor + 1 };
                 let set = self.structure.phases[phase.phase].points.len();
                 self.structure.phases[phase.phase].points.push(more);
-                let domain = Domain::Path { phase: phase.clone(), points: set, part: *part };
                 let copy = self.selection(&group, &rows);
-                self.structure.groups.push(Group { domain, ..copy });
+                for part in (Change { parts, ..Change::default() }).stretches(part) {
+                    let domain = Domain::Path { phase: phase.clone(), points: set, part };
+                    self.structure.groups.push(Group { domain, ..copy.clone() });
+                }
             }
         }
     }
@@ -224,5 +265,26 @@ impl Problem for Tightened<'_> {
             Some(Extra::Shifted { kernel, .. } | Extra::Rows { kernel, .. }) => *kernel,
         };
         self.probes(own, lanes, inputs, tables, probes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marked_parts_are_stretches_of_time() {
+        let mut change = Change::default();
+        assert!(change.stretches(&Part::WHOLE).is_empty());
+        change.mark(0.0, 0.01);
+        change.mark(0.5, 0.5);
+        let found: Vec<(f64, f64)> =
+            change.stretches(&Part::WHOLE).iter().map(|part| (part.from.tau(), part.to.tau())).collect();
+        assert_eq!(found, [(0.0, 2.0 / 64.0), (31.0 / 64.0, 34.0 / 64.0)]);
+        assert_eq!(change.share(), 5.0 / 64.0);
+        change.mark(0.0, 1.0);
+        assert_eq!(change.stretches(&Part::WHOLE), [Part::WHOLE]);
+        let half = Part { to: Instant::new(0.5), with_last: false, ..Part::WHOLE };
+        assert_eq!(change.stretches(&half), [half]);
     }
 }

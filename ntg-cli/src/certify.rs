@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use ntg_certify::guarantee::{Ending, Guaranteed, Task, guarantee, proved_from};
+use ntg_certify::guarantee::{self, Guaranteed, Task, guarantee, proved_from};
 use ntg_certify::summary::Summary;
+use ntg_certify::tube::{Ending, Tube};
 use ntg_certify::{Certificate, Guarantee, write as file};
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::Guess;
@@ -19,10 +20,13 @@ use crate::{Exit, files, setup, write};
 ///
 /// Every constraint is proved, refuted with a time at which it fails, or left undecided at the limit of the
 /// arithmetic. The certificate is a file that `ntg-check` proves again, without any code of ntg.
-/// Exit status: 0 when every constraint is proved, 1 when one is not, 2 on errors.
+/// `--tube` also bounds how far the true state is from the splines, where equations of motion hold at points only.
+/// Exit status: 0 when every constraint is proved, and the tube that was asked for reaches the end; 1 when not, 2 on
+/// errors.
 ///
 /// Examples:
 ///   ntg certify specs/gates.ntg
+///   ntg certify specs/launch.ntg --tube
 ///   ntg certify specs/low_observable.ntg --guarantee -o mission.cert && ntg-check mission.cert
 #[derive(clap::Args, Debug)]
 #[command(verbatim_doc_comment)]
@@ -35,6 +39,9 @@ pub(crate) struct Arguments {
     /// Where a constraint fails, tighten it or hold it at more points and solve again, until all is proved.
     #[arg(long)]
     guarantee: bool,
+    /// Bound how far the true state, from the same start with the same inputs, is from the splines.
+    #[arg(long)]
+    tube: bool,
     /// Write the certificate.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -61,15 +68,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     // Without `--guarantee` the first solve is all there is.
     let wanted =
         Guarantee { rounds: if arguments.guarantee { Guarantee::default().rounds } else { 0 }, ..Guarantee::default() };
-    let found =
+    let mut found =
         guarantee(task, &Guess::default(), &settings, &wanted).map_err(|error| setup::words(&error, &source))?;
     let summary = found.certificate.summary(&compiled.program.structure);
+    let tube = (arguments.tube && found.report.is_solved())
+        .then(|| ntg_certify::tube(&found.certificate, &found.report.solution));
     match arguments.format {
         Format::Text => {
             let mut text = format!("{}: {}\n{summary}", found.report.problem, found.report.status);
             if arguments.guarantee {
                 text.push_str(&words(&found));
             }
+            text.extend(tube.as_ref().map(ToString::to_string));
             files::print_raw(&text);
         }
         Format::Json => {
@@ -79,16 +89,57 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
             if arguments.guarantee {
                 document["guarantee"] = cost(&found);
             }
+            if let Some(tube) = &tube {
+                document["tube"] = of_tube(tube);
+            }
             files::print(&format!("{document:#}"));
         }
     }
     if let Some(path) = &arguments.output {
+        if let Some(tube) = &tube {
+            found.certificate.statement.spec.push_str(&remarks(tube));
+        }
         save(path, arguments.force, &found.certificate)?;
     }
-    Ok(match found.report.is_solved() && summary.is_proved() {
+    let is_followed = tube.as_ref().is_none_or(Tube::is_whole);
+    Ok(match found.report.is_solved() && summary.is_proved() && is_followed {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,
         false => Exit::NotSolved,
+    })
+}
+
+/// What a certificate says of a tube: remarks for people below the spec, which `ntg-check` does not read.
+fn remarks(tube: &Tube) -> String {
+    let words = tube.to_string();
+    let lines = words.lines().map(|line| format!("// {line}\n"));
+    format!("\n// Computed by ntg certify, and not proved by ntg-check:\n{}", lines.collect::<String>())
+}
+
+/// A tube for programs.
+fn of_tube(tube: &Tube) -> Value {
+    let state = |state: &ntg_certify::tube::State| {
+        let bands: Vec<[f64; 4]> = state.bands.iter().map(|band| [band.from, band.to, band.low, band.high]).collect();
+        json!({
+            "name": state.label(), "unit": state.unit_label(),
+            "most": state.most, "end": state.at_end, "bands": bands,
+        })
+    };
+    let stretch = |stretch: &ntg_certify::tube::Stretch| {
+        let (ending, time, why) = match &stretch.ending {
+            Ending::Whole => ("whole", None, None),
+            Ending::At(time, why) => ("at", Some(*time), Some(why.clone())),
+            Ending::None(_) if stretch.is_flat() => ("flat", None, None),
+            Ending::None(why) => ("none", None, Some(why.clone())),
+        };
+        json!({
+            "phase": stretch.phase, "ending": ending, "time": time, "why": why,
+            "states": stretch.states.iter().map(state).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "whole": tube.is_whole(), "boxes": tube.boxes, "seconds": tube.seconds,
+        "phases": tube.phases.iter().map(stretch).collect::<Vec<_>>(),
     })
 }
 
@@ -109,11 +160,17 @@ pub(crate) fn mend<'p>(
 /// What a guarantee did and cost, in words.
 pub(crate) fn words(found: &Guaranteed<'_>) -> String {
     let ending = match &found.ending {
-        Ending::Proved if found.rounds.len() == 1 => "Guarantee: everything was proved at once".to_owned(),
-        Ending::Proved => format!("Guarantee: proved after {} more solves", found.rounds.len() - 1),
-        Ending::NotSolved => return "Guarantee: none, because there is no solution\n".to_owned(),
-        Ending::Rounds => format!("Guarantee: NOT had after {} more solves", found.rounds.len() - 1),
-        Ending::Tightened(status) => {
+        guarantee::Ending::Proved if found.rounds.len() == 1 => "Guarantee: everything was proved at once".to_owned(),
+        guarantee::Ending::Proved => format!("Guarantee: proved after {} more solves", found.rounds.len() - 1),
+        guarantee::Ending::NotSolved => return "Guarantee: none, because there is no solution\n".to_owned(),
+        guarantee::Ending::Rounds => format!("Guarantee: NOT had after {} more solves", found.rounds.len() - 1),
+        guarantee::Ending::Rounding => {
+            let rounds = found.rounds.len() - 1;
+            format!(
+                "Guarantee: NOT had for what is missed by rounding, where end conditions meet a bound; all else is proved after {rounds} more solves"
+            )
+        }
+        guarantee::Ending::Tightened(status) => {
             format!("Guarantee: NOT had; with its constraints tightened the problem ends with: {status}")
         }
     };
@@ -125,7 +182,9 @@ pub(crate) fn words(found: &Guaranteed<'_>) -> String {
         let (unit, symbol) = (constraint.unit.factor, &constraint.unit.symbol);
         let mut done = vec![];
         if change.points > 1 {
-            done.push(format!("held at {} times as many points", change.points));
+            let percent = (100.0 * change.share()).ceil();
+            let points = change.points;
+            done.push(format!("held at {points} times as many points in {percent} % of its time"));
         }
         for (side, by) in [("lower", change.below), ("upper", change.above)] {
             if by > 0.0 {
@@ -140,7 +199,7 @@ pub(crate) fn words(found: &Guaranteed<'_>) -> String {
 /// What a guarantee did and cost, for programs.
 pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
     json!({
-        "proved": found.ending == Ending::Proved,
+        "proved": found.ending == guarantee::Ending::Proved,
         "cost": found.cost(),
         "rounds": found.rounds.iter().map(|round| json!({
             "objective": round.objective, "open": round.open, "missed": round.missed,
@@ -149,7 +208,7 @@ pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
         "changes": found.changes.iter().map(|(number, change)| json!({
             "constraint": found.report.solution.structure().constraints[*number].name,
             "line": found.report.solution.structure().constraints[*number].place.line,
-            "points": change.points, "lower_raised": change.below, "upper_lowered": change.above,
+            "points": change.points, "share": change.share(), "lower_raised": change.below, "upper_lowered": change.above,
         })).collect::<Vec<_>>(),
     })
 }
@@ -205,7 +264,7 @@ pub(crate) fn proof(proof: &ntg_certify::summary::Proof) -> Value {
         Verdict::Proved | Verdict::Bounded => (None, None),
     };
     json!({
-        "name": proof.name, "verdict": proof.word(), "unit": proof.unit.symbol,
+        "name": proof.name, "verdict": proof.word(), "unit": proof.unit.symbol, "along": proof.along,
         "low": proof.values.0, "high": proof.values.1, "missed": missed, "residual": residual,
         "witness": proof.witness.map(|(t, value)| json!({ "t": t, "value": value })),
     })

@@ -48,6 +48,25 @@ fn equations_of_motion_have_a_proved_residual() {
 }
 
 #[test]
+fn a_tube_bounds_the_true_state_and_the_certificate_says_who_says_so() {
+    let path = scratch("tube.cert");
+    let file = path.to_str().expect("a path");
+    let found = ntg(&["certify", "specs/gallery/vanderpol.ntg", "--tube", "-o", file]);
+    assert_eq!(found.status.code(), Some(0), "{}", text(&found));
+    assert!(text(&found).contains("Tube: how far the true state is"), "{}", text(&found));
+    assert!(text(&found).lines().any(|line| line.starts_with("  x2  within ")), "{}", text(&found));
+    let certificate = std::fs::read_to_string(&path).expect("a certificate");
+    assert!(certificate.contains("| // Computed by ntg certify, and not proved by ntg-check:"), "{certificate}");
+    assert!(ntg_check::verify(&certificate).is_ok());
+    std::fs::remove_file(path).expect("the file is there");
+
+    let flat = ntg(&["certify", "specs/van_der_pol.ntg", "--tube", "--format", "json"]);
+    let document: serde_json::Value = serde_json::from_str(&text(&flat)).expect("JSON");
+    assert_eq!(document["tube"]["whole"], true);
+    assert_eq!(document["tube"]["phases"][0]["ending"], "flat");
+}
+
+#[test]
 fn a_guaranteed_solve_says_proved_beside_each_constraint() {
     let saved = scratch("gates.json");
     let file = saved.to_str().expect("a path");
