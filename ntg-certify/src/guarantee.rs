@@ -55,8 +55,9 @@ pub enum Ending {
     /// What is not proved is missed by no more than rounding ([`Guarantee::margin`]), and with it tightened there is no
     /// solution: an end condition meets a bound with equality.
     Rounding,
-    /// With the constraints tightened there is no solution; the certificate is that of the last one.
-    Tightened(Status),
+    /// With the constraints tightened there is no solution, in the words of the solver; the certificate is that of the
+    /// last one.
+    Tightened(String),
 }
 
 /// One solve and what was proved of it.
@@ -139,6 +140,7 @@ pub fn proved_from<'p>(
 ) -> Result<Guaranteed<'p>, Error> {
     let mut changes: BTreeMap<usize, Change> = BTreeMap::new();
     let (mut rounds, mut certificate) = (vec![], of(task, &report, wanted)?);
+    let mut wanted = *wanted;
     // Constraints that are missed by less, as a part of their size, stay as they are.
     let mut least = 0.0;
     let ending = loop {
@@ -153,22 +155,26 @@ pub fn proved_from<'p>(
             break Ending::Rounds;
         }
         let mut more = changes.clone();
-        if !change(&certificate, &mut more, wanted, least) {
-            break unchanged(&rounds, wanted);
+        if !change(&certificate, &mut more, &wanted, least) {
+            break unchanged(&rounds, &wanted);
         }
-        let mut next = again(task, &report, &more, settings)?;
-        if !next.is_solved() && least == 0.0 {
+        let mut next = again(task, &report, &more, settings);
+        if next.is_err() && least == 0.0 {
+            // An end condition may meet a bound with equality: what is missed by rounding stays, and points mend as much
+            // as they can of the rest.
             least = wanted.margin;
+            wanted.coarse = wanted.margin;
             more = changes.clone();
-            if !change(&certificate, &mut more, wanted, least) {
-                break unchanged(&rounds, wanted);
+            if !change(&certificate, &mut more, &wanted, least) {
+                break unchanged(&rounds, &wanted);
             }
-            next = again(task, &report, &more, settings)?;
+            next = again(task, &report, &more, settings);
         }
-        if !next.is_solved() {
-            break Ending::Tightened(next.status);
-        }
-        certificate = of(task, &next, wanted)?;
+        let next = match next {
+            Ok(next) => next,
+            Err(words) => break Ending::Tightened(words),
+        };
+        certificate = of(task, &next, &wanted)?;
         (report, changes) = (next, more);
     };
     let before = certificate.seconds;
@@ -218,19 +224,25 @@ fn own_bounds(report: &mut Report, certificate: &Certificate, changes: &BTreeMap
         (largest(|own| own.points.as_ref()), largest(|own| own.between.as_ref()));
 }
 
-/// Solves with the changes, from the last solution; should that fail, from the beginning.
+/// Solves with the changes, from the last solution; should that fail, from the beginning. The words say why there is no
+/// solution: a tightened bound may contradict an end condition before anything is solved.
 fn again(
     task: Task<'_>,
     report: &Report,
     changes: &BTreeMap<usize, Change>,
     settings: &Settings,
-) -> Result<Report, Error> {
+) -> Result<Report, String> {
     let tightened = Tightened::new(task.problem, changes, true);
-    let next = solve_from(&tightened, &Guess::from(&report.solution), settings)?;
-    if next.is_solved() || matches!(next.status, Status::Cancelled | Status::TimeLimit) {
+    let next = solve_from(&tightened, &Guess::from(&report.solution), settings).map_err(|error| error.to_string())?;
+    if next.is_solved() {
         return Ok(next);
     }
-    solve_from(&Tightened::new(task.problem, changes, false), &Guess::default(), settings)
+    if matches!(next.status, Status::Cancelled | Status::TimeLimit) {
+        return Err(next.status.to_string());
+    }
+    let next = solve_from(&Tightened::new(task.problem, changes, false), &Guess::default(), settings)
+        .map_err(|error| error.to_string())?;
+    if next.is_solved() { Ok(next) } else { Err(next.status.to_string()) }
 }
 
 fn round(report: &Report, certificate: &Certificate) -> Round {

@@ -94,3 +94,19 @@ fn what_fails_between_the_points_is_mended_at_little_cost() {
         assert_eq!((checked.refuted, checked.undecided), (0, 0), "{spec}");
     }
 }
+
+#[test]
+fn what_an_end_condition_meets_is_left_and_all_else_is_mended() {
+    // The path has a bound that is also where it ends, so that the bound cannot be tightened there.
+    for spec in ["gallery/bryson_denham.ntg", "gallery/contact_order_three.ntg"] {
+        let of = solved(spec);
+        let task = Task { program: &of.program, problem: &of.problem, spec: &of.text };
+        let wanted = Guarantee::default();
+        let found = proved_from(task, of.report.clone(), &Settings::default(), &wanted).expect("a problem");
+        assert_eq!(found.ending, Ending::Rounding, "{spec}: {:?}", found.rounds);
+        let missed = |round: &ntg_certify::guarantee::Round| round.missed;
+        assert!(found.rounds.first().is_some_and(|first| missed(first) > 1e-5), "{spec}: {:?}", found.rounds);
+        assert!(found.rounds.last().is_some_and(|last| missed(last) <= wanted.margin), "{spec}: {:?}", found.rounds);
+        assert!(ntg_check::verify(&write::text(&found.certificate)).is_ok(), "{spec}");
+    }
+}

@@ -277,9 +277,9 @@ impl Flow<'_> {
         let (by_x, by_w) = self.system.partials(self.machine, &values, scales).ok_or(Trouble::Unbounded)?;
         let (size, count) = (self.system.size, self.system.unknowns.len());
         let mut rights = Matrix::zero(count, size + 1);
-        for row in 0..count {
+        for (row, residual) in residuals.iter().enumerate() {
             (0..size).for_each(|c| *rights.at_mut(row, c) = -by_x.at(row, c));
-            *rights.at_mut(row, size) = -residuals[row];
+            *rights.at_mut(row, size) = -*residual;
         }
         let solved = solve_enclosed(&by_w, &rights).ok_or(Trouble::Singular)?;
         let (mut rates, mut drift) = (Matrix::zero(size, size), vec![Interval::ZERO; size]);

@@ -26,7 +26,7 @@ impl Matrix {
     }
 
     pub(super) fn rows(&self) -> usize {
-        if self.columns == 0 { 0 } else { self.entries.len() / self.columns }
+        self.entries.len().checked_div(self.columns).unwrap_or(0)
     }
 
     pub(super) fn at(&self, row: usize, column: usize) -> Interval {

@@ -100,6 +100,9 @@ impl Stretch {
 /// The differences of a phase's state at its end, in SI units of mission time: output, derivative, difference.
 type Handed = Vec<(String, usize, Interval)>;
 
+/// Boxes of time in order, with what is known of each.
+type Steps = Vec<(Window, Step)>;
+
 /// Encloses the true state around the splines of a certificate, which is that of this solution.
 pub fn tube(certificate: &Certificate, solution: &Solution) -> Tube {
     let began = Instant::now();
@@ -180,9 +183,9 @@ impl Phase<'_> {
     }
 
     /// Steps from box to box, halving where one fails, to the end or to a box that cannot be halved any more.
-    fn follow(&self, flow: &Flow<'_>, begin: &Handed) -> (Vec<(Window, Step)>, Option<(Window, Trouble)>) {
+    fn follow(&self, flow: &Flow<'_>, begin: &Handed) -> (Steps, Option<(Window, Trouble)>) {
         let phase = &self.machine.statement.phases[self.phase];
-        let mut steps: Vec<(Window, Step)> = vec![];
+        let mut steps: Steps = vec![];
         let mut front = None;
         for number in phase.cells() {
             let mut waiting = vec![self.window(flow.system, number)];
