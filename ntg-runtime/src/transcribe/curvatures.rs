@@ -43,7 +43,8 @@ impl Transcription<'_> {
                 let share = if i == j { 0.5 } else { 1.0 };
                 for e in 0..block.elements {
                     let curvature = share * values.hessian[entry * block.elements + e].abs();
-                    if !(curvature > 0.0) {
+                    // A second derivative that is no number has no size.
+                    if curvature.is_nan() || curvature == 0.0 {
                         continue;
                     }
                     let groups = (slot_group(block, e, i, balance), slot_group(block, e, j, balance));

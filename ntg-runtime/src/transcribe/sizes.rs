@@ -40,6 +40,9 @@ pub(super) struct Balance {
     curvature: BTreeMap<(usize, usize), f64>,
 }
 
+/// Groups with the sizes that were found for them.
+type Sizes = Vec<(usize, f64)>;
+
 /// The group of a slot of an element: that of its first variable.
 pub(super) fn slot_group(block: &Block, e: usize, slot: usize, balance: &Balance) -> Option<usize> {
     let variables = block.variables(e);
@@ -167,7 +170,7 @@ impl Balance {
     }
 
     /// Gives sizes to groups. A later way is tried where the ones before it find nothing.
-    fn propagate(&mut self, ways: &[fn(&Self) -> Vec<(usize, f64)>]) {
+    fn propagate(&mut self, ways: &[fn(&Self) -> Sizes]) {
         for _ in 0..self.size.len() {
             let Some(found) = ways.iter().map(|way| way(self)).find(|found| !found.is_empty()) else { return };
             found.into_iter().for_each(|(group, size)| self.size[group] = Some(size));
@@ -182,17 +185,17 @@ impl Balance {
     }
 
     /// All groups that balance constraints in which no other group is without a size.
-    fn balanced(&self) -> Vec<(usize, f64)> {
+    fn balanced(&self) -> Sizes {
         self.sizes_by(|group| self.candidate(group, false)).collect()
     }
 
     /// The first group that balances the known terms of a constraint.
-    fn partly_balanced(&self) -> Vec<(usize, f64)> {
+    fn partly_balanced(&self) -> Sizes {
         self.sizes_by(|group| self.candidate(group, true)).take(1).collect()
     }
 
     /// All groups whose curvature balances something, alone or with a group of known size.
-    fn curved(&self) -> Vec<(usize, f64)> {
+    fn curved(&self) -> Sizes {
         self.sizes_by(|group| {
             let sizes = self.curvature.iter().filter_map(|(&(l, m), curvature)| match (l == group, m == group) {
                 (true, true) => Some(1.0 / curvature.sqrt()),
