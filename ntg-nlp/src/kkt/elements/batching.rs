@@ -36,7 +36,7 @@ pub(super) fn batch_elements(block: &Block, supports: &Supports) -> (Batching<LA
 fn same_variables(block: &Block, supports: &Supports) -> Vec<Vec<u32>> {
     let mut known: HashMap<Box<[(u32, u32)]>, usize> = HashMap::new(); // Looked up, never iterated.
     let mut same: Vec<Vec<u32>> = vec![];
-    let (mut last, mut at, mut own): (Vec<(u32, u32)>, usize, Vec<(u32, u32)>) = (vec![], 0, vec![]);
+    let (mut last, mut own, mut at): (Vec<(u32, u32)>, _, _) = (vec![], vec![], 0);
     for e in 0..block.elements {
         own.clear();
         own.extend(supports.element_variables_of(e).map(|(at, variable, ..)| (at as u32, variable)));
