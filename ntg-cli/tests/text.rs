@@ -154,7 +154,8 @@ fn check_of_a_folder_is_about_all_specs_below_it_and_every_shipped_one_is_well_f
         let paths = fs::read_dir(folder).expect("readable").map(|entry| entry.expect("readable").path());
         paths.filter(|path| path.extension().is_some_and(|extension| extension == "ntg")).count()
     };
-    let count = in_folder(specs()) + in_folder(specs().join("gallery"));
+    let folders = [specs(), specs().join("gallery"), specs().join("gallery/data")];
+    let count: usize = folders.into_iter().map(in_folder).sum();
     let (out, _) = said(&ntg_in(&specs(), &["check", "."], b""), 0);
     assert!(count >= 6 && out.lines().count() == count, "{out}");
 }
