@@ -93,7 +93,7 @@ pub(super) fn estimate(
     });
     let deviations: Vec<Deviation> = deviations.collect();
     let correlation = |j: usize, k: usize| match sigma(j) * sigma(k) {
-        size if size > 0.0 => (covariance[j][k] / size).clamp(-1.0, 1.0),
+        size if size > 0.0 && j != k => (covariance[j][k] / size).clamp(-1.0, 1.0),
         _ => f64::from(u8::from(j == k)),
     };
     let all = 0..covariance.len();
