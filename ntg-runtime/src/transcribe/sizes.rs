@@ -30,6 +30,8 @@ pub(super) struct Balance {
     groups: Vec<Vec<(usize, f64)>>,
     /// For each constraint its largest finite bound; 0 where there is none.
     bound: Vec<f64>,
+    /// For each constraint its largest value at the guess by absolute value.
+    value: Vec<f64>,
     /// Whether a constraint is an inequality.
     is_inequality: Vec<bool>,
     /// The constraint of each row.
@@ -113,11 +115,15 @@ impl Transcription<'_> {
             constraint_of.push(*numbers.entry(kind).or_insert(next));
         }
         balance.bound = vec![0.0; numbers.len()];
+        balance.value = vec![0.0; numbers.len()];
         balance.is_inequality = vec![false; numbers.len()];
         for (row, &constraint) in constraint_of.iter().enumerate() {
             let limits = (self.limits.row_lower[row], self.limits.row_upper[row]);
             balance.is_inequality[constraint] |= limits.0 != limits.1;
-            let bound = bound_size(limits);
+            let (bound, value) = (bound_size(limits), at.rows[row].abs());
+            if value.is_finite() {
+                balance.value[constraint] = balance.value[constraint].max(value);
+            }
             if bound.is_finite() {
                 balance.bound[constraint] = balance.bound[constraint].max(bound);
             }
@@ -218,12 +224,11 @@ impl Balance {
         self.objective
     }
 
-    /// The size of each row, which is that of its constraint: its bound or its largest known term; 0 where neither is
-    /// known or the constraint is flat at the guess.
+    /// The size of each row, which is that of its constraint: its bound, its value at the guess or its largest known term; 0 where none is known or the constraint is flat at the guess.
     pub(super) fn row_sizes(&self) -> impl Iterator<Item = f64> {
         let sizes = (0..self.bound.len()).map(|constraint| {
             let term = self.largest_term(constraint, usize::MAX);
-            if self.is_flat(constraint, term) { 0.0 } else { self.bound[constraint].max(term) }
+            if self.is_flat(constraint, term) { 0.0 } else { self.known_size(constraint, term) }
         });
         let sizes: Vec<f64> = sizes.collect();
         self.constraint_of.iter().map(move |constraint| sizes[*constraint])
@@ -233,6 +238,12 @@ impl Balance {
     fn largest_term(&self, constraint: usize, beside: usize) -> f64 {
         let others = self.groups[constraint].iter().filter(|(other, _)| *other != beside);
         others.filter_map(|(other, slope)| Some(self.size[*other]? * slope)).fold(0.0, f64::max)
+    }
+
+    /// The size of a constraint whose largest known term is given. Its value at the guess shows constant terms beside a
+    /// bound of 0.
+    fn known_size(&self, constraint: usize, term: f64) -> f64 {
+        self.bound[constraint].max(self.value[constraint]).max(term)
     }
 
     /// Whether a constraint is an inequality that is flat at the guess, such as a zone far away: it balances nothing.
@@ -251,7 +262,7 @@ impl Balance {
                 return None;
             }
             let term = self.largest_term(constraint, group);
-            let size = self.bound[constraint].max(term) / slope;
+            let size = self.known_size(constraint, term) / slope;
             (size.is_normal() && !self.is_flat(constraint, term)).then_some(size)
         });
         own.into_iter().chain(balanced).reduce(f64::min)
