@@ -17,6 +17,18 @@ use crate::scaling::Scales;
 /// Where the mean size of the multipliers exceeds this, dual residuals are measured relative to it.
 pub const LARGE_MULTIPLIER: f64 = 100.0;
 
+/// Products of multipliers and distances are measured relative to no more than this.
+const LARGEST_SCALE: f64 = 100.0;
+
+/// The divisor of complementarity, given that of dual residuals.
+///
+/// A product of a multiplier and a violation is what the violation is worth: the error of the objective, whose terms have
+/// the size 1. Multipliers of 1e14 on rows that all but vanish make any violation worth something, however small it is
+/// beside the row; a divisor that grows with them would hide that.
+pub fn complementarity_scale(s_d: f64) -> f64 {
+    s_d.min(LARGEST_SCALE)
+}
+
 /// How far a point is from a solution, measured in one way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residual {
@@ -151,7 +163,7 @@ pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residua
     }
     let s_d = multiplier_scale(scales, point);
     found.scaled.dual /= s_d;
-    found.scaled.complementarity /= s_d;
+    found.scaled.complementarity /= complementarity_scale(s_d);
     found
 }
 
@@ -227,6 +239,29 @@ mod tests {
         };
         let jacobian = (0..block.jacobian.len() * elements).map(|i| number(3 * i + 1)).collect();
         (block, BlockValues { jacobian, ..BlockValues::default() })
+    }
+
+    /// A point that misses its only bound by 1e-13, with the multiplier 1e14: ten units of the objective.
+    #[test]
+    fn a_huge_multiplier_does_not_hide_what_a_violation_is_worth() {
+        let limits = Limits {
+            lower: vec![f64::NEG_INFINITY],
+            upper: vec![f64::INFINITY],
+            row_lower: vec![0.0],
+            row_upper: vec![f64::INFINITY],
+            ..Limits::default()
+        };
+        let scales = Scales { variables: vec![1.0], rows: vec![1.0], objective: 1.0 };
+        let point = Point {
+            x: &[0.0],
+            rows: &[-1e-13],
+            lagrangian: &[0.0],
+            row_multipliers: &[1e14],
+            bound_multipliers: &[0.0],
+        };
+        let found = residuals(&limits, &scales, &point).scaled;
+        assert!(found.primal < 1e-12, "{found:?}");
+        assert!(found.complementarity >= 0.1, "{found:?}");
     }
 
     #[test]

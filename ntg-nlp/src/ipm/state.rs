@@ -12,7 +12,7 @@ use crate::kkt::System;
 use crate::options::Options;
 use crate::outcome::IterationRecord;
 use crate::reductions::{largest, sum};
-use crate::residuals::{LARGE_MULTIPLIER, Residuals};
+use crate::residuals::{LARGE_MULTIPLIER, Residuals, complementarity_scale};
 use crate::status::Status;
 use crate::stopping::Stage;
 use std::time::Instant;
@@ -188,7 +188,7 @@ impl<N: Nlp> State<'_, N> {
         let mut residuals = Residuals::default();
         residuals.scaled.primal = self.slacks.violation(&self.values);
         residuals.scaled.dual = self.dual_residual() / s_d;
-        residuals.scaled.complementarity = self.slacks.complementarity() / s_d;
+        residuals.scaled.complementarity = self.slacks.complementarity() / complementarity_scale(s_d);
         self.record = IterationRecord {
             objective: self.values[self.system.objective()] / self.system.scales.objective,
             residuals,
