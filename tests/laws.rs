@@ -196,3 +196,35 @@ fn factors_that_round_change_no_optimum() {
                 && found.iterations <= plain.iterations * 3 / 2 + 3
     });
 }
+
+/// The sizes of all variables of a program at its guess.
+fn sizes(text: &str) -> Vec<f64> {
+    let source = Source::new("sizes.ntg", text.to_string());
+    let compiled = ntg_compiler::compile(&source, &BesideSpecs).unwrap_or_else(|_| panic!("{text}"));
+    let problem = Interpreted::new(&compiled.program);
+    let mut nlp = Transcription::new(&problem).expect("it transcribes");
+    let first = start(&nlp, None).expect("a start");
+    nlp.set_scales(&first, &Settings::default()).expect("sizes");
+    nlp.limits().scale.clone()
+}
+
+/// cos(90 deg) is 6e-17, which is 0 but for rounding, and 1 - 2 (x^2 + y^2) reaches either at the square root of 1/2.
+#[test]
+fn a_bound_that_is_rounding_of_zero_gives_the_size_that_zero_gives() {
+    let text = |limit: &str| {
+        format!(
+            "problem Tilted {{
+                duration T = 1;
+                output x, y: spline(order = 4, intervals = 4);
+                minimize integral(der(x, 2)^2 + der(y, 2)^2);
+                trajectory {{ upright: 1 - 2 * (x^2 + y^2) >= {limit}; }}
+                guess {{ x = 0;  y = 0; }}
+            }}"
+        )
+    };
+    for limit in ["cos(90 [deg])", "-cos(90 [deg])", "0"] {
+        for size in sizes(&text(limit)) {
+            assert!((size - 0.5_f64.sqrt()).abs() < 1e-12, "{limit}: {size}");
+        }
+    }
+}
