@@ -258,6 +258,7 @@ fn other_units_change_no_optimum() {
     let (mut broken, mut held) = (vec![], 0);
     for path in specs() {
         let plain = solved(&path, None);
+        assert!(plain.has_solution(), "{}: {} after {}", path.display(), plain.status, plain.iterations);
         // A path of more iterations through a problem that is not convex depends on rounding.
         if plain.iterations > LONG {
             continue;

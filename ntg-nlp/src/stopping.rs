@@ -34,12 +34,7 @@ impl Stage<'_> {
     /// Whether the solve is over, and why; asks the callback.
     pub(crate) fn stops(&self) -> Option<Status> {
         let (options, found) = (self.options, self.record.residuals.scaled);
-        let feasible = found.primal <= options.constraint_tolerance;
-        if !self.is_restoring
-            && feasible
-            && found.dual <= options.tolerance
-            && found.complementarity <= options.tolerance
-        {
+        if !self.is_restoring && found.is_solved(options.constraint_tolerance, options.tolerance) {
             return Some(Status::Solved);
         }
         let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));

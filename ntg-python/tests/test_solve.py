@@ -303,12 +303,11 @@ problem Fall {
 
 
 def test_measurements_give_values_with_their_deviations():
-    found = ntg.loads(FALL).solve().estimate
+    found = ntg.loads(FALL).solve(tolerance=1e-10).estimate
     # One height shifts all five places: their mean difference to the fall, known to 0.1 m / sqrt(5).
     places = [0, 4.9, 19.6, 44.1, 78.4]
     shift = np.mean(np.array([0.1, 5, 19.5, 44.2, 78.3]) - places)
-    # The solver's tolerance is 1e-8 of the heights, which are up to 78 m.
-    assert found.values["height"] == pytest.approx(shift, abs=8e-7)
+    assert found.values["height"] == pytest.approx(shift, abs=1e-8)
     assert found.deviations["height"] == pytest.approx(0.1 / np.sqrt(5), rel=1e-6)
     track = found.measurements["track"]
     assert (found.count, len(track.residuals), track.unit, track.indices[4]) == (5, 5, "m", (4,))

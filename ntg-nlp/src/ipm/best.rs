@@ -63,7 +63,7 @@ impl<N: Nlp> State<'_, N> {
 
     /// Whether the best point of all is acceptable.
     pub(super) fn nearest_is_acceptable(&self) -> bool {
-        self.nearest.is_held && self.nearest.record.residuals.scaled.largest() <= ACCEPTABLE
+        self.nearest.is_held && self.nearest.record.residuals.scaled.is_acceptable(ACCEPTABLE, ACCEPTABLE)
     }
 
     /// Returns to the best point of all.

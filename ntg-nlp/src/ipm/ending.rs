@@ -61,9 +61,8 @@ impl<N: Nlp> State<'_, N> {
         }
         self.take_nearest();
         let found = self.record.residuals.scaled;
-        let is_acceptable = found.primal <= self.options.constraint_tolerance.max(ACCEPTABLE)
-            && found.dual.max(found.complementarity) <= self.options.tolerance.max(ACCEPTABLE);
-        if is_acceptable && !cancelled {
+        let (constraint_tolerance, tolerance) = (self.options.constraint_tolerance, self.options.tolerance);
+        if found.is_acceptable(constraint_tolerance.max(ACCEPTABLE), tolerance.max(ACCEPTABLE)) && !cancelled {
             return self.outcome(Status::Acceptable);
         }
         match status {

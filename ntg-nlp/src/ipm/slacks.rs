@@ -7,9 +7,8 @@
 
 use crate::contract::Limits;
 use crate::reductions::{largest, sum};
+use crate::residuals::is_equality;
 
-/// Bounds closer together than this are one equality (scaled). A law: rounding of bounds that are meant to be equal.
-const SAME: f64 = 1e-12;
 /// How far a multiplier may leave the central path: kappa_Sigma of WB, equation (16).
 const KAPPA_SIGMA: f64 = 1e10;
 /// Slacks whose product is taken before a logarithm: ten numbers above 1e-30 do not underflow.
@@ -68,7 +67,7 @@ impl Slacks {
     fn add(&mut self, lower: &[f64], upper: &[f64], first: usize) {
         for (i, (&lower, &upper)) in lower.iter().zip(upper).enumerate() {
             let function = first + i;
-            if lower.is_finite() && upper - lower <= SAME * lower.abs().max(1.0) {
+            if is_equality(lower, upper) {
                 self.equalities.push(Equality { function, value: 0.5 * (lower + upper) });
                 continue;
             }
@@ -162,9 +161,14 @@ impl Slacks {
         self.equality_residuals(values).fold(largest([&self.distance], |[d]| -d), f64::max)
     }
 
-    /// The largest product of a multiplier and the distance to its bound.
+    /// The largest product of an inequality's multiplier and the distance to its bound.
     pub(super) fn complementarity(&self) -> f64 {
         largest([&self.distance, &self.z], |[d, z]| (z * d).abs())
+    }
+
+    /// The largest product of an equality's multiplier and its residual.
+    pub(super) fn worth(&self, values: &[f64]) -> f64 {
+        self.equality_residuals(values).zip(&self.y).map(|(c, y)| c * y.abs()).fold(0.0, f64::max)
     }
 
     /// The largest deviation `|s z - mu|` from the central path.

@@ -12,7 +12,7 @@ use crate::kkt::System;
 use crate::options::Options;
 use crate::outcome::IterationRecord;
 use crate::reductions::{largest, sum};
-use crate::residuals::{LARGE_MULTIPLIER, Residuals, complementarity_scale};
+use crate::residuals::{LARGE_MULTIPLIER, Residual, Residuals};
 use crate::status::Status;
 use crate::stopping::Stage;
 use std::time::Instant;
@@ -184,11 +184,13 @@ impl<N: Nlp> State<'_, N> {
         self.system.transposed_product(&self.multipliers, &mut self.negative_gradient);
         self.add_proximity_gradient();
         self.s_d = self.multiplier_scale();
-        let s_d = self.s_d;
-        let mut residuals = Residuals::default();
-        residuals.scaled.primal = self.slacks.violation(&self.values);
-        residuals.scaled.dual = self.dual_residual() / s_d;
-        residuals.scaled.complementarity = self.slacks.complementarity() / complementarity_scale(s_d);
+        let scaled = Residual {
+            primal: self.slacks.violation(&self.values),
+            dual: self.dual_residual(),
+            complementarity: self.slacks.complementarity(),
+            worth: self.slacks.worth(&self.values),
+        };
+        let residuals = Residuals { scaled: scaled.relative_to(self.s_d), ..Residuals::default() };
         self.record = IterationRecord {
             objective: self.values[self.system.objective()] / self.system.scales.objective,
             residuals,

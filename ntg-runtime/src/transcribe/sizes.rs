@@ -224,7 +224,8 @@ impl Balance {
         self.objective
     }
 
-    /// The size of each row, which is that of its constraint: its bound, its value at the guess or its largest known term; 0 where none is known or the constraint is flat at the guess.
+    /// The size of each row, which is that of its constraint: its bound, its value at the guess or its largest known
+    /// term; 0 where none is known or the constraint is flat at the guess.
     pub(super) fn row_sizes(&self) -> impl Iterator<Item = f64> {
         let sizes = (0..self.bound.len()).map(|constraint| {
             let term = self.largest_term(constraint, usize::MAX);
