@@ -21,6 +21,9 @@ const STATIONARY: f64 = 1e-6;
 /// A row is stationary only if a step of one size also changes it by less than this fraction of its own size: far beside
 /// the start, a row that falls or grows fast may have any slope. A law: rounding of terms that cancel.
 const ROUNDING: f64 = 1e-10;
+/// An objective that varies by less than this fraction of its value is constant. A law: rounding of a sum, some 50 units of
+/// the last place.
+const CONSTANT: f64 = 1e-14;
 /// An inequality further away than this many steps of one size is not near, however flat it is. A fit: what a guess leaves
 /// between itself and a bound is some ten sizes in the gallery, and a saturated function is 1e10 of them away.
 const REACH: f64 = 1e3;
@@ -66,14 +69,7 @@ impl Scales {
             Slopes::of(nlp, trial, &assembly.jacobian, &sizes)
         });
         assembly.first(nlp.blocks(), at);
-        Self::from_slopes(
-            nlp.limits(),
-            scaling,
-            &at_start
-                .or_beside(probe, nlp.limits())
-                .within_relations(nlp.blocks())
-                .within_reach(&at.rows, nlp.limits()),
-        )
+        Self::from_slopes(nlp.limits(), scaling, &at_start.beside(probe, nlp, at))
     }
 
     /// Scaled bounds; they have no sizes of their own.
@@ -123,11 +119,21 @@ impl Slopes {
         Self { rows, variation: variation(nlp.blocks(), at, sizes) }
     }
 
+    /// The slopes that scale a program, from those at the start, whose values are given, and at a point beside it (none
+    /// where the program has no derivatives there).
+    pub fn beside<N: Nlp>(self, beside: Option<Self>, nlp: &N, at: &Evaluation) -> Self {
+        let (blocks, limits) = (nlp.blocks(), nlp.limits());
+        self.or_beside(beside, limits)
+            .within_relations(blocks)
+            .within_reach(&at.rows, limits)
+            .above_rounding(at.objective)
+    }
+
     /// The slopes that scale a program, from those at the start and at a point beside it (none where the program has no
     /// derivatives there). A start may be stationary but for rounding, for a row or for the objective; then the slope
     /// beside it counts, and for a row its larger finite bound, if that is larger. For the objective the start may also
     /// be nearly stationary by chance.
-    pub fn or_beside(mut self, beside: Option<Self>, limits: &Limits) -> Self {
+    fn or_beside(mut self, beside: Option<Self>, limits: &Limits) -> Self {
         let Some(beside) = beside else { return self };
         let is_stationary = |at_start: f64, beside: f64| beside.is_finite() && at_start <= STATIONARY * beside;
         for (row, (slope, &beside)) in self.rows.iter_mut().zip(&beside.rows).enumerate() {
@@ -150,7 +156,7 @@ impl Slopes {
     /// No row counts as less steep than rounding beside the steepest row of its relation, which is the same function at
     /// other points: a relation that is all but constant at some points (1e-200 for a saturated logistic function) is
     /// not magnified there until its rounding weighs.
-    pub fn within_relations(mut self, blocks: &[Block]) -> Self {
+    fn within_relations(mut self, blocks: &[Block]) -> Self {
         for relation in blocks.iter().flat_map(|block| block.target.chunks(block.elements.max(1))) {
             let rows = || relation.iter().filter_map(|target| target.row());
             let least =
@@ -164,12 +170,20 @@ impl Slopes {
 
     /// An inequality that holds at the start and is further from its bounds than `REACH` steps of one size would lead
     /// is measured by that distance. `values` are those of the rows.
-    pub fn within_reach(mut self, values: &[f64], limits: &Limits) -> Self {
+    fn within_reach(mut self, values: &[f64], limits: &Limits) -> Self {
         for (row, (slope, value)) in self.rows.iter_mut().zip(values).enumerate() {
             let distance = (value - limits.row_lower[row]).min(limits.row_upper[row] - value);
             if distance.is_finite() {
                 *slope = slope.max(distance / REACH);
             }
+        }
+        self
+    }
+
+    /// An objective that varies by no more than rounding of its value is constant, and measured by its value.
+    fn above_rounding(mut self, objective: f64) -> Self {
+        if self.variation <= CONSTANT * objective.abs() {
+            self.variation = objective.abs();
         }
         self
     }

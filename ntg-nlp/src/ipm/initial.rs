@@ -7,6 +7,7 @@ use super::slacks::Slacks;
 use super::state::{Analysis, State, Trial};
 use super::step::{FIRST_FRACTION, LARGEST_PROXIMAL, Step};
 use super::warm;
+use super::watchdog::Watchdog;
 use crate::contract::{Limits, Nlp, NotFinite};
 use crate::kkt::System;
 use crate::options::Options;
@@ -72,6 +73,7 @@ impl<'a, N: Nlp> State<'a, N> {
             solved_at: 0,
             nearest: Point::new(&x, &slacks),
             before_step: Point::new(&x, &slacks),
+            watchdog: Watchdog::new(Point::new(&x, &slacks)),
             saved_step: step.clone(),
             penalty: None,
             restoration: None,

@@ -59,7 +59,7 @@ impl<N: Nlp> State<'_, N> {
     /// Tries points along the step, the longest first; on acceptance moves there.
     pub(super) fn filter_search(&mut self) -> SearchOutcome {
         let reference = self.reference_point();
-        let longest = self.to_boundary(self.step.shrinkage.slack);
+        let longest = self.longest_step();
         if self.is_tiny() && self.step.s.iter().zip(&self.slacks.s).all(is_rounding) {
             let has_value = self.try_step(longest);
             return if has_value { self.accept_trial(longest, SearchOutcome::Tiny) } else { SearchOutcome::Stuck };
@@ -95,7 +95,7 @@ impl<N: Nlp> State<'_, N> {
 
     /// Makes the end of the longest step the present point, without a search; false where it has no value.
     pub(super) fn try_longest_step(&mut self) -> bool {
-        let longest = self.to_boundary(self.step.shrinkage.slack);
+        let longest = self.longest_step();
         let has_value = self.try_step(longest);
         if has_value {
             self.accept_trial(longest, SearchOutcome::Accepted);
@@ -103,7 +103,7 @@ impl<N: Nlp> State<'_, N> {
         has_value
     }
 
-    fn reference_point(&self) -> ReferencePoint {
+    pub(super) fn reference_point(&self) -> ReferencePoint {
         let phi = self.barrier_objective(&self.values, &self.slacks.s);
         ReferencePoint { theta: self.theta(), phi, slope: self.slope() }
     }
@@ -121,6 +121,11 @@ impl<N: Nlp> State<'_, N> {
     /// The longest step that keeps positive numbers positive whose largest relative decrease is `most`, WB (15).
     pub(super) fn to_boundary(&self, most: f64) -> f64 {
         (self.fraction_to_boundary() / most).min(1.0)
+    }
+
+    /// The longest step that keeps slacks positive.
+    pub(super) fn longest_step(&self) -> f64 {
+        self.to_boundary(self.step.shrinkage.slack)
     }
 
     /// The longest step that keeps the multipliers of inequalities positive.
@@ -235,7 +240,7 @@ impl<N: Nlp> State<'_, N> {
     }
 
     /// Makes the trial point the present one, with multipliers, the slack reset and the kappa_Sigma safeguard.
-    fn accept_trial(&mut self, alpha: f64, how: SearchOutcome) -> SearchOutcome {
+    pub(super) fn accept_trial(&mut self, alpha: f64, how: SearchOutcome) -> SearchOutcome {
         let dual = self.to_dual_boundary();
         std::mem::swap(&mut self.x, &mut self.trial.x);
         std::mem::swap(&mut self.slacks.s, &mut self.trial.s);

@@ -7,8 +7,8 @@
 //!
 //! `state` holds the iterate and its residuals, `slacks` the bounds with slacks and multipliers, `barrier` the barrier
 //! parameter, `step` the primal-dual step, `line_search` the search by the `filter` with its second-order
-//! corrections, `penalty` and `penalty_search` the search where bounds are elastic, `initial` and `warm` the start,
-//! `polish` and `ending` the end.
+//! corrections and its `watchdog`, `penalty` and `penalty_search` the search where bounds are elastic, `initial` and
+//! `warm` the start, `polish` and `ending` the end.
 //!
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), cited as WB.
 
@@ -30,6 +30,7 @@ mod state;
 mod step;
 mod step_kernels;
 mod warm;
+mod watchdog;
 
 use crate::check::refusal;
 use crate::contract::Nlp;
@@ -197,6 +198,10 @@ impl<N: Nlp> State<'_, N> {
             self.minimise_over_slacks();
             return if self.compute_step() { self.penalty_search() } else { SearchOutcome::Stuck };
         }
-        if self.compute_step() && self.lower_barrier_along_step() { self.filter_search() } else { SearchOutcome::Stuck }
+        if self.compute_step() && self.lower_barrier_along_step() {
+            self.watched_search()
+        } else {
+            SearchOutcome::Stuck
+        }
     }
 }

@@ -66,14 +66,16 @@ impl<N: Nlp> State<'_, N> {
     pub(super) fn penalty_search(&mut self) -> SearchOutcome {
         let before = self.penalty_objective(false) + self.minimise_over_slacks();
         let slope = self.penalty_slope();
+        let rounding = 10.0 * f64::EPSILON * before.abs();
         let mut alpha = self.to_hard_boundary();
         let tiny = self.is_tiny();
+        // A step whose promise is rounding beside the penalty function leads nowhere, however long it is.
+        let promises_nothing = -slope <= rounding;
         while alpha >= SHORTEST {
             if self.try_step(alpha) {
                 let after = self.penalty_objective(true) + self.penalty_terms(At::Trial);
-                let rounding = 10.0 * f64::EPSILON * before.abs();
                 if after - before - rounding <= ARMIJO * alpha * slope || (tiny && after.is_finite()) {
-                    let how = if tiny { SearchOutcome::Tiny } else { SearchOutcome::Accepted };
+                    let how = if tiny || promises_nothing { SearchOutcome::Tiny } else { SearchOutcome::Accepted };
                     return self.accept_penalty_trial(alpha, how);
                 }
             }

@@ -64,6 +64,7 @@ impl<N: Nlp> State<'_, N> {
         }
         self.restorations += 1;
         self.short_steps = 0;
+        self.watchdog.reset();
         let phi = self.barrier_objective(&self.values, &self.slacks.s);
         self.filter.add(theta, phi);
         let (mu, residual) = (self.mu, self.slacks.largest_residual(&self.values));

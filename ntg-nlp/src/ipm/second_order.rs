@@ -27,7 +27,7 @@ impl<N: Nlp> State<'_, N> {
             if !self.solve_for_step() {
                 break;
             }
-            length = self.to_boundary(self.step.shrinkage.slack);
+            length = self.longest_step();
             if !self.try_step(length) {
                 break;
             }

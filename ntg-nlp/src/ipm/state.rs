@@ -7,6 +7,7 @@ use super::penalty::Penalty;
 use super::restoration::Restoration;
 use super::slacks::{Slacks, log_sum};
 use super::step::Step;
+use super::watchdog::Watchdog;
 use crate::contract::{Nlp, NotFinite};
 use crate::kkt::System;
 use crate::options::Options;
@@ -64,6 +65,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) restorations: usize,
     /// How many short steps were made in a row.
     pub(super) short_steps: usize,
+    /// Cut steps, and the watch that they begin.
+    pub(super) watchdog: Watchdog,
     /// What the last estimate of the equalities' multipliers found.
     pub(super) estimate: Estimate,
     pub(super) step: Step,
