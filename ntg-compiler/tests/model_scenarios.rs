@@ -174,3 +174,20 @@ fn code_does_not_grow_with_the_members() {
     assert_eq!(few.structure.groups.len(), many.structure.groups.len());
     assert!(length(&many) < length(&few) + 100, "{} and {}", length(&few), length(&many));
 }
+
+#[test]
+fn an_output_of_a_scenario_jumps_for_all_members_or_for_one() {
+    let spec = |jumps: &str| {
+        format!(
+            "problem P {{ const S = 3; collocation gauss(points = 3, intervals = 4);
+            scenario a[k in 1 .. S] {{ state p [m], v [m/s]; input u in -1 .. 1 [m/s^2];
+                dynamics {{ der(p) == v;  der(v) == u; }} minimize integral(u^2) * 1 [s^3/m^2]; initial {{ p == 0;  v == 0; }} }}
+            phase up {{ duration = 2 [s]; }}
+            phase on after up {{ duration = 2 [s];  {jumps} }} }}"
+        )
+    };
+    let text = |jumps: &str| ntg_compiler::codegen::generate(&program(&spec(jumps))).to_string();
+    assert_eq!(text("jump a.v, a[2].p;"), text("jump a_v, a_p[2];"));
+    assert_eq!(text("continuous a.v up to 0;"), text("continuous a_v up to 0;"));
+    assert_ne!(text("jump a.v;"), text(""));
+}

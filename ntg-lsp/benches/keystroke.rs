@@ -1,28 +1,16 @@
-//! How long an editor waits after a keystroke, in specs of growing length: from the change to the diagnostics of the
+//! What an editor waits for after a keystroke, in long specs of several kinds: from the change to the diagnostics of the
 //! new text, over the protocol. A person takes 20 ms for at once.
+//!
+//! Processor time of the whole process, so that other work on the machine does not count.
+//! `cargo bench -p ntg-lsp --bench keystroke -- bodies 250 500 1000`: one kind, other lengths.
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+mod long;
+
+use cpu_time::ProcessTime;
 use lsp_server::{Connection, Message, Notification, Request};
 use serde_json::json;
 
 const URI: &str = "file:///bench/spec.ntg";
-
-/// The low-observability flight with more named expressions and constraints, to a number of lines.
-fn spec(lines: usize) -> String {
-    let flight = include_str!("../../specs/low_observable.ntg");
-    let (before, after) = flight.rsplit_once("    trajectory {\n").expect("the spec has a trajectory");
-    let mut more = String::new();
-    let mut limits = String::from("    trajectory {\n");
-    let count = lines.saturating_sub(flight.lines().count()) / 4;
-    for i in 0..count {
-        more.push_str(&format!(
-            "    /// Distance from a radar of the net.\n    let slant_{i} [km] = hypot(x - {i} [km], y + 3 [km], altitude);\n    \
-             let seen_{i} = logistic((slant_{i} / 1 [km] - log(slant_{i} / 7 [km]) * signature) / 0.1);\n"
-        ));
-        limits.push_str(&format!("        hidden_{i}: seen_{i} <= 2;\n"));
-    }
-    format!("{before}{more}{limits}{after}")
-}
 
 /// The server's other end.
 struct Editor {
@@ -62,11 +50,12 @@ impl Editor {
         self.diagnostics()
     }
 
-    /// Types over the number in `param reach = 1 [km];`.
-    fn type_over(&mut self, with: &str) -> usize {
+    /// Types over the number in `param knob = 1;`, which stands at a line.
+    fn type_over(&mut self, line: usize, with: &str) -> usize {
         self.version += 1;
-        let place = |character| json!({ "line": 23, "character": character });
-        let range = json!({ "start": place(18), "end": place(19) });
+        let at = long::KNOB.len() - 2;
+        let place = |character| json!({ "line": line, "character": character });
+        let range = json!({ "start": place(at), "end": place(at + 1) });
         self.notify(
             "textDocument/didChange",
             json!({
@@ -78,24 +67,38 @@ impl Editor {
     }
 }
 
-fn keystroke(c: &mut Criterion) {
-    let mut group = c.benchmark_group("keystroke");
-    for lines in [125, 250, 500, 1000] {
-        let text = spec(lines);
-        let mut editor = Editor::new();
-        let good = editor.open(&text);
-        for (name, letters) in [("good", ["1", "2"]), ("half-typed", ["(", "["])] {
-            let mut turn = 0;
-            group.bench_function(BenchmarkId::new(name, text.lines().count()), |b| {
-                b.iter(|| {
-                    turn += 1;
-                    let found = editor.type_over(letters[turn % 2]);
-                    assert!(name == "good" && found == good || name != "good" && found > 0, "{found}");
-                });
-            });
+/// Milliseconds of a keystroke, the median of several.
+fn median(mut keystroke: impl FnMut(usize)) -> f64 {
+    const TIMES: usize = 21;
+    keystroke(0);
+    let mut times: Vec<f64> = (1..=TIMES)
+        .map(|turn| {
+            let start = ProcessTime::now();
+            keystroke(turn);
+            start.elapsed().as_secs_f64() * 1e3
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[TIMES / 2]
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let lengths: Vec<usize> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
+    let lengths = if lengths.is_empty() { vec![500] } else { lengths };
+    let kinds: Vec<&String> = arguments.iter().filter(|argument| argument.parse::<usize>().is_err()).collect();
+    println!("{:<10} {:>6} {:>10} {:>12}", "spec", "lines", "right, ms", "half, ms");
+    for (name, shape) in
+        long::SHAPES.iter().filter(|(name, _)| kinds.is_empty() || kinds.iter().any(|kind| kind == name))
+    {
+        for lines in &lengths {
+            let text = shape(*lines);
+            let line = text.lines().position(|line| line == long::KNOB).expect("there is a place to type");
+            let mut editor = Editor::new();
+            assert_eq!(editor.open(&text), 0, "{name} is right");
+            let right = median(|turn| assert_eq!(editor.type_over(line, ["1", "2"][turn % 2]), 0));
+            let half = median(|turn| assert!(editor.type_over(line, ["(", "["][turn % 2]) > 0));
+            println!("{name:<10} {:>6} {right:>10.1} {half:>12.1}", text.lines().count());
         }
     }
 }
-
-criterion_group!(benches, keystroke);
-criterion_main!(benches);

@@ -35,7 +35,7 @@ pub(crate) fn inline(spec: TokenStream) -> TokenStream {
 
 /// `ntg_file!("specs/x.ntg")`, `ntg_file!("specs/x.ntg", n = 50)`
 pub(crate) fn file(argument: TokenStream) -> TokenStream {
-    let Called { path, place, given } = match Called::of(argument) {
+    let Called { path, place, given, places } = match Called::of(argument) {
         Ok(called) => called,
         Err((message, place)) => return report::error(message, (place, place)),
     };
@@ -58,7 +58,7 @@ pub(crate) fn file(argument: TokenStream) -> TokenStream {
             let items = codegen::generate_at(&compiled.program, &|_| Span::call_site());
             quote! { #items #form }
         }
-        Err(found) => report::in_file(&found, &source, place),
+        Err(found) => report::in_file(&found, &source, place, &places),
     };
     let (watch, watch_tables) = (files.watch(), tables.watch());
     quote! { #items #watch #watch_tables }
@@ -77,6 +77,8 @@ struct Called {
     path: String,
     place: Span,
     given: Vec<Given>,
+    /// The names of the constants, and where they stand.
+    places: Vec<(String, Span)>,
 }
 
 impl Called {
@@ -86,11 +88,12 @@ impl Called {
                             relative to the crate's Cargo.toml";
         const CONSTANT: &str = "expected a constant and its value\nhelp: write `ntg_file!(\"specs/name.ntg\", n = 50)`, \
                                 or with a unit `g = 3.7 [m/s^2]`";
+        const TWICE: &str = "this constant is set twice\nhelp: remove one of the two";
         let mut tokens = argument.into_iter();
         let first = tokens.next();
         let place = first.as_ref().map_or_else(Span::call_site, TokenTree::span);
         let literal = syn::parse2::<syn::LitStr>(first.into_iter().collect()).map_err(|_| (PATH, place))?;
-        let mut called = Self { path: literal.value(), place: literal.span(), given: vec![] };
+        let mut called = Self { path: literal.value(), place: literal.span(), given: vec![], places: vec![] };
         let mut last = tokens.next();
         while let Some(comma) = last.take() {
             if !is_mark(&comma, ',') {
@@ -109,6 +112,10 @@ impl Called {
             if !is_set || value.is_empty() {
                 return Err((CONSTANT, place));
             }
+            if called.given.iter().any(|given| name.to_string() == given.name) {
+                return Err((TWICE, place));
+            }
+            called.places.push((name.to_string(), place));
             called.given.push(Given { name: name.to_string(), text: value.to_string() });
         }
         Ok(called)

@@ -24,9 +24,14 @@ pub(crate) fn inline(found: &Diagnostics, source: &Source, map: &SpanMap) -> Tok
         .collect()
 }
 
-/// The findings in a spec file, all under the path in the macro's call.
-pub(crate) fn in_file(found: &Diagnostics, source: &Source, path: Span) -> TokenStream {
-    errors(found).map(|finding| error(&as_picture(finding, source), (path, path))).collect()
+/// The findings in a spec file, all under the path in the macro's call, or under the constant there that they are about.
+pub(crate) fn in_file(found: &Diagnostics, source: &Source, path: Span, constants: &[(String, Span)]) -> TokenStream {
+    let place = |finding: &Diagnostic| {
+        let about =
+            |name: &str| [format!("`{name}`"), format!("`{name} = ")].iter().any(|text| finding.message.contains(text));
+        constants.iter().find(|(name, _)| about(name)).map_or(path, |(_, place)| *place)
+    };
+    errors(found).map(|finding| error(&as_picture(finding, source), (place(finding), place(finding)))).collect()
 }
 
 /// An error in words under the tokens `first ..= last`.

@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// A map that is looked up and never iterated.
-pub(super) type Map<K, V> = HashMap<K, V, BuildHasherDefault<Mixer>>;
+pub type Map<K, V> = HashMap<K, V, BuildHasherDefault<Mixer>>;
 
 /// A set that is looked up and never iterated.
 pub(super) type Set<K> = HashSet<K, BuildHasherDefault<Mixer>>;
@@ -21,7 +21,7 @@ const TURN: u32 = 26;
 
 /// The hasher; see the module's header.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Mixer(u64);
+pub struct Mixer(u64);
 
 impl Hasher for Mixer {
     fn finish(&self) -> u64 {

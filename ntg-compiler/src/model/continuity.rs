@@ -11,7 +11,7 @@ use super::problem::{At, Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt};
 use super::scope::{Allow, Context, Point};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{ItemKind, Segment};
+use crate::syntax::ast::{ItemKind, Path, Segment};
 
 /// Where two phases meet.
 struct Junction {
@@ -67,8 +67,8 @@ impl<'a> Elaborator<'a> {
         for item in self.items[self.phases[phase].scope] {
             match &item.kind {
                 ItemKind::Jump(jump) => {
-                    for segment in &jump.outputs {
-                        if let Some((output, member)) = self.junction_output(&cx, phase, segment) {
+                    for path in &jump.outputs {
+                        if let Some((output, member)) = self.junction_path(&cx, phase, path) {
                             limits.push((output, member, 0));
                         }
                     }
@@ -77,8 +77,8 @@ impl<'a> Elaborator<'a> {
                     let Some(up_to) = self.natural(&cx, &continuous.up_to, "the order of a derivative") else {
                         continue;
                     };
-                    for segment in &continuous.outputs {
-                        let Some((output, member)) = self.junction_output(&cx, phase, segment) else { continue };
+                    for path in &continuous.outputs {
+                        let Some((output, member)) = self.junction_path(&cx, phase, path) else { continue };
                         let declared = &self.problem.phases[phase].outputs[output];
                         if up_to < declared.spline.order {
                             limits.push((output, member, up_to + 1));
@@ -97,6 +97,19 @@ impl<'a> Elaborator<'a> {
             }
         }
         limits
+    }
+
+    /// What a path leads to in a phase that it is written in: paths into scenarios are names of arrays by now.
+    fn junction_path(&mut self, cx: &Context<'a>, phase: usize, path: &'a Path) -> Option<(usize, Option<i64>)> {
+        let (first, rest) = path.segments.split_first()?;
+        if rest.is_empty() {
+            return self.junction_output(cx, phase, first);
+        }
+        let text = self.text(path.span);
+        let message = format!("there is no output `{text}` in this phase");
+        let finding = Diagnostic::new(Code::UnknownName, path.span, message);
+        self.report(finding.help("write the name of an output of this phase alone"));
+        None
     }
 
     pub(super) fn junction_output(

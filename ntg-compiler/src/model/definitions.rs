@@ -123,8 +123,8 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Holds a value against the unit declared for it.
-    pub(super) fn declared_unit(&mut self, mut value: Value, unit: &ast::Unit, what: &str) -> Value {
-        let Some((quantity, shown)) = self.unit(unit) else { return self.poison(value.span) };
+    pub(super) fn declared_unit(&mut self, mut value: Value, unit: &'a ast::Unit, what: &str) -> Value {
+        let Some((quantity, shown)) = self.shared_unit(unit) else { return self.poison(value.span) };
         if let Some(dimension) = value.dimension
             && dimension != quantity.dimension
         {
@@ -141,21 +141,20 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding, value.span);
         }
         value.dimension = Some(quantity.dimension);
-        value.unit = Some(Rc::new(shown));
+        value.unit = Some(shown);
         value
     }
 
     /// A definition's value where it is used: what is misplaced in it is misplaced here.
     fn used(&mut self, mut value: Value, event: bool, span: Span) -> Value {
-        let name = self.text(span);
         if let Some(Flaw::Misplaced(inner)) = &value.flaw {
             let because = (inner.span, format!("because of `{}` here", inner.text));
             let because = inner.because.clone().unwrap_or(because);
-            let misplaced = Misplaced { span, what: inner.what, text: name.clone(), because: Some(because) };
+            let misplaced = Misplaced { span, what: inner.what, text: self.text(span), because: Some(because) };
             value.flaw = Some(Flaw::Misplaced(Rc::new(misplaced)));
         }
         if event {
-            self.mark_event(span, name, false);
+            self.mark_event(span, self.text(span), false);
         }
         value.at(span)
     }

@@ -1,9 +1,8 @@
-//! The equations of motion: how often they differentiate each state, and whether there are as many as are needed.
+//! The equations of motion: whether there are as many as are needed.
 //!
 //! Takes `dynamics` blocks, pushes their rows as constraints of the trajectory, and the bounds of declarations beside.
 //! Finds: more or fewer equations than elements of states, states without a derivative, relations that are no equations.
 
-use std::collections::HashSet;
 use std::rc::Rc;
 
 use ntg_structure::Block;
@@ -12,179 +11,15 @@ use super::check::members;
 use super::constraints::Site;
 use super::elaborator::Elaborator;
 use super::problem::{At, Constraint, Domain, Form, Leaf, Part};
-use super::scope::{Allow, Context, Entity, Point, ScopeId, look_up};
+use super::scope::{Allow, Context, Point, ScopeId};
 use super::settle::Use;
 use super::shape::{Ends, Shape};
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{
-    self, BlockPlace, Comparison, Expr, ExprKind, ItemKind, OutputName, Relation, Role, Statement,
-};
-
-/// The most places that are looked at for the derivatives of a state: beyond it, elaboration refuses the functions.
-const MOST_LOOKS: usize = 100_000;
-
-/// What the names of a function's parameters stand for, in the function around it.
-struct Frame<'a> {
-    arguments: Vec<(&'a str, &'a Expr)>,
-    outer: Option<Rc<Frame<'a>>>,
-    /// Where other names are looked up.
-    scope: ScopeId,
-    /// Whether it is a step of a value: names that it does not have are those of the frame around it.
-    is_step: bool,
-}
-
-/// An expression that is going to be differentiated so often.
-struct Look<'a> {
-    expr: &'a Expr,
-    around: usize,
-    frame: Option<Rc<Frame<'a>>>,
-}
+use crate::syntax::ast::{self, Comparison, ItemKind, OutputName, Relation, Role, Statement};
 
 impl<'a> Elaborator<'a> {
-    /// The highest derivative of a state in the equations of a phase, definitions and functions inserted.
-    pub(super) fn highest_rate(&mut self, phase: usize, name: &str) -> usize {
-        let scope = self.phases[phase].scope;
-        let mut open: Vec<Look<'a>> = Vec::new();
-        for block in self.equation_blocks(phase) {
-            sides(&block.statements, &mut |expr| open.push(Look { expr, around: 0, frame: None }));
-        }
-        let mut seen: HashSet<(*const Expr, usize, *const Frame<'a>)> = HashSet::new();
-        let mut highest = 0;
-        // Frames are told apart by their address, so none is given back before the end.
-        let mut kept: Vec<Rc<Frame<'a>>> = Vec::new();
-        while let Some(look) = open.pop() {
-            if seen.len() > MOST_LOOKS {
-                break; // Functions that double one another: told of where they are applied.
-            }
-            kept.extend(look.frame.clone());
-            let frame = look.frame.as_ref().map_or(std::ptr::null(), Rc::as_ptr);
-            if seen.insert((std::ptr::from_ref(look.expr), look.around, frame)) {
-                self.look_for_rate(scope, name, &look, &mut open, &mut highest);
-            }
-        }
-        highest
-    }
-
-    fn look_for_rate(
-        &mut self,
-        scope: ScopeId,
-        name: &str,
-        look: &Look<'a>,
-        open: &mut Vec<Look<'a>>,
-        highest: &mut usize,
-    ) {
-        let Look { expr, around, frame } = look;
-        let own = scope;
-        let scope = frame.as_ref().map_or(scope, |frame| frame.scope);
-        let mut also = |expr: &'a Expr| open.push(Look { expr, around: *around, frame: frame.clone() });
-        match &expr.kind {
-            ExprKind::Path(path) => {
-                let [only] = path.segments.as_slice() else { return };
-                let text = only.name.text.as_str();
-                let mut next = frame.clone();
-                while let Some(frame) = next {
-                    let argument = frame.arguments.iter().find(|(name, _)| *name == text);
-                    if let Some((_, expr)) = argument {
-                        return open.push(Look { expr, around: *around, frame: frame.outer.clone() });
-                    }
-                    next = frame.outer.clone().filter(|_| frame.is_step);
-                }
-                match look_up(&self.scopes, scope, text).map(|(_, declared)| declared.entity) {
-                    Some(Entity::Output) if text == name => *highest = (*highest).max(*around),
-                    Some(Entity::Definition(definition)) => {
-                        let expr = self.definitions[definition].value;
-                        open.push(Look { expr, around: *around, frame: None });
-                    }
-                    _ => {}
-                }
-            }
-            ExprKind::Der { of, order } => {
-                let times = order.as_ref().map_or(Some(1), |order| self.quiet_whole(scope, order));
-                let around = around + times.and_then(|times| usize::try_from(times).ok()).unwrap_or(1);
-                // More than any spline has: told of where the derivative is taken.
-                const MOST: usize = 32;
-                if around <= MOST {
-                    open.push(Look { expr: of, around, frame: frame.clone() });
-                }
-            }
-            ExprKind::Neg(inner) => also(inner),
-            ExprKind::Tuple(elements) => elements.iter().for_each(also),
-            ExprKind::Sum(terms) => terms.iter().for_each(|(_, term)| also(term)),
-            ExprKind::Product(factors) => factors.iter().for_each(|(_, factor)| also(factor)),
-            ExprKind::Power(base, exponent) => [&**base, &**exponent].into_iter().for_each(also),
-            ExprKind::Reduce(reduction) => {
-                also(&reduction.body);
-                reduction.width.iter().for_each(also);
-            }
-            ExprKind::Call(call) | ExprKind::Partial { of: call, .. } => {
-                let entity = look_up(&self.scopes, scope, &call.function.text).map(|(_, declared)| declared.entity);
-                let Some(Entity::Function(function)) = entity else { return call.arguments.iter().for_each(also) };
-                let declared = self.functions[function].function;
-                let names = declared.parameters.iter().map(|parameter| parameter.name.text.as_str());
-                let arguments = names.zip(&call.arguments).collect();
-                let around_it = std::iter::successors(frame.clone(), |frame| frame.outer.clone());
-                let depth = around_it.filter(|frame| !frame.is_step).count();
-                const DEEPEST: usize = 64;
-                if depth < DEEPEST {
-                    let home = self.functions[function].scope;
-                    let scope = if self.scopes[home].is_library { home } else { own };
-                    let inner = Rc::new(Frame { arguments, outer: frame.clone(), scope, is_step: false });
-                    open.push(Look { expr: &declared.body, around: *around, frame: Some(inner) });
-                }
-            }
-            ExprKind::If(conditional) => {
-                conditional.branches.iter().for_each(|branch| {
-                    branch.condition.sides().into_iter().for_each(&mut also);
-                    also(&branch.value);
-                });
-                also(&conditional.otherwise);
-            }
-            ExprKind::Steps(steps) => {
-                let mut frame = frame.clone();
-                for step in &steps.lets {
-                    let arguments = vec![(step.name.text.as_str(), &step.value)];
-                    frame = Some(Rc::new(Frame { arguments, outer: frame, scope, is_step: true }));
-                }
-                open.push(Look { expr: &steps.value, around: *around, frame });
-            }
-            ExprKind::Number(_)
-            | ExprKind::Pi
-            | ExprKind::Time
-            | ExprKind::ScaledTime
-            | ExprKind::File(_)
-            | ExprKind::Rows(_)
-            | ExprKind::Integral { .. }
-            | ExprKind::Boundary { .. }
-            | ExprKind::Event { .. } => {}
-        }
-    }
-
-    /// The order of a derivative; what is wrong with it is told where it is taken.
-    fn quiet_whole(&mut self, scope: ScopeId, order: &'a Expr) -> Option<i64> {
-        if let Some(number) = order.signed_literal() {
-            return Some(number.value as i64);
-        }
-        self.whole(&Context::of(scope, Allow::Constants), order, "the order of a derivative")
-    }
-
-    /// The blocks of equations that hold in a phase: its own, and those of its agent.
-    fn equation_blocks(&self, phase: usize) -> Vec<&'a ast::Block> {
-        let (scope, agent) = (self.phases[phase].scope, self.phases[phase].agent);
-        let common = self.agents[agent].scope;
-        let mut scopes = vec![common];
-        if scope != common {
-            scopes.push(scope);
-        }
-        let items = scopes.into_iter().flat_map(|scope| self.items[scope]);
-        let blocks = items.filter_map(|item| match &item.kind {
-            ItemKind::Block(block) if block.place == BlockPlace::Dynamics => Some(block),
-            _ => None,
-        });
-        blocks.collect()
-    }
-
     /// The equations of a block in one phase, counted.
     pub(super) fn dynamics(&mut self, scope: ScopeId, phase: usize, block: &'a ast::Block) {
         self.only_equations(&block.statements);
@@ -376,16 +211,6 @@ impl<'a> Elaborator<'a> {
                 body: body.value.node,
                 bounds: body.bounds,
             });
-        }
-    }
-}
-
-/// Calls `visit` with both sides of every relation.
-fn sides<'a>(statements: &'a [Statement<ast::Constraint>], visit: &mut dyn FnMut(&'a Expr)) {
-    for statement in statements {
-        match statement {
-            Statement::For(inner) => sides(&inner.body, visit),
-            Statement::One(constraint) => constraint.relation.sides().into_iter().for_each(&mut *visit),
         }
     }
 }

@@ -19,13 +19,14 @@ use super::dimension::Dimension;
 use super::files::Contents;
 use super::kinds::Kinds;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
+use super::rates::{FunctionNeeds, Rates};
 use super::scope::{Context, Declared, Entity, Scope, ScopeId};
 use super::shape::{Ends, FunctionKey, Shape};
 use super::soft::Slack;
 use super::units::{self, Quantity};
 use super::value::{Flaw, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::NodeId;
+use crate::expr::{Map, NodeId};
 use crate::source::{Source, Span};
 use crate::syntax::ast;
 
@@ -148,22 +149,28 @@ pub(super) struct Elaborator<'a> {
     pub(super) domain: Option<&'a ast::IndependentVariable>,
     /// The functions being inlined.
     pub(super) inlining: Vec<usize>,
-    pub(super) memo: HashMap<MemoKey, Memo>,
+    pub(super) memo: Map<MemoKey, Memo>,
     /// The members of definitions that are being elaborated, each inside the one before.
     pub(super) members: Vec<(usize, Vec<Form>)>,
     /// Axes of parameters, of variables, and of the outputs of each phase.
     pub(super) parameter_axes: Vec<Vec<Ends>>,
     pub(super) variable_axes: Vec<Vec<Ends>>,
     pub(super) output_axes: Vec<Vec<Vec<Ends>>>,
+    /// Where the outputs of a phase stand among them, and their units.
+    output_places: Map<(usize, &'a str), (usize, Rc<Unit>)>, // Looked up, never iterated.
+    /// The units of parameters.
+    parameter_units: Map<usize, Rc<Unit>>, // Looked up, never iterated.
     /// Shapes of the members of definitions in each scope, and of functions.
-    pub(super) member_shapes: HashMap<(usize, ScopeId), Option<Shape>>, // Looked up, never iterated.
-    pub(super) function_shapes: HashMap<FunctionKey, Option<Shape>>, // Looked up, never iterated.
+    pub(super) member_shapes: Map<(usize, ScopeId), Option<Shape>>, // Looked up, never iterated.
+    /// The axes of definitions with a size, where these are numbers.
+    pub(super) written_axes: Map<(usize, ScopeId), Vec<Ends>>, // Looked up, never iterated.
+    pub(super) function_shapes: Map<FunctionKey, Option<Shape>>, // Looked up, never iterated.
     /// The definitions whose shapes are being looked for, and whether one needs its own.
     pub(super) shaping: Vec<usize>,
     pub(super) recurs: bool,
     pub(super) unknown_indices: u32,
     /// The sums of squares of which nodes are the roots.
-    pub(super) squares: HashMap<NodeId, NodeId>, // Looked up, never iterated.
+    pub(super) squares: Map<NodeId, NodeId>, // Looked up, never iterated.
     /// An index that something settled must know.
     pub(super) opened: Option<OpenIndex>,
     pub(super) kinds: Kinds,
@@ -180,6 +187,14 @@ pub(super) struct Elaborator<'a> {
     pub(super) slacks: Vec<Slack>,
     /// How many equations `dynamics` has in each phase, where it has any.
     pub(super) equations: HashMap<usize, i64>, // Looked up, never iterated.
+    /// The units that were read, by their address in the syntax tree.
+    units: Map<*const ast::Unit, (Quantity, Rc<Unit>)>, // Looked up, never iterated.
+    /// How often the equations of each phase differentiate its states, where that was asked.
+    pub(super) rates: Map<usize, Rates<'a>>, // Looked up, never iterated.
+    pub(super) function_needs: FunctionNeeds<'a>,
+    /// How many expressions were looked at for that, and how many were elaborated: what tests of growth count.
+    pub(super) looks: usize,
+    pub(super) elaborated: usize,
     reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
     pub(super) next_index: u32,
     pub(super) next_symbol: u32,
@@ -222,17 +237,20 @@ impl<'a> Elaborator<'a> {
             time: Dimension::TIME,
             domain: None,
             inlining: Vec::new(),
-            memo: HashMap::new(),
+            memo: Map::default(),
             members: Vec::new(),
             parameter_axes: Vec::new(),
             variable_axes: Vec::new(),
             output_axes: Vec::new(),
-            member_shapes: HashMap::new(),
-            function_shapes: HashMap::new(),
+            output_places: Map::default(),
+            parameter_units: Map::default(),
+            member_shapes: Map::default(),
+            written_axes: Map::default(),
+            function_shapes: Map::default(),
             shaping: Vec::new(),
             recurs: false,
             unknown_indices: 0,
-            squares: HashMap::new(),
+            squares: Map::default(),
             opened: None,
             kinds: Kinds::default(),
             found: Vec::new(),
@@ -242,6 +260,11 @@ impl<'a> Elaborator<'a> {
             objective_dimension: None,
             slacks: Vec::new(),
             equations: HashMap::new(),
+            units: Map::default(),
+            rates: Map::default(),
+            function_needs: HashMap::new(),
+            looks: 0,
+            elaborated: 0,
             reported: HashSet::new(),
             next_index: 0,
             next_symbol: 0,
@@ -273,6 +296,7 @@ impl<'a> Elaborator<'a> {
     /// Counts one step of elaboration; refuses when there were too many or they nest too deeply.
     pub(super) fn enter(&mut self, span: Span) -> bool {
         self.depth += 1;
+        self.elaborated += 1;
         // Only functions inside functions can make more of a spec than its text.
         self.steps += usize::from(!self.inlining.is_empty());
         if self.steps > MAX_STEPS {
@@ -290,6 +314,7 @@ impl<'a> Elaborator<'a> {
     /// As `enter`, for what takes no step: looking for a shape.
     pub(super) fn deeper(&mut self, span: Span) -> bool {
         self.depth += 1;
+        self.elaborated += 1;
         self.is_shallow(span)
     }
 
@@ -360,9 +385,23 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The meaning of a unit; what is wrong with it is told.
-    pub(super) fn unit(&mut self, unit: &ast::Unit) -> Option<(Quantity, Unit)> {
+    pub(super) fn unit(&mut self, unit: &'a ast::Unit) -> Option<(Quantity, Unit)> {
+        self.shared_unit(unit).map(|(quantity, shown)| (quantity, (*shown).clone()))
+    }
+
+    /// As [`Self::unit`]: a unit in the text is read once, however often what it stands at is elaborated.
+    pub(super) fn shared_unit(&mut self, unit: &'a ast::Unit) -> Option<(Quantity, Rc<Unit>)> {
+        if let Some(known) = self.units.get(&std::ptr::from_ref(unit)) {
+            return Some(known.clone());
+        }
+        let read = self.read_unit(unit)?;
+        self.units.insert(unit, read.clone());
+        Some(read)
+    }
+
+    fn read_unit(&mut self, unit: &ast::Unit) -> Option<(Quantity, Rc<Unit>)> {
         match units::quantity(unit) {
-            Ok(quantity) => Some((quantity, units::shown(unit, &quantity, self.source))),
+            Ok(quantity) => Some((quantity, Rc::new(units::shown(unit, &quantity, self.source)))),
             Err(finding) => {
                 // A constant in brackets was meant as a size.
                 let finding = match unit.factors.as_slice() {
@@ -377,6 +416,24 @@ impl<'a> Elaborator<'a> {
                 None
             }
         }
+    }
+
+    /// Where an output of a phase stands among them, and its unit.
+    pub(super) fn output_named(&mut self, phase: usize, name: &'a str) -> Option<(usize, Rc<Unit>)> {
+        if let Some(known) = self.output_places.get(&(phase, name)) {
+            return Some(known.clone());
+        }
+        let outputs = &self.problem.phases.get(phase)?.outputs;
+        let place = outputs.iter().position(|output| output.name == name)?;
+        let known = (place, Rc::new(outputs[place].unit.clone()));
+        self.output_places.insert((phase, name), known.clone());
+        Some(known)
+    }
+
+    /// The unit of a parameter that was declared.
+    pub(super) fn parameter_unit(&mut self, parameter: usize) -> Rc<Unit> {
+        let unit = &self.problem.parameters[parameter].unit;
+        self.parameter_units.entry(parameter).or_insert_with(|| Rc::new(unit.clone())).clone()
     }
 
     /// Declares a name in a scope; tells where that is the second time.

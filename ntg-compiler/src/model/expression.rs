@@ -4,8 +4,6 @@
 //! Finds: sums of different dimensions, exponents that leave no dimension.
 //! Sums and products are loops, so their length costs no stack.
 
-use std::rc::Rc;
-
 use super::dimension::{Dimension, Ratio};
 use super::elaborator::Elaborator;
 use super::problem::Form;
@@ -67,7 +65,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn number(&mut self, number: &Number, span: Span) -> Value {
+    fn number(&mut self, number: &'a Number, span: Span) -> Value {
         let Some(unit) = &number.unit else {
             let node = self.problem.dag.constant(number.value);
             let mut value = Value::new(node, Dimension::NONE, span);
@@ -76,7 +74,7 @@ impl<'a> Elaborator<'a> {
             }
             return value;
         };
-        let Some((quantity, shown)) = self.unit(unit) else { return self.poison(span) };
+        let Some((quantity, shown)) = self.shared_unit(unit) else { return self.poison(span) };
         let si = number.value * quantity.factor;
         if !si.is_finite() {
             let finding = Diagnostic::new(Code::NotFinite, span, "this number is too large in SI units")
@@ -84,7 +82,7 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding, span);
         }
         let node = self.problem.dag.constant(si);
-        Value::new(node, quantity.dimension, span).shown_in(Some(Rc::new(shown)))
+        Value::new(node, quantity.dimension, span).shown_in(Some(shown))
     }
 
     fn sum(&mut self, cx: &Context<'a>, terms: &'a [(Sign, Expr)], at: &[Form], span: Span) -> Value {
@@ -163,6 +161,12 @@ impl<'a> Elaborator<'a> {
         for (number, other) in [(a, b), (b, a)] {
             if number.dimension == Some(Dimension::NONE) {
                 let text = self.grouped(number.span);
+                if text.ends_with(']') {
+                    let unit = unit_of(other);
+                    return format!(
+                        "a unit behind a list is that of its bare numbers; a formula in it is multiplied by `1 [{unit}]`"
+                    );
+                }
                 return format!("multiply the pure number by a unit: `{text} * 1 [{}]`", unit_of(other));
             }
         }

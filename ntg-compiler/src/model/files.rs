@@ -143,7 +143,7 @@ impl<'a> Elaborator<'a> {
         Value::new(node, Dimension::NONE, span)
     }
 
-    fn unit_of_file(&mut self, unit: Option<&Unit>) -> Option<(Quantity, Option<ntg_structure::Unit>)> {
+    fn unit_of_file(&mut self, unit: Option<&'a Unit>) -> Option<(Quantity, Option<ntg_structure::Unit>)> {
         match unit {
             None => Some((PURE, None)),
             Some(unit) => self.unit(unit).map(|(quantity, shown)| (quantity, Some(shown))),

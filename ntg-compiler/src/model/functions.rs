@@ -18,7 +18,7 @@ use super::value::{Flaw, Misplaced, Value, What};
 use super::vectors::{VECTOR_FUNCTIONS, vector_function};
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{NodeId, Unary};
-use crate::syntax::ast::Call;
+use crate::syntax::ast::{Call, Expr, ExprKind};
 
 /// A function of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +97,12 @@ const HABITS: &[(&str, &str)] = &[
     ("sec", "1 / cos(x)"),
     ("sigmoid", "logistic(x)"),
     ("diff", "der(x)"),
+    ("ddt", "der(x)"),
+    ("derivative", "der(x)"),
+    ("vertcat", "(x, y)"),
+    ("horzcat", "((a, b), (c, d))"),
+    ("if_else", "if a <= b { x } else { y }"),
+    ("linspace", "a + (b - a) * tau"),
     ("int", "integral(x)"),
     ("d", "der(x)"),
     ("sumsqr", "dot(u, u)"),
@@ -174,7 +180,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    pub(super) fn no_function(&mut self, cx: &Context<'a>, call: &Call, entity: Option<Entity>) -> Value {
+    pub(super) fn no_function(&mut self, cx: &Context<'a>, call: &'a Call, entity: Option<Entity>) -> Value {
         let name = call.function.text.as_str();
         let span = call.function.span;
         if let Some(entity) = entity {
@@ -189,6 +195,9 @@ impl<'a> Elaborator<'a> {
             let has_members = self.axes_of(cx, entity, name).is_some_and(|axes| !axes.is_empty());
             let help = match call.arguments.as_slice() {
                 [only] if has_members => format!("an element is `{name}[{}]`", self.text(only.span)),
+                [Expr { kind: ExprKind::Number(_), .. }] if entity == Entity::Output => {
+                    format!("at an end write `initial({name})` or `final({name})`; to multiply, write `{name} * (...)`")
+                }
                 _ => format!("to multiply, write `{name} * (...)`"),
             };
             return self.refuse(finding.help(help), call.span);

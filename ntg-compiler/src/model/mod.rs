@@ -24,6 +24,8 @@ mod expression;
 mod files;
 mod functions;
 mod given;
+#[cfg(test)]
+mod growth;
 mod guess;
 mod independent;
 mod kinds;
@@ -42,6 +44,7 @@ mod periodic;
 mod places;
 pub mod problem;
 mod quantities;
+mod rates;
 mod reductions;
 mod rename;
 mod repeat;

@@ -229,7 +229,7 @@ impl<'a> Elaborator<'a> {
         if declared.name.is_empty() {
             return self.poison(span); // Its declaration was refused.
         }
-        let unit = Some(Rc::new(declared.unit.clone()));
+        let unit = Some(self.parameter_unit(parameter));
         let axes = self.parameter_axes[parameter].clone();
         let Some(index) = self.array_member(cx, segment, &axes, at) else { return self.poison(span) };
         let node = self.leaf(Leaf::Parameter { parameter, index });
@@ -246,9 +246,7 @@ impl<'a> Elaborator<'a> {
         // Without a phase its dimension is the one of any phase of the agent.
         let agent_phase = || self.scopes[cx.scope].agent.and_then(|a| self.agents[a].phases.first().copied());
         let Some(home) = phase.or_else(agent_phase) else { return self.poison(span) };
-        let outputs = self.problem.phases.get(home).map(|phase| phase.outputs.as_slice()).unwrap_or_default();
-        let Some(output) = outputs.iter().position(|o| o.name == text) else { return self.poison(span) };
-        let unit = outputs[output].unit.clone();
+        let Some((output, unit)) = self.output_named(home, text) else { return self.poison(span) };
         let axes = self.output_axes[home][output].clone();
         let dimension = self.output_dimensions[home][output];
         let Some(index) = self.array_member(cx, segment, &axes, at) else { return self.poison(span) };
@@ -266,7 +264,7 @@ impl<'a> Elaborator<'a> {
             }
         };
         let node = self.leaf(Leaf::Flat { phase: cx.phase_at(home), at, output, index, order: 0 });
-        Value::new(node, dimension, span).shown_in(Some(Rc::new(unit)))
+        Value::new(node, dimension, span).shown_in(Some(unit))
     }
 
     /// Which member of an array is meant, if it is one; the outer option is none where something is wrong with the

@@ -144,7 +144,9 @@ impl<'a> Elaborator<'a> {
                 None => Some(1),
             };
             let last = self.whole(cx, &axis.last, "the last index of an array");
-            axes.push(Ends::between(first.unwrap_or(1), last.unwrap_or(0)));
+            // One element in place of a size that is wrong: what follows would only repeat that.
+            let first = first.unwrap_or(1);
+            axes.push(Ends::between(first, last.unwrap_or(first)));
         }
         axes
     }

@@ -137,6 +137,11 @@ impl<'a> Elaborator<'a> {
     /// Tells of an expression at another time than that at which it stands.
     pub(super) fn delay(&mut self, span: Span, what: &str) -> Value {
         let text = self.text(span);
+        if text == format!("{what}(t)") {
+            let message = format!("`{what}` is a function of time without saying so");
+            let finding = Diagnostic::new(Code::NoFunction, span, message);
+            return self.refuse(finding.help(format!("write `{what}`")), span);
+        }
         let message = format!("a delay is not in the language: `{text}`");
         let help = format!(
             "a chain of states approximates it: `der(z1) == 2 * ({what} - z1) / d`, `der(z2) == 2 * (z1 - z2) / d`, ..."

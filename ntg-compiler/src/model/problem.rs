@@ -5,12 +5,10 @@
 //! with `program`. Arrays, loops, phases and agents are families: an index is a [`Form`] in
 //! [`IndexId`]s, and whoever holds an expression also holds the [`Loop`]s that bind its indices.
 
-use std::collections::HashMap;
-
 use ntg_structure::{Block, Independent, Parameter, Shared, Spline, Table, Unit};
 
 use crate::diagnostic::Diagnostic;
-use crate::expr::{Dag, InputId, NodeId};
+use crate::expr::{Dag, InputId, Map, NodeId};
 use crate::source::Span;
 
 /// A loop index, unique in the whole problem.
@@ -106,7 +104,7 @@ pub enum Leaf {
 #[derive(Clone, Debug, Default)]
 pub struct Leaves {
     list: Vec<Leaf>,
-    ids: HashMap<Leaf, InputId>, // Looked up, never iterated.
+    ids: Map<Leaf, InputId>, // Looked up, never iterated.
 }
 
 impl Leaves {
@@ -414,7 +412,7 @@ pub struct Problem {
     /// `IndexId(index)`, and `ranges[range]` has that index too.
     pub ranges: Vec<Loop>,
     /// Where a node was first written.
-    pub origin: HashMap<NodeId, Span>,
+    pub origin: Map<NodeId, Span>,
     /// Whether the spec says `maximize`.
     pub maximize: bool,
     /// The unit of the objective.

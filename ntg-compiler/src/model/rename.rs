@@ -115,6 +115,19 @@ impl<'n> Rename<'n> {
         }
     }
 
+    /// `plant.x`, which is about all members, or `plant[2].x`.
+    fn all_members(&mut self, path: &mut Path) {
+        let is_whole = matches!(path.segments.as_slice(), [scenario, own] if scenario.indices.is_empty()
+            && self.scenarios.get(&scenario.name.text).is_some_and(|names| names.contains(&own.name.text)));
+        if !is_whole {
+            return self.path(path);
+        }
+        let scenario = path.segments.remove(0);
+        let segment = &mut path.segments[0];
+        segment.name.text = array(&scenario.name.text, &segment.name.text);
+        segment.span = scenario.span.to(segment.span);
+    }
+
     fn indices(&mut self, indices: &mut [Index]) {
         for index in indices {
             self.expr(&mut index.first);
@@ -174,12 +187,12 @@ impl<'n> Rename<'n> {
                 self.statements(&mut it.statements, &mut Self::constraint);
             }
             ItemKind::Guess(it) => self.statements(&mut it.statements, &mut Self::guess),
+            ItemKind::Jump(it) => it.outputs.iter_mut().for_each(|output| self.all_members(output)),
+            ItemKind::Continuous(it) => it.outputs.iter_mut().for_each(|output| self.all_members(output)),
             ItemKind::Shared(it) => it.until.iter_mut().for_each(|until| self.expr(until)),
             ItemKind::Table(_)
             | ItemKind::Domain(_)
             | ItemKind::Scenario(_)
-            | ItemKind::Jump(_)
-            | ItemKind::Continuous(_)
             | ItemKind::Periodic(_)
             | ItemKind::Collocation(_) => {}
         }

@@ -40,12 +40,15 @@ pub(super) fn scenarios(items: &[Item]) -> Vec<(&Scenario, Span)> {
 /// Tells of the names of scenarios as they are written there, not as those of their arrays.
 pub(super) fn in_own_words(finding: &mut Diagnostic, scenarios: &[(&Scenario, Span)]) {
     let holds = |span: &Span| span.start <= finding.span.start && finding.span.end <= span.end;
+    // `jump` and `continuous` are about all members.
+    let is_whole = finding.message.starts_with("there is no output");
     for (scenario, span) in scenarios {
         let is_inside = holds(span);
         for name in scenario.items.iter().flat_map(|item| declared(&item.kind)) {
             let written = format!("`{}`", array(&scenario.name.text, &name.text));
             let meant = match is_inside {
                 true => format!("`{}`", name.text),
+                false if is_whole => format!("`{}.{}`", scenario.name.text, name.text),
                 false => format!("`{}[{}].{}`", scenario.name.text, scenario.family.index.text, name.text),
             };
             let texts = std::iter::once(&mut finding.message).chain(&mut finding.help);

@@ -50,7 +50,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The axes of what a name stands for.
-    pub(super) fn axes_of(&mut self, cx: &Context<'a>, entity: Entity, name: &str) -> Option<Vec<Ends>> {
+    pub(super) fn axes_of(&mut self, cx: &Context<'a>, entity: Entity, name: &'a str) -> Option<Vec<Ends>> {
         match entity {
             Entity::Definition(definition) => self.definition_axes(cx, definition),
             Entity::Parameter(parameter) => Some(self.parameter_axes.get(parameter).cloned().unwrap_or_default()),
@@ -61,12 +61,11 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The axes of an output seen from a context.
-    fn output_axes_of(&self, cx: &Context<'a>, name: &str) -> Vec<Ends> {
+    fn output_axes_of(&mut self, cx: &Context<'a>, name: &'a str) -> Vec<Ends> {
         let scope = &self.scopes[cx.scope];
         let home = scope.phase.or_else(|| self.agents[scope.agent?].phases.first().copied());
         let Some(home) = home else { return Vec::new() };
-        let outputs = self.problem.phases.get(home).map(|phase| phase.outputs.as_slice()).unwrap_or_default();
-        let Some(output) = outputs.iter().position(|output| output.name == name) else { return Vec::new() };
+        let Some((output, _)) = self.output_named(home, name) else { return Vec::new() };
         self.output_axes.get(home).and_then(|axes| axes.get(output)).cloned().unwrap_or_default()
     }
 
@@ -115,6 +114,21 @@ impl<'a> Elaborator<'a> {
 
     /// The axes of a definition: those of its family, then those of its members.
     pub(super) fn definition_axes(&mut self, cx: &Context<'a>, definition: usize) -> Option<Vec<Ends>> {
+        let declared = self.definitions[definition].shape;
+        // Sizes that are written mean the same wherever no member of a family is around.
+        let is_free = declared.is_some() && cx.agent.is_none() && cx.phase.is_none();
+        let key = (definition, cx.scope);
+        if let Some(known) = self.written_axes.get(&key).filter(|_| is_free) {
+            return Some(known.clone());
+        }
+        let axes = self.axes_as_written(cx, definition)?;
+        if is_free && axes.iter().all(|ends| ends.numbers().is_some()) {
+            self.written_axes.insert(key, axes.clone());
+        }
+        Some(axes)
+    }
+
+    fn axes_as_written(&mut self, cx: &Context<'a>, definition: usize) -> Option<Vec<Ends>> {
         let mut axes = Vec::new();
         let declared = self.definitions[definition].shape;
         let outside = self.home(cx, self.definitions[definition].scope);

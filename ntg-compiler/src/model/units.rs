@@ -220,6 +220,11 @@ fn symbol(text: &str) -> Option<Quantity> {
 
 fn unknown(text: &str, span: Span) -> Diagnostic {
     let found = Diagnostic::new(Code::UnknownUnit, span, format!("unknown unit `{text}`"));
+    // `m2` for the square.
+    let base = text.trim_end_matches(|c: char| c.is_ascii_digit());
+    if base.len() < text.len() && symbol(base).is_some() {
+        return found.help(format!("a power has its sign: `{base}^{}`", &text[base.len()..]));
+    }
     let habit = HABITS.iter().find(|(wrong, _)| *wrong == text).map(|(_, right)| *right);
     match habit.or_else(|| nearest(text, SYMBOLS.iter().map(|(symbol, ..)| *symbol))) {
         Some(near) => found.help(format!("did you mean `{near}`?")),

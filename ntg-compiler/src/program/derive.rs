@@ -4,14 +4,12 @@
 //! derivatives, the lower triangle of the weighted second derivatives, the degree of each row, and
 //! the subexpressions to look at when a value is not finite.
 
-use std::collections::HashMap;
-
 use ntg_structure::{Degree as OutDegree, Kernel};
 
 use super::KernelBody;
 use super::kernel::Mode;
 use super::probes::probes;
-use crate::expr::{Dag, Degree, Entry, InputId, NodeId, degree, gradient, hessian};
+use crate::expr::{Dag, Degree, Entry, InputId, Map, NodeId, degree, gradient, hessian};
 use crate::source::Span;
 
 /// Why differentiation cannot fail here.
@@ -22,7 +20,7 @@ pub(super) struct Formulas {
     /// Inputs are the first nodes, in order.
     pub(super) dag: Dag,
     pub(super) values: Vec<NodeId>,
-    pub(super) origin: HashMap<NodeId, Span>, // Looked up, never iterated.
+    pub(super) origin: Map<NodeId, Span>, // Looked up, never iterated.
 }
 
 /// Shape and body of the kernel, and where its probes stand. The shape's name and the body's

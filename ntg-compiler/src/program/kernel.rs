@@ -15,7 +15,7 @@ use super::environment::Environment;
 use super::inputs::Inputs;
 use super::lower::Lowering;
 use super::names::identifier;
-use crate::expr::{Dag, Fold, InputId, Node, NodeId};
+use crate::expr::{Dag, Fold, InputId, Map, Node, NodeId};
 use crate::model::problem::{Leaf, Loop, PhaseAt};
 use crate::source::Span;
 
@@ -41,7 +41,7 @@ pub(super) struct Root<'a> {
 
 /// Makes the kernel (or finds the equal one) and the call for several functions at one place.
 pub(super) fn call(lowering: &mut Lowering<'_>, name: &str, mode: Mode, roots: &[Root<'_>]) -> Call {
-    let mut copy = Copy { lowering, mode, dag: Dag::default(), inputs: Inputs::default(), origin: HashMap::new() };
+    let mut copy = Copy { lowering, mode, dag: Dag::default(), inputs: Inputs::default(), origin: Map::default() };
     let values: Vec<NodeId> = roots.iter().map(|root| copy.expression(root.body, root.loops)).collect();
     let Copy { dag, inputs, origin, .. } = copy;
     let formulas = by_position(&dag, &values, &origin, &inputs);
@@ -57,14 +57,14 @@ pub(super) fn call(lowering: &mut Lowering<'_>, name: &str, mode: Mode, roots: &
 }
 
 /// Copies a graph so that the inputs come first, in their final order.
-fn by_position(dag: &Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>, inputs: &Inputs) -> Formulas {
+fn by_position(dag: &Dag, values: &[NodeId], origin: &Map<NodeId, Span>, inputs: &Inputs) -> Formulas {
     let positions = inputs.positions();
     let mut out = Dag::default();
     for position in 0..positions.len() {
         out.input(InputId(u32::try_from(position).expect("fewer than 2^32 inputs")));
     }
     let mut map: HashMap<NodeId, NodeId> = HashMap::new();
-    let mut spans = HashMap::new();
+    let mut spans = Map::default();
     for id in dag.schedule(values) {
         let new = match dag.node(id) {
             Node::Input(input) => out.input(InputId(positions[input.0 as usize])),
@@ -83,7 +83,7 @@ struct Copy<'a, 'b> {
     mode: Mode,
     dag: Dag,
     inputs: Inputs,
-    origin: HashMap<NodeId, Span>, // Looked up, never iterated.
+    origin: Map<NodeId, Span>, // Looked up, never iterated.
 }
 
 impl Copy<'_, '_> {

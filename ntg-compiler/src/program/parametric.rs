@@ -18,7 +18,7 @@ use ntg_structure::{
 use super::derive::{Formulas, derive};
 use super::kernel::Mode;
 use super::{KernelBody, Program};
-use crate::expr::{Dag, InputId, Node, NodeId};
+use crate::expr::{Dag, InputId, Map, Node, NodeId};
 
 /// The program whose variables include the parameters.
 pub fn parametric(program: &Program) -> Program {
@@ -236,5 +236,5 @@ fn reordered(body: &KernelBody, positions: &[usize]) -> Formulas {
         };
         image.insert(node, new);
     }
-    Formulas { dag, values: body.values.iter().map(|value| image[value]).collect(), origin: HashMap::new() }
+    Formulas { dag, values: body.values.iter().map(|value| image[value]).collect(), origin: Map::default() }
 }

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use crate::expr::{Binary, Dag, Node, NodeId, Unary};
+use crate::expr::{Binary, Dag, Map, Node, NodeId, Unary};
 use crate::source::Span;
 
 /// A branch: a condition, and whether it holds.
@@ -70,7 +70,7 @@ impl Guards {
 
 /// Operations that can give infinity or NaN from finite operands: first their values, then the
 /// factors in which their derivatives are singular.
-pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &HashMap<NodeId, Span>) -> (Vec<NodeId>, Vec<Span>) {
+pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span>) -> (Vec<NodeId>, Vec<Span>) {
     // What the compiler has made itself, such as `1 / T`, is of no help to a person.
     let guards = Guards::of(dag, values);
     let schedule: Vec<NodeId> = dag.schedule(values).into_iter().filter(|id| origin.contains_key(id)).collect();

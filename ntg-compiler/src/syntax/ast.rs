@@ -421,15 +421,15 @@ pub struct Shared {
 /// `jump x, m;`: these outputs are not continuous at the start of the phase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jump {
-    /// The outputs, one at least; an index picks one of an array.
-    pub outputs: Vec<Segment>,
+    /// The outputs, one at least; an index picks one of an array, a path leads to one of a scenario.
+    pub outputs: Vec<Path>,
 }
 
 /// `continuous x, y up to 1;`: these outputs are continuous up to that derivative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Continuous {
-    /// The outputs, one at least; an index picks one of an array.
-    pub outputs: Vec<Segment>,
+    /// The outputs, as in [`Jump`].
+    pub outputs: Vec<Path>,
     /// The highest derivative that is continuous.
     pub up_to: Expr,
 }

@@ -13,6 +13,7 @@ use crate::source::Span;
 
 mod conditions;
 mod expected;
+mod habits;
 
 use expected::Expected;
 
@@ -103,7 +104,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
             finding.help("what moves is a `state`, an `input` or an `output`, a number that is sought a `variable`, a time a `duration`")
         }
         _ if matches!(word, "objective" | "cost" | "J") => finding.help("write `minimize name: e;` or `maximize name: e;`"),
-        _ if matches!(word, "subject_to" | "constraint" | "constraints" | "path") => {
+        _ if matches!(word, "subject_to" | "subject" | "such" | "constraint" | "constraints" | "path") => {
             finding.help("constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`")
         }
         _ if matches!(word, "equation" | "equations" | "ode" | "system") => {
@@ -112,6 +113,10 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
         _ if matches!(word, "vector" | "matrix") => {
             finding.help("a vector is declared by its size: `output r[3]: ...`, `param J[3, 3] = ...`")
         }
+        _ if matches!(word, "import" | "include" | "from") => {
+            finding.help("a library is used before the problem: `use std::gravity;`")
+        }
+        _ if matches!(word, "function" | "def" | "func") => finding.help("write `fn f(a) = a / 2;`"),
         _ if word == "if" => finding.help("an `if` is a value: `let y = if a <= b { ... } else { ... };`"),
         _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
         Some(meant) => finding.help(format!("did you mean `{meant}`?")),
@@ -287,6 +292,12 @@ impl Here<'_> {
         if this == "+" && self.expected.has_expression() {
             return Some("a number without a sign is positive: remove the `+`".into());
         }
+        if this == "[" && before == "in" {
+            return Some("a range is written without brackets: `in 0 .. 1`".into());
+        }
+        if this == "=" && self.first_word() == Some("variable") {
+            return Some("a `variable` is sought, between bounds or without: `variable z in 0 .. 3;`; a number that is given is a `param`".into());
+        }
         if this == "[" && before == "]" {
             return Some("several indices stand in one bracket: `A[1, 2]`".into());
         }
@@ -313,6 +324,6 @@ impl Here<'_> {
         if matches!(this, ")" | "]") && before == "," {
             return Some("remove the comma before it".into());
         }
-        None
+        self.advice_on_habits(this, before).map(str::to_owned)
     }
 }

@@ -91,15 +91,15 @@ pub fn parse_library(source: &Source, base: usize) -> Result<Library, Diagnostic
     } else {
         match grammar::library(&scan.clean) {
             Ok(pair) => {
-                let mut build = Build::new(0);
-                let library = build.library(pair);
-                let found = recover::join(&scan, build.found);
-                if found.is_empty() {
-                    let mut build = Build::new(base);
-                    let pair = grammar::library(&scan.clean).ok();
-                    return Ok(pair.map_or(library, |pair| build.library(pair)));
+                let mut build = Build::new(base);
+                let library = build.library(pair.clone());
+                if scan.found.is_empty() && build.found.is_empty() {
+                    return Ok(library);
                 }
-                found
+                // Findings are told in places of the file itself.
+                let mut build = Build::new(0);
+                build.library(pair);
+                recover::join(&scan, build.found)
             }
             Err(stuck) => {
                 let mut found = recover::recover_library(&scan);

@@ -101,15 +101,20 @@ mod tests {
     }
 
     #[test]
-    fn the_grammar_reserves_the_same_words_the_longest_first() {
+    fn the_grammar_reserves_the_same_words_and_of_two_that_begin_alike_the_longer_first() {
         let grammar = include_str!("grammar.pest");
         let rule = grammar
             .split_once("reserved = @{")
             .and_then(|(_, rest)| rest.split_once('}'))
             .expect("the rule is there")
             .0;
+        for group in rule.split('&').skip(1) {
+            let words: Vec<&str> = group.split('"').skip(1).step_by(2).collect();
+            assert!(words.iter().all(|word| group.starts_with(&format!("'{0}'..'{0}'", &word[..1]))), "{group}");
+            let hidden = |k: usize| words[..k].iter().any(|before| words[k].starts_with(before));
+            assert!(!(0..words.len()).any(hidden), "{words:?}");
+        }
         let mut reserved: Vec<&str> = rule.split('"').skip(1).step_by(2).collect();
-        assert!(reserved.windows(2).all(|pair| pair[0].len() >= pair[1].len()), "{reserved:?}");
         let mut words: Vec<&str> =
             [ITEM_WORDS, EXPRESSION_WORDS].iter().flat_map(|list| list.iter()).copied().collect();
         reserved.sort_unstable();

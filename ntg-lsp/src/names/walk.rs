@@ -292,9 +292,9 @@ impl Walk {
                 it.until.iter().for_each(|until| self.expr(scope, until));
             }
             ItemKind::Domain(_) => {}
-            ItemKind::Jump(it) => it.outputs.iter().for_each(|output| self.segment(scope, output)),
+            ItemKind::Jump(it) => it.outputs.iter().for_each(|output| _ = self.path(scope, output)),
             ItemKind::Continuous(it) => {
-                it.outputs.iter().for_each(|output| self.segment(scope, output));
+                it.outputs.iter().for_each(|output| _ = self.path(scope, output));
                 self.expr(scope, &it.up_to);
             }
             ItemKind::Periodic(it) => {

@@ -194,6 +194,7 @@ fn kind(rule: Rule) -> Kind {
         | R::event_word => Kind::Expression,
         R::name
         | R::qualifier
+        | R::qualifier_front
         | R::module
         | R::argument
         | R::segment
@@ -229,7 +230,7 @@ fn mark(rule: Rule) -> Kind {
         R::right_brace => Kind::Mark("}"),
         R::left_parenthesis | R::settings => Kind::Mark("("),
         R::right_parenthesis => Kind::Mark(")"),
-        R::left_bracket | R::array_size | R::shape | R::family | R::indices => Kind::Minor("["),
+        R::left_bracket | R::array_size | R::shape | R::only_a_unit | R::family | R::indices => Kind::Minor("["),
         R::right_bracket => Kind::Mark("]"),
         R::semicolon => Kind::Mark(";"),
         R::colon => Kind::Mark(":"),

@@ -151,7 +151,10 @@ fn outside_scenarios(rule: Rule, text: &str) -> Option<(&'static str, &'static s
         Rule::phase => ("phase", TIME),
         Rule::agent => ("agent", "write the scenario in the agent"),
         Rule::scenario => ("scenario", "scenarios do not nest: write it beside this one"),
-        Rule::jump => ("jump", "declare what jumps outside the scenario, as an array"),
+        Rule::jump => (
+            "jump",
+            "a scenario goes through all phases: write `jump name.x;` in the phase that begins with the jump, with the name of the scenario",
+        ),
         Rule::continuous => ("continuous", TIME),
         _ => return None,
     })

@@ -4,8 +4,8 @@ use super::parts::Parts;
 use super::{Build, Scope};
 use crate::diagnostic::Code;
 use crate::syntax::ast::{
-    Agent, Collocation, CollocationKind, Continuous, Duration, Extent, IndependentVariable, Jump, Periodic, Phase,
-    Scenario, Segment, Shared,
+    Agent, Collocation, CollocationKind, Continuous, Duration, Extent, IndependentVariable, Jump, Path, Periodic,
+    Phase, Scenario, Segment, Shared,
 };
 use crate::syntax::grammar::{Pair, Rule};
 use crate::syntax::words::nearest;
@@ -73,12 +73,12 @@ impl Build {
     }
 
     pub(super) fn jump(&mut self, pair: Pair<'_>) -> Jump {
-        Jump { outputs: self.segments(&mut Parts::of(pair)) }
+        Jump { outputs: self.paths(&mut Parts::of(pair)) }
     }
 
     pub(super) fn continuous(&mut self, pair: Pair<'_>) -> Continuous {
         let mut parts = Parts::of(pair);
-        let outputs = self.segments(&mut parts);
+        let outputs = self.paths(&mut parts);
         Continuous { outputs, up_to: self.expression(parts.required(Rule::expression)) }
     }
 
@@ -86,6 +86,14 @@ impl Build {
         let mut parts = Parts::of(pair);
         let outputs = self.segments(&mut parts);
         Periodic { outputs, up_to: parts.optional(Rule::expression).map(|pair| self.expression(pair)) }
+    }
+
+    fn paths(&mut self, parts: &mut Parts<'_>) -> Vec<Path> {
+        let mut paths = vec![];
+        while let Some(pair) = parts.optional(Rule::path) {
+            paths.push(self.path(pair));
+        }
+        paths
     }
 
     fn segments(&mut self, parts: &mut Parts<'_>) -> Vec<Segment> {
