@@ -1,11 +1,9 @@
 //! What parameters decide and cannot be solved is said before any iteration.
 
-mod transcribe_support;
-
+use crate::support::problems;
+use crate::support::*;
 use ntg_runtime::structure::*;
 use ntg_runtime::transcribe::{SetupError, Transcription};
-use transcribe_support::problems;
-use transcribe_support::*;
 
 fn refused(problem: &Double) -> SetupError {
     match Transcription::new(problem) {

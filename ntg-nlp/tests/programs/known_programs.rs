@@ -1,12 +1,10 @@
 //! Known answers: problems of W. Hock and K. Schittkowski, *Test Examples for Nonlinear Programming
 //! Codes* (1981), by their numbers there, and examples on which methods of this kind are known to fail.
 
-mod support;
-
+use crate::support::{FREE, Jet, dense};
 use ntg_nlp::closures::Program;
 use ntg_nlp::sqp::solve;
 use ntg_nlp::{Options, Outcome, Status, ipm, method};
-use support::{FREE, Jet, dense};
 
 const INF: f64 = f64::INFINITY;
 

@@ -1,13 +1,10 @@
 //! What changes a program without changing its optimum changes neither the optimum nor, by much, the iterations:
 //! factors of the objective and of rows, other units, rows that say the same again, another order.
 
-mod hs;
-mod support;
-
-use hs::Problem;
+use crate::hs::Problem;
+use crate::support::{Jet, dense};
 use ntg_nlp::{Options, Outcome, Status, ipm};
 use std::sync::Arc;
-use support::{Jet, dense};
 
 /// Problems of all kinds: bounds, equalities, inequalities, curved and linear, of 2 to 15 variables.
 const PROBLEMS: [u32; 12] = [7, 12, 21, 35, 43, 71, 76, 77, 86, 100, 113, 117];
@@ -45,7 +42,7 @@ impl Variant {
 fn holds(name: &str, variants: impl Fn(&Problem) -> Vec<Variant>) {
     let mut broken = Vec::new();
     for number in PROBLEMS {
-        let problem = hs::by_number(number);
+        let problem = crate::hs::by_number(number);
         let plain = Variant::of(&problem).solve();
         assert_eq!(plain.status, Status::Solved, "{number}");
         let most = 3 * plain.iterations / 2 + 3;

@@ -1,15 +1,12 @@
 //! How solves end when they do not end well, and what callers may do on the way: the same laws for both methods.
 
-#[macro_use]
-mod support;
-
+use crate::support::{FREE, dense};
 use ntg_nlp::closures::Program;
 use ntg_nlp::status::Bounded;
 use ntg_nlp::{Control, Entry, Method, Options, Outcome, Start, Status, solve, solve_from};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
-use support::{FREE, dense};
 
 const INF: f64 = f64::INFINITY;
 

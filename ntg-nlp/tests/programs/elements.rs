@@ -1,11 +1,9 @@
 //! Programs of many elements: assembled derivatives against differences, and answers in closed form.
 
-mod support;
-
+use crate::support::{FREE, Jet, block, dense};
 use ntg_nlp::closures::{Element, Program};
 use ntg_nlp::sqp::solve;
 use ntg_nlp::{Assembly, Evaluation, Nlp, Options, Outcome, Pattern, Scaling, Status, Target};
-use support::{FREE, Jet, block, dense};
 
 const INF: f64 = f64::INFINITY;
 

@@ -1,13 +1,10 @@
 //! Degenerate programs: every end has the right status, the best point comes back, nothing is called solved that is not,
 //! and nothing panics.
 
-#[macro_use]
-mod support;
-
+use crate::support::{FREE, dense};
 use ntg_nlp::closures::Program;
 use ntg_nlp::status::Bounded;
 use ntg_nlp::{Method, Nlp, Options, Outcome, Status, solve};
-use support::{FREE, dense};
 
 const INF: f64 = f64::INFINITY;
 const POSITIVE: (f64, f64) = (0.0, INF);
@@ -318,7 +315,7 @@ fn rows_without_functions(method: Method) {
             target: vec![ntg_nlp::Target::Objective],
             weight: vec![1.0],
         };
-        support::block(&mut p, [1, 1], &[element], |u| vec![(u[0] - 4.0).powi(2)]);
+        crate::support::block(&mut p, [1, 1], &[element], |u| vec![(u[0] - 4.0).powi(2)]);
         p
     };
     solved(method, &quadratic((-1.0, 1.0)), &[0.0], &[4.0], 1e-6);

@@ -5,12 +5,10 @@
 //! splines of order 5 and smoothness 3 on 8 intervals; 41 uniform points, trapezoidal rule. The optima
 //! were computed with CasADi and IPOPT at a tolerance of 1e-11.
 
-mod support;
-
+use crate::support::{FREE, block};
 use ntg_nlp::closures::{Element, Program};
 use ntg_nlp::sqp::solve;
 use ntg_nlp::{Options, Outcome, Status, Target};
-use support::{FREE, block};
 
 const INTERVALS: usize = 8;
 const ORDER: usize = 5;

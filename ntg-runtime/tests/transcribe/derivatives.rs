@@ -1,12 +1,10 @@
 //! Elements of hand-made problems against finite differences, and what their rows mean.
 
-mod transcribe_support;
-
+use crate::support::*;
+use crate::support::{oracle, problems};
 use ntg_runtime::nlp::Nlp;
 use ntg_runtime::structure::*;
 use ntg_runtime::transcribe::Transcription;
-use transcribe_support::*;
-use transcribe_support::{oracle, problems};
 
 #[test]
 fn derivatives_of_one_phase_agree_with_finite_differences() {

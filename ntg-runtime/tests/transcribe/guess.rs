@@ -1,13 +1,11 @@
 //! Guesses: what the first point is, seen through a solve that may not iterate.
 
-mod transcribe_support;
-
+use crate::support::problems;
+use crate::support::*;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::prelude::*;
 use ntg_runtime::structure::*;
 use std::sync::Arc;
-use transcribe_support::problems;
-use transcribe_support::*;
 
 /// The solution at the first point: the callback stops before any step.
 fn first(problem: &Double, guess: &Guess) -> Solution {

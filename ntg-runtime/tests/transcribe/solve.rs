@@ -1,12 +1,10 @@
 //! From a hand-made problem to a report: known answers.
 
-mod transcribe_support;
-
+use crate::support::problems;
+use crate::support::*;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::prelude::*;
 use ntg_runtime::structure::*;
-use transcribe_support::problems;
-use transcribe_support::*;
 
 #[test]
 fn least_energy_from_rest_to_rest_is_a_cubic() {

@@ -1,9 +1,6 @@
 //! Both methods on the smooth problems of Hock and Schittkowski, from the published starts to the published optima.
 
-mod hs;
-mod support;
-
-use hs::Problem;
+use crate::hs::Problem;
 use ntg_nlp::{Options, Outcome, Status, ipm, sqp};
 
 /// Iterations of one problem at most. A law, and a generous one.
@@ -51,7 +48,7 @@ fn is_right(problem: &Problem, outcome: &Outcome) -> bool {
 }
 
 fn all_by(exceptions: &[(u32, &str)], solve: impl Fn(&Problem) -> Outcome) {
-    let problems = hs::all();
+    let problems = crate::hs::all();
     assert!(problems.len() >= 100, "{} problems", problems.len());
     let (mut wrong, mut iterations, mut largest) = (Vec::new(), 0, 0);
     for problem in &problems {
@@ -77,7 +74,7 @@ fn all_by(exceptions: &[(u32, &str)], solve: impl Fn(&Problem) -> Outcome) {
 fn damped_steps_solve_them_too() {
     let options = Options { damping: true, ..Options::default() };
     let is_solved = |problem: &&Problem| is_right(problem, &ipm::solve(&problem.program(), &problem.start, &options));
-    let problems = hs::all();
+    let problems = crate::hs::all();
     let unsolved: Vec<u32> =
         problems.iter().filter(|problem| !is_solved(problem)).map(|problem| problem.number).collect();
     assert!(problems.len() - unsolved.len() >= 100, "{unsolved:?}");
