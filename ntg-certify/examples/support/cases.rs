@@ -1,6 +1,6 @@
 //! Random cases: operations on intervals against exact rationals, elementary functions against 192 bits.
 
-use astro_float::{BigFloat, Consts, RoundingMode};
+use astro_float_num::{BigFloat, Consts, RoundingMode};
 use ntg_certify::elementary as el;
 use ntg_certify::interval::Interval;
 use num_rational::BigRational;
