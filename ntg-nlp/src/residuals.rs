@@ -216,7 +216,7 @@ fn grow(unscaled: &mut f64, scaled: &mut f64, size: f64, factor: f64) {
 
 impl Residual {
     /// As the stop test compares it: relative to the divisor `s_d` of equation (6.5), products of multipliers to no
-    /// more than [`LARGEST_SCALE`].
+    /// more than 100.
     ///
     /// A product of a multiplier and a violation is what the violation is worth: the error of the objective, whose
     /// terms have the size 1. Multipliers of 1e14 on rows that all but vanish make any violation worth something,
