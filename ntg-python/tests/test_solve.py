@@ -303,7 +303,7 @@ problem Fall {
 
 
 def test_measurements_give_values_with_their_deviations():
-    found = ntg.loads(FALL).solve(tolerance=1e-10).estimate
+    found = ntg.loads(FALL).solve(settings=ntg.Settings(tolerance=1e-10)).estimate
     # One height shifts all five places: their mean difference to the fall, known to 0.1 m / sqrt(5).
     places = [0, 4.9, 19.6, 44.1, 78.4]
     shift = np.mean(np.array([0.1, 5, 19.5, 44.2, 78.3]) - places)
