@@ -76,3 +76,20 @@ fn the_descent_with_six_degrees_of_freedom_is_solved() {
     let solved = Shipped::spec("powered_descent_6dof").solve();
     close(solved.objective, 1.474_034_854, 1e-6);
 }
+
+/// `V^2 cos^2 + V^2 sin^2` varies by rounding, 1e-17 of its value. Scaled by that variation its rounding decided every
+/// search, and the constraints were never met.
+#[test]
+fn an_objective_that_is_constant_but_for_rounding_leaves_the_constraints_to_be_met() {
+    let report = Shipped::spec("gallery/obstacle_feasible").solve();
+    close(report.objective, 4.571_044, 1e-9);
+    assert!(report.violation.points < 1e-8, "{report}");
+}
+
+/// The filter cuts step after step along strongly curved rows; without the watchdog the transfer takes 603 iterations.
+#[test]
+fn a_transfer_of_many_revolutions_is_not_crawled_through() {
+    let report = Shipped::spec("gallery/many_revolutions").solve();
+    close(report.objective, 293.071_095, 1e-6);
+    assert!(report.iterations <= 250, "{} iterations", report.iterations);
+}

@@ -14,7 +14,7 @@ use super::state::State;
 use crate::contract::Nlp;
 
 /// Cut steps in a row before a watch begins, and steps on trial before it has failed. Fits to the gallery from four
-/// starts: after 3 trials few watches have succeeded.
+/// starts: after 3 trials few watches have succeeded, and 3, 4 and 5 cut steps solve as many problems.
 const CUT: usize = 4;
 const TRIALS: usize = 10;
 
