@@ -256,4 +256,6 @@ pub(crate) enum Method {
     /// The structured interior-point method alone.
     #[value(alias = "newton")]
     InteriorPoint,
+    /// The same on the augmented Lagrangian.
+    AugmentedLagrangian,
 }

@@ -181,6 +181,7 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
         arguments::Method::Auto => Method::Auto,
         arguments::Method::Sqp => Method::Sqp,
         arguments::Method::InteriorPoint => Method::InteriorPoint,
+        arguments::Method::AugmentedLagrangian => Method::AugmentedLagrangian,
     };
     settings.validate().map_err(|invalid| invalid.to_string())?;
     Ok(settings)

@@ -21,7 +21,7 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, options: &Opt
     match options.method {
         #[cfg(feature = "sqp")]
         Method::Sqp => sqp::solve_from(nlp, start, from.multipliers(nlp), options),
-        Method::InteriorPoint => ipm::solve_from(nlp, start, from, options),
+        Method::InteriorPoint | Method::AugmentedLagrangian => ipm::solve_from(nlp, start, from, options),
         Method::Auto => automatic(nlp, start, from, options),
     }
 }

@@ -57,6 +57,20 @@ pub enum Method {
     Sqp,
     /// The structured interior-point method alone.
     InteriorPoint,
+    /// The same on the augmented Lagrangian, with estimates of multipliers in place of the filter (docs/maths.md, section
+    /// 11.7): slower as a rule, and it does not mind rows that depend on each other.
+    AugmentedLagrangian,
+}
+
+/// What a restoration of feasibility makes small (docs/maths.md, section 11.6). Either solves programs that the other one
+/// does not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Violations {
+    /// The sum of violations.
+    #[default]
+    Absolute,
+    /// The sum of their squares.
+    Squared,
 }
 
 /// The loosest tolerance at which a solution is polished: with this tolerance and looser ones a solution serves as a
@@ -87,9 +101,8 @@ pub struct Options {
     /// Whether sequential quadratic programming tries Newton's step with the exact Hessian once the set of
     /// active constraints has settled. The interior-point method always has the exact Hessian. Default true.
     pub exact_hessian: bool,
-    /// Whether the interior-point method damps its steps where searches cut them short (docs/maths.md, equation 11.5b).
-    /// It then solves other programs, not more of them. Default false.
-    pub damping: bool,
+    /// What the interior-point method makes small where it restores feasibility. Default [`Violations::Absolute`].
+    pub restoration: Violations,
 }
 
 impl Default for Options {
@@ -104,7 +117,7 @@ impl Default for Options {
             scaling: Scaling::Automatic,
             second_order_correction: true,
             exact_hessian: true,
-            damping: false,
+            restoration: Violations::Absolute,
         }
     }
 }
@@ -121,7 +134,7 @@ impl fmt::Debug for Options {
             .field("scaling", &self.scaling)
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
-            .field("damping", &self.damping)
+            .field("restoration", &self.restoration)
             .finish()
     }
 }

@@ -33,8 +33,11 @@ impl Given {
         let method = match self.method.as_str() {
             "auto" => Method::Auto,
             "interior-point" => Method::InteriorPoint,
+            "augmented-lagrangian" => Method::AugmentedLagrangian,
             "sqp" => Method::Sqp,
-            other => return Err(none_of("method", other, "`auto`, `interior-point`, `sqp`")),
+            other => {
+                return Err(none_of("method", other, "`auto`, `interior-point`, `augmented-lagrangian`, `sqp`"));
+            }
         };
         let between = match self.between.as_str() {
             "report" => Between::Report,

@@ -3,7 +3,7 @@
 //! Settings are plain data with defaults that suit most problems; [`Settings::validate`] says in
 //! words which field is out of its range. They can be cloned and sent to other threads.
 
-pub use ntg_nlp::options::{Control, Method, OnIteration, Progress, Scaling};
+pub use ntg_nlp::options::{Control, Method, OnIteration, Progress, Scaling, Violations};
 
 use ntg_nlp::Options;
 use ntg_nlp::options::ROUGH_TOLERANCE;
@@ -86,9 +86,9 @@ pub struct Settings {
     /// set of active constraints has settled; without it, the last digits come slowly. The interior-point method always
     /// has the exact Hessian. Default true.
     pub exact_hessian: bool,
-    /// Whether the interior-point method damps its steps where searches cut them short (docs/maths.md, equation 11.5b).
-    /// Without it [`Method::Auto`] does so where the first attempt fails. Default false.
-    pub damping: bool,
+    /// What the interior-point method makes small where it restores feasibility. [`Method::Auto`] tries the other one where
+    /// the first attempt fails. Default [`Violations::Absolute`].
+    pub restoration: Violations,
 }
 
 impl Default for Settings {
@@ -108,7 +108,7 @@ impl Default for Settings {
             between_tolerance: 0.01,
             second_order_correction: true,
             exact_hessian: true,
-            damping: false,
+            restoration: Violations::Absolute,
         }
     }
 }
@@ -130,7 +130,7 @@ impl fmt::Debug for Settings {
             .field("between_tolerance", &self.between_tolerance)
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
-            .field("damping", &self.damping)
+            .field("restoration", &self.restoration)
             .finish()
     }
 }
@@ -165,7 +165,7 @@ impl Settings {
             scaling: self.scaling,
             second_order_correction: self.second_order_correction,
             exact_hessian: self.exact_hessian,
-            damping: self.damping,
+            restoration: self.restoration,
         }
     }
 

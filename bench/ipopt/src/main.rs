@@ -74,6 +74,7 @@ impl Arguments {
         let method = match self.method.as_str() {
             "auto" => Method::Auto,
             "newton" | "interior-point" => Method::InteriorPoint,
+            "augmented-lagrangian" => Method::AugmentedLagrangian,
             "sqp" => Method::Sqp,
             other => return Err(format!("there is no method {other}; write auto, newton or sqp")),
         };

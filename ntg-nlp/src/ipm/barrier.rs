@@ -1,5 +1,6 @@
 //! The barrier parameter: when it falls, and how far (docs/maths.md, section 11.4; lines 6 and 8 of Algorithm 11).
 
+use super::mode::Mode;
 use super::state::State;
 use crate::contract::Nlp;
 use crate::status::Status;
@@ -27,15 +28,21 @@ impl<N: Nlp> State<'_, N> {
     pub(super) fn lower_barrier(&mut self) -> Option<Status> {
         let dual = self.record.residuals.scaled.dual;
         let (before, last) = (self.mu, self.last_barrier());
-        while self.mu > last {
+        let estimates = matches!(self.mode, Mode::Augmented(_));
+        while self.mu > last || estimates {
             let enough = KAPPA_EPSILON * self.mu;
             if dual > enough || self.barrier_error() > enough {
                 break;
             }
-            if let Some(status) = self.update_penalty() {
+            if let Some(status) = self.update_price() {
                 return Some(status);
             }
-            self.decrease_mu(last);
+            if self.mu > last {
+                self.decrease_mu(last);
+            }
+            if estimates {
+                break; // New estimates are another problem.
+            }
         }
         if self.mu != before {
             self.filter.clear();
@@ -69,8 +76,8 @@ impl<N: Nlp> State<'_, N> {
     /// The error of the barrier problem's optimality conditions without the gradient of the Lagrangian: residuals (in
     /// penalty mode the relaxations' centrality) and centrality.
     fn barrier_error(&self) -> f64 {
-        let residual = match &self.penalty {
-            Some(penalty) => penalty.centrality(&self.slacks, self.mu) / self.s_d,
+        let residual = match self.mode.relaxed() {
+            Some(relaxed) => relaxed.centrality(&self.slacks, self.mu) / self.s_d,
             None => self.slacks.largest_residual(&self.values),
         };
         residual.max(self.slacks.centrality(self.mu) / self.s_d)

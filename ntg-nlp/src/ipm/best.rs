@@ -1,6 +1,7 @@
 //! Points to which a solve returns: the best one that met all tolerances, and the best one of all
 //! (docs/maths.md, section 11.4; lines 4, 5 and 10 of Algorithm 11).
 
+use super::mode::Mode;
 use super::slacks::Slacks;
 use super::state::State;
 use crate::contract::Nlp;
@@ -51,7 +52,7 @@ impl<N: Nlp> State<'_, N> {
     /// of the program, and only violations count.
     pub(super) fn keep_nearest(&mut self) {
         let mut record = self.record;
-        if self.penalty.is_some() {
+        if !self.mode.has_own_multipliers() {
             record.residuals.scaled.dual = f64::INFINITY;
         }
         let Self { nearest, x, slacks, .. } = self;
@@ -68,7 +69,7 @@ impl<N: Nlp> State<'_, N> {
 
     /// Returns to the best point of all.
     pub(super) fn take_nearest(&mut self) {
-        (self.restoration, self.penalty) = (None, None);
+        self.mode = Mode::Filter;
         let point = std::mem::take(&mut self.nearest);
         if point.is_held {
             self.restore(&point);

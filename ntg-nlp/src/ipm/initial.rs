@@ -3,6 +3,7 @@
 use super::best::Point;
 use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
+use super::mode::Mode;
 use super::slacks::Slacks;
 use super::state::{Analysis, State, Trial};
 use super::step::{FIRST_FRACTION, LARGEST_PROXIMAL, Step};
@@ -10,7 +11,7 @@ use super::warm;
 use super::watchdog::Watchdog;
 use crate::contract::{Limits, Nlp, NotFinite};
 use crate::kkt::System;
-use crate::options::Options;
+use crate::options::{Method, Options};
 use crate::outcome::{IterationRecord, Start};
 use crate::scaling::Scales;
 use crate::status::Status;
@@ -75,14 +76,12 @@ impl<'a, N: Nlp> State<'a, N> {
             before_step: Point::new(&x, &slacks),
             watchdog: Watchdog::new(Point::new(&x, &slacks)),
             saved_step: step.clone(),
-            penalty: None,
-            restoration: None,
+            mode: Mode::Filter,
             restorations: 0,
             short_steps: 0,
             estimate: Estimate::default(),
             proximal: LARGEST_PROXIMAL,
             convex_fraction: FIRST_FRACTION,
-            damping: 0.0,
             step,
             trial: Trial::new(&x, functions, slacks.s.clone()),
             record: IterationRecord::default(),
@@ -111,6 +110,9 @@ impl<'a, N: Nlp> State<'a, N> {
         }
         self.evaluate()?;
         self.start_filter();
+        if self.options.method == Method::AugmentedLagrangian {
+            self.enter_augmented_mode();
+        }
         Ok(())
     }
 

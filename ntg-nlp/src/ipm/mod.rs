@@ -7,22 +7,25 @@
 //!
 //! `state` holds the iterate and its residuals, `slacks` the bounds with slacks and multipliers, `barrier` the barrier
 //! parameter, `step` the primal-dual step, `line_search` the search by the `filter` with its second-order
-//! corrections and its `watchdog`, `penalty` and `penalty_search` the search where bounds are elastic, `initial` and
-//! `warm` the start, `polish` and `ending` the end.
+//! corrections and its `watchdog`. `mode` says how violations are treated: `relaxed` rows cost a price, that of `penalty`,
+//! where bounds are elastic, or of the `augmented` Lagrangian; `penalty_search` searches by it, `restoration` restores
+//! feasibility by it. `initial` and `warm` are the start, `polish` and `ending` the end.
 //!
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), cited as WB.
 
+mod augmented;
 mod barrier;
 mod best;
-mod damping;
 mod ending;
 mod equalities;
 mod filter;
 mod initial;
 mod line_search;
+mod mode;
 mod penalty;
 mod penalty_search;
 mod polish;
+mod relaxed;
 mod restoration;
 mod second_order;
 mod slacks;
@@ -109,7 +112,7 @@ pub fn solve_at_fixed_penalty<N: Nlp>(nlp: &N, start: &[f64], penalty: FixedPena
         Ok(mut state) => {
             state.enter_penalty_mode(penalty.parameter);
             state.fix_penalty(penalty);
-            state.centre_penalty_mode();
+            state.centre_on_price();
             iterate(state)
         }
         Err(status) => Outcome::failed(nlp, start, status),
@@ -149,20 +152,20 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
             return state.end(status); // 6
         }
         let searched = state.step_and_search(); // 7 to 9
-        state.update_damping(searched);
         tiny_steps = if searched == SearchOutcome::Tiny { tiny_steps + 1 } else { 0 };
         let ended = match searched {
             // WB, section 3.9: a barrier problem whose steps are rounding is solved.
             SearchOutcome::Tiny if tiny_steps >= TINY_STEPS => {
                 tiny_steps = 0;
-                (!state.force_lower_barrier()).then(|| state.stuck())
+                (!state.force_lower_barrier() && !state.leave_augmented_mode()).then(|| state.stuck())
             }
-            SearchOutcome::Stuck if state.restoration.is_some() => {
+            SearchOutcome::Stuck if state.mode.restoration().is_some() => {
                 state.abandon_restoration();
                 state.enter_penalty_mode(penalty::PARAMETER);
                 None
             }
-            SearchOutcome::Stuck if state.penalty.is_some() => Some(state.stuck()),
+            SearchOutcome::Stuck if state.leave_augmented_mode() => None,
+            SearchOutcome::Stuck if state.mode.relaxed().is_some() => Some(state.stuck()),
             SearchOutcome::Stuck if state.is_nearly_feasible() => {
                 if state.newton_step() {
                     None
@@ -191,10 +194,10 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
 impl<N: Nlp> State<'_, N> {
     /// Lines 7 to 9 of Algorithm 11: the step of the present mode, and the search along it.
     fn step_and_search(&mut self) -> SearchOutcome {
-        if self.restoration.is_some() {
+        if self.mode.restoration().is_some() {
             return self.restoration_step();
         }
-        if self.penalty.is_some() {
+        if self.mode.relaxed().is_some() {
             self.minimise_over_slacks();
             return if self.compute_step() { self.penalty_search() } else { SearchOutcome::Stuck };
         }

@@ -10,10 +10,14 @@
 //! of descent, so that a plain line search needs no filter and no restoration. Multipliers stay below `rho`; where the
 //! constraints cannot be met with any penalty parameter, the sum of violations is least.
 
+use super::relaxed::{BarrierProblem, Relaxed};
 use super::slacks::{Slacks, log_sum};
 
 /// The first penalty parameter after the filter search was stuck.
 pub(super) const PARAMETER: f64 = 1e2;
+/// The factor by which the penalty parameter rises, and the fraction of it above which a multiplier asks for a larger one.
+const RAISE: f64 = 10.0;
+pub(super) const NEAR: f64 = 0.5;
 /// The largest penalty parameter (scaled).
 const LARGEST_PARAMETER: f64 = 1e8;
 
@@ -33,7 +37,7 @@ pub(super) struct Penalty {
     pub(super) above: Vec<f64>,
 }
 
-/// The best relaxation and slack of an inequality with the distance `d`, (11.8).
+/// The best relaxation and slack of an inequality with the distance `d`, (11.9b).
 fn best_split(d: f64, rho: f64, mu: f64) -> (f64, f64) {
     // A root of rho n^2 + (rho d - 2 mu) n - mu d = 0, and s = n + d.
     let root = (rho * d).hypot(2.0 * mu);
@@ -58,10 +62,10 @@ impl Penalty {
         let (relaxation, below) = (vec![0.0; slacks.inequalities.len()], vec![0.0; slacks.equalities.len()]);
         Self { rho, rho_max: LARGEST_PARAMETER, barrier: f64::INFINITY, relaxation, above: below.clone(), below }
     }
+}
 
-    /// Computes the best relaxations at a point, and writes the slacks that belong to them to `s`; the penalty and
-    /// barrier terms.
-    pub(super) fn minimise_over_slacks(
+impl Relaxed for Penalty {
+    fn minimise_over_slacks(
         &mut self,
         slacks: &Slacks,
         values: &[f64],
@@ -70,12 +74,12 @@ impl Penalty {
         s: &mut [f64],
     ) -> f64 {
         let mut penalty = 0.0;
-        for (k, (of, &d)) in slacks.inequalities.iter().zip(distance).enumerate() {
-            if of.function >= slacks.first_variable {
-                (self.relaxation[k], s[k]) = (0.0, d);
-            } else {
+        for (k, &d) in distance.iter().enumerate() {
+            if slacks.is_inequality_row(k) {
                 (self.relaxation[k], s[k]) = best_split(d, self.rho, mu);
                 penalty += self.rho * self.relaxation[k] - mu * self.relaxation[k].ln();
+            } else {
+                (self.relaxation[k], s[k]) = (0.0, d);
             }
         }
         for (k, equality) in slacks.equalities.iter().enumerate() {
@@ -86,8 +90,7 @@ impl Penalty {
         penalty - mu * log_sum(s)
     }
 
-    /// Writes `Sigma` of the inequalities and the compliances of the equalities, (11.9).
-    pub(super) fn weights(&self, slacks: &Slacks, inequality_sigma: &mut [f64], compliance: &mut [f64]) {
+    fn weights(&self, slacks: &Slacks, inequality_sigma: &mut [f64], compliance: &mut [f64]) {
         for (k, sigma) in inequality_sigma.iter_mut().enumerate() {
             *sigma = 1.0 / (slacks.s[k] / slacks.z[k] + self.relaxation[k] / (self.rho - slacks.z[k]));
         }
@@ -97,10 +100,8 @@ impl Penalty {
         }
     }
 
-    /// Adds the barrier terms of the relaxations to the residuals that the step removes.
-    pub(super) fn residuals(&self, slacks: &Slacks, mu: f64, residual: &mut [f64], equality_residual: &mut [f64]) {
-        let is_row = |k: &usize| slacks.inequalities[*k].function < slacks.first_variable;
-        for (k, r) in residual.iter_mut().enumerate().filter(|(k, _)| is_row(k)) {
+    fn residuals(&self, slacks: &Slacks, mu: f64, residual: &mut [f64], equality_residual: &mut [f64]) {
+        for (k, r) in residual.iter_mut().enumerate().filter(|(k, _)| slacks.is_inequality_row(*k)) {
             *r += mu / (self.rho - slacks.z[k]);
         }
         for (c, y) in equality_residual.iter_mut().zip(&slacks.y) {
@@ -108,25 +109,37 @@ impl Penalty {
         }
     }
 
-    /// Writes the multipliers of equalities that belong to the relaxations on the central path, (11.9).
-    pub(super) fn centre_equality_multipliers(&self, mu: f64, y: &mut [f64]) {
-        for (y, (below, above)) in y.iter_mut().zip(self.below.iter().zip(&self.above)) {
-            *y = self.centred_multiplier(mu, *below, *above);
-        }
-    }
-
-    /// The multiplier of an equality whose relaxations are on the central path.
-    pub(super) fn centred_multiplier(&self, mu: f64, below: f64, above: f64) -> f64 {
+    fn equality_multiplier(&self, equality: usize, mu: f64) -> f64 {
+        let (below, above) = (self.below[equality], self.above[equality]);
         // The larger relaxation cancels less.
         if below < above { mu / above - self.rho } else { self.rho - mu / below }
     }
 
-    /// The largest deviation of relaxations and their multipliers from the central path.
-    pub(super) fn centrality(&self, slacks: &Slacks, mu: f64) -> f64 {
+    fn centrality(&self, slacks: &Slacks, mu: f64) -> f64 {
         let deviation = |n: &f64, room: f64| if *n == 0.0 { 0.0 } else { (n * room - mu).abs() };
         let relaxed = self.relaxation.iter().zip(&slacks.z).map(|(n, z)| deviation(n, self.rho - z));
         let below = self.below.iter().zip(&slacks.y).map(|(n, y)| deviation(n, self.rho - y));
         let above = self.above.iter().zip(&slacks.y).map(|(n, y)| deviation(n, self.rho + y));
         relaxed.chain(below).chain(above).fold(0.0, f64::max)
+    }
+
+    fn largest_multiplier(&self) -> f64 {
+        self.rho
+    }
+
+    /// Raises the penalty parameter where multipliers come near to it and something is violated.
+    fn update(&mut self, solved: BarrierProblem<'_>) -> bool {
+        if solved.violation <= solved.tolerance.max(solved.mu) || solved.mu > self.barrier {
+            return true;
+        }
+        let multipliers = solved.slacks.z.iter().chain(&solved.slacks.y);
+        if multipliers.fold(0.0, |most: f64, z| most.max(z.abs())) <= NEAR * self.rho {
+            return true;
+        }
+        if self.rho >= self.rho_max {
+            return false;
+        }
+        self.rho *= RAISE;
+        true
     }
 }

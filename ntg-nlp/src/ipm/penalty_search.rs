@@ -1,21 +1,21 @@
-//! Penalty mode in the loop: how it is entered, its line search, when the penalty parameter rises
+//! Modes with a price of violations in the loop: how they are entered, their line search, when the price changes
 //! (docs/maths.md, section 11.6; lines 9 and 10 of Algorithm 11).
 
 use super::FixedPenalty;
+use super::augmented::{self, AugmentedLagrangian};
 use super::line_search::SearchOutcome;
-use super::penalty::Penalty;
+use super::mode::Mode;
+use super::penalty::{NEAR, Penalty};
+use super::relaxed::{BarrierProblem, Relaxed};
 use super::state::{State, Trial};
 use crate::contract::Nlp;
 use crate::status::Status;
 
-/// The factor by which the penalty parameter rises.
-const RAISE: f64 = 10.0;
-/// The fraction of the penalty parameter above which a multiplier asks for a larger parameter.
-const NEAR: f64 = 0.5;
 /// Sufficient decrease: Armijo's constant.
 const ARMIJO: f64 = 1e-4;
-/// The shortest step.
+/// The shortest step, and the one below which an augmented Lagrangian gives way to the filter.
 const SHORTEST: f64 = 1e-12;
+const SHORT: f64 = 1e-6;
 
 /// The point at which the penalty function is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,25 +33,41 @@ impl<N: Nlp> State<'_, N> {
         self.slacks.y.iter_mut().for_each(|y| *y = y.clamp(-most, most));
         let mut s = self.slacks.s.clone();
         penalty.minimise_over_slacks(&self.slacks, &self.values, &self.slacks.distance, self.mu, &mut s);
-        self.penalty = Some(penalty);
+        self.mode = Mode::Penalty(penalty);
+    }
+
+    /// Solves by the augmented Lagrangian from the present point on.
+    pub(super) fn enter_augmented_mode(&mut self) {
+        self.mode = Mode::Augmented(AugmentedLagrangian::new(&self.slacks, augmented::PARAMETER));
+        self.centre_on_price();
+    }
+
+    /// Goes on by the filter from the present point; false in another mode than that of the augmented Lagrangian.
+    pub(super) fn leave_augmented_mode(&mut self) -> bool {
+        if !matches!(self.mode, Mode::Augmented(_)) {
+            return false;
+        }
+        self.mode = Mode::Filter;
+        self.start_filter();
+        true
     }
 
     /// Fixes the penalty parameter of penalty mode.
     pub(super) fn fix_penalty(&mut self, fixed: FixedPenalty) {
-        if let Some(penalty) = &mut self.penalty {
+        if let Mode::Penalty(penalty) = &mut self.mode {
             (penalty.rho_max, penalty.barrier) = (fixed.parameter, fixed.barrier);
         }
     }
 
     /// The penalty function without the objective. The relaxations are left in `penalty` and the slacks in `trial.s`.
     fn penalty_terms(&mut self, at: At) -> f64 {
-        let Some(penalty) = &mut self.penalty else { return 0.0 };
+        let Some(relaxed) = self.mode.relaxed_mut() else { return 0.0 };
         let Trial { values, distance, s, .. } = &mut self.trial;
         let (values, distance) = match at {
             At::Present => (&*self.values, &*self.slacks.distance),
             At::Trial => (&**values, &**distance),
         };
-        penalty.minimise_over_slacks(&self.slacks, values, distance, self.mu, s)
+        relaxed.minimise_over_slacks(&self.slacks, values, distance, self.mu, s)
     }
 
     /// Sets slacks and relaxations to the best ones at the present point and barrier parameter; the penalty function
@@ -71,7 +87,8 @@ impl<N: Nlp> State<'_, N> {
         let tiny = self.is_tiny();
         // A step whose promise is rounding beside the penalty function leads nowhere, however long it is.
         let promises_nothing = -slope <= rounding;
-        while alpha >= SHORTEST {
+        let shortest = if matches!(self.mode, Mode::Augmented(_)) { SHORT } else { SHORTEST };
+        while alpha >= shortest {
             if self.try_step(alpha) {
                 let after = self.penalty_objective(true) + self.penalty_terms(At::Trial);
                 if after - before - rounding <= ARMIJO * alpha * slope || (tiny && after.is_finite()) {
@@ -86,13 +103,16 @@ impl<N: Nlp> State<'_, N> {
 
     /// The derivative of the penalty function along the step.
     fn penalty_slope(&self) -> f64 {
-        let Some(penalty) = &self.penalty else { return 0.0 };
+        let Some(relaxed) = self.mode.relaxed() else { return 0.0 };
         let change = &self.step.jacobian_x;
         let inequalities = self.slacks.inequalities.iter().zip(&self.slacks.s);
         let inequalities: f64 = inequalities.map(|(of, s)| of.sign * self.mu / s * change[of.function]).sum();
-        let equalities = self.slacks.equalities.iter().enumerate().map(|(k, equality)| {
-            penalty.centred_multiplier(self.mu, penalty.below[k], penalty.above[k]) * change[equality.function]
-        });
+        let equalities = self
+            .slacks
+            .equalities
+            .iter()
+            .enumerate()
+            .map(|(k, equality)| relaxed.equality_multiplier(k, self.mu) * change[equality.function]);
         self.penalty_objective_slope() - inequalities - equalities.sum::<f64>()
     }
 
@@ -107,10 +127,9 @@ impl<N: Nlp> State<'_, N> {
         })
     }
 
-    /// The longest step of the multipliers that keeps them between 0 (or minus the penalty parameter) and the penalty
-    /// parameter.
+    /// The longest step of the multipliers that keeps them between 0 (or minus the largest one) and the largest one.
     fn to_multiplier_bounds(&self) -> f64 {
-        let rho = self.penalty.as_ref().map_or(0.0, |penalty| penalty.rho);
+        let most = self.mode.relaxed().map_or(0.0, Relaxed::largest_multiplier);
         let fraction = self.fraction_to_boundary();
         let room = |value: f64, d: f64, low: f64, high: f64| {
             if d < 0.0 {
@@ -122,12 +141,12 @@ impl<N: Nlp> State<'_, N> {
             }
         };
         let mut longest = 1.0_f64;
-        for (k, of) in self.slacks.inequalities.iter().enumerate() {
-            let high = if of.function < self.slacks.first_variable { rho } else { f64::INFINITY };
+        for k in 0..self.slacks.inequalities.len() {
+            let high = if self.slacks.is_inequality_row(k) { most } else { f64::INFINITY };
             longest = longest.min(room(self.slacks.z[k], self.step.z[k], 0.0, high));
         }
         for (y, d) in self.slacks.y.iter().zip(&self.step.y) {
-            longest = longest.min(room(*y, *d, -rho, rho));
+            longest = longest.min(room(*y, *d, -most, most));
         }
         longest
     }
@@ -144,24 +163,14 @@ impl<N: Nlp> State<'_, N> {
         how
     }
 
-    /// Raises the penalty parameter where multipliers come near to it and something is violated; a status where
-    /// it cannot rise any more. Called when the barrier problem is solved well enough.
-    pub(super) fn update_penalty(&mut self) -> Option<Status> {
+    /// Changes the price of violations where the barrier problem, which is solved well enough, asks for it. Where the
+    /// penalty parameter would have to rise and cannot, an augmented Lagrangian gives way to the filter, and an exact penalty
+    /// ends with a status.
+    pub(super) fn update_price(&mut self) -> Option<Status> {
         let violation = self.slacks.violation(&self.values);
-        if self.restoration.is_some() {
-            return None; // The penalty parameter of a restoration is fixed.
-        }
-        let Some(penalty) = &mut self.penalty else { return None };
-        if violation <= self.options.constraint_tolerance.max(self.mu) || self.mu > penalty.barrier {
-            return None;
-        }
-        let largest = self.slacks.z.iter().chain(&self.slacks.y).fold(0.0, |most: f64, z| most.max(z.abs()));
-        if largest > NEAR * penalty.rho {
-            if penalty.rho >= penalty.rho_max {
-                return Some(Status::Infeasible { rows: self.violations() });
-            }
-            penalty.rho *= RAISE;
-        }
-        None
+        let tolerance = self.options.constraint_tolerance;
+        let solved = BarrierProblem { slacks: &self.slacks, violation, mu: self.mu, tolerance };
+        let can_go_on = self.mode.relaxed_mut().is_none_or(|price| price.update(solved));
+        (!can_go_on && !self.leave_augmented_mode()).then(|| Status::Infeasible { rows: self.violations() })
     }
 }

@@ -1,23 +1,27 @@
 //! Restoration of feasibility (docs/maths.md, section 11.6; line 10 of Algorithm 11).
 //!
 //! ```text
-//! minimise   zeta/2 |x - x_R|^2 + rho (sum n + sum (n' + n'')) - mu_R sum ln (..),     d(x) + n = s,   c(x) = n'' - n'
+//! minimise   zeta/2 |x - x_R|^2 + the price of violations - mu_R sum ln s,     d(x) + n = s
 //! ```
 //!
-//! Where the filter search is stuck at `x_R`, the objective gives way to the distance from `x_R`, and all rows become
-//! elastic with a fixed penalty parameter: what remains is smooth, bounded below and without constraints but the bounds
-//! of variables. Its steps are those of penalty mode. As soon as the filter accepts the point with much of the
-//! infeasibility gone, the ordinary iteration goes on from there. Where the restoration itself is stuck, the sum of
-//! violations has a local minimum.
+//! Where the filter search is stuck at `x_R`, the objective gives way to the distance from `x_R`, and rows may be
+//! violated at a price, the sum of violations or of their squares: what remains is smooth, bounded below and without
+//! constraints but the bounds of variables. Its steps are those of penalty mode. As soon as the filter accepts the point with much of the
+//! infeasibility gone, the ordinary iteration goes on from there. Where the restoration itself is stuck, the price has a
+//! local minimum.
 //!
 //! Reference: WB, section 3.3. Different here: relaxations and slacks are eliminated in closed form, so that a line
 //! search on the penalty function replaces the inner filter.
 
+use super::augmented::AugmentedLagrangian;
 use super::line_search::SearchOutcome;
+use super::mode::Mode;
 use super::penalty::Penalty;
+use super::relaxed::Relaxed;
 use super::slacks::log_sum;
 use super::state::State;
 use crate::contract::Nlp;
+use crate::options::Violations;
 
 /// The penalty parameter `rho` of WB (30).
 const PENALTY: f64 = 1e3;
@@ -39,10 +43,12 @@ const LEAST_SLACK: f64 = 1e-10;
 const ZETA: f64 = 0.1;
 
 /// What is remembered while feasibility is restored.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Restoration {
     /// `x_R`, where the restoration began.
     x: Vec<f64>,
+    /// What violations cost.
+    pub(super) price: Box<dyn Relaxed>,
     /// `zeta`, the weight of the squared distance from `x_R`.
     proximity: f64,
     /// The infeasibility there.
@@ -69,12 +75,14 @@ impl<N: Nlp> State<'_, N> {
         self.filter.add(theta, phi);
         let (mu, residual) = (self.mu, self.slacks.largest_residual(&self.values));
         self.mu = mu.max(residual).min(LARGEST_BARRIER);
-        self.restoration = Some(Restoration { x: self.x.clone(), proximity: 0.0, theta, residual, mu, steps: 0 });
+        let price: Box<dyn Relaxed> = match self.options.restoration {
+            Violations::Absolute => Box::new(Penalty::new(&self.slacks, PENALTY)),
+            Violations::Squared => Box::new(AugmentedLagrangian::without_estimates(&self.slacks, PENALTY)),
+        };
+        let x = self.x.clone();
+        self.mode = Mode::Restoration(Restoration { x, price, proximity: 0.0, theta, residual, mu, steps: 0 });
         self.update_proximity();
-        self.penalty = Some(Penalty::new(&self.slacks, PENALTY));
-        self.minimise_over_slacks();
-        self.centre_multipliers();
-        self.restart()
+        self.centre_on_price()
     }
 
     /// Whether there is nothing to restore at the present point.
@@ -106,24 +114,26 @@ impl<N: Nlp> State<'_, N> {
     /// `zeta`, from the barrier parameter.
     fn update_proximity(&mut self) {
         let mu = self.mu;
-        if let Some(restoration) = &mut self.restoration {
+        if let Mode::Restoration(restoration) = &mut self.mode {
             restoration.proximity = ZETA * mu.sqrt();
         }
     }
 
-    /// Slacks, relaxations and multipliers of penalty mode on the central path at the first point.
-    pub(super) fn centre_penalty_mode(&mut self) {
+    /// Slacks, violations and multipliers that belong to each other at the present point; false where derivatives are not
+    /// finite there.
+    pub(super) fn centre_on_price(&mut self) -> bool {
         self.minimise_over_slacks();
         self.centre_multipliers();
-        self.restart();
+        self.restart()
     }
 
     /// Multipliers on the central path of the relaxed problem.
     fn centre_multipliers(&mut self) {
         let mu = self.mu;
         self.slacks.z.iter_mut().zip(&self.slacks.s).for_each(|(z, s)| *z = mu / s);
-        if let Some(penalty) = &self.penalty {
-            penalty.centre_equality_multipliers(mu, &mut self.slacks.y);
+        let Some(price) = self.mode.relaxed() else { return };
+        for (k, y) in self.slacks.y.iter_mut().enumerate() {
+            *y = price.equality_multiplier(k, mu);
         }
     }
 
@@ -140,7 +150,7 @@ impl<N: Nlp> State<'_, N> {
         if self.last_barrier_problem_is_solved() {
             return SearchOutcome::Stuck;
         }
-        if let Some(restoration) = &mut self.restoration {
+        if let Mode::Restoration(restoration) = &mut self.mode {
             restoration.steps += 1;
         }
         self.minimise_over_slacks();
@@ -150,7 +160,7 @@ impl<N: Nlp> State<'_, N> {
     /// Ends the restoration where the filter accepts the present point.
     pub(super) fn leave_restoration(&mut self) {
         self.update_proximity();
-        let Some(restoration) = &self.restoration else { return };
+        let Some(restoration) = self.mode.restoration() else { return };
         if restoration.steps == 0 {
             return;
         }
@@ -163,7 +173,7 @@ impl<N: Nlp> State<'_, N> {
         if theta > most || !phi.is_finite() || !self.filter.accepts(theta, phi) {
             return;
         }
-        (self.mu, self.restoration, self.penalty) = (mu, None, None);
+        (self.mu, self.mode) = (mu, Mode::Filter);
         std::mem::swap(&mut self.slacks.s, &mut self.trial.s);
         self.slacks.z.fill(self.barrier_unit);
         self.slacks.safeguard_multipliers(mu);
@@ -173,20 +183,19 @@ impl<N: Nlp> State<'_, N> {
 
     /// Ends a restoration that is stuck.
     pub(super) fn abandon_restoration(&mut self) {
-        let Some(restoration) = self.restoration.take() else { return };
-        self.penalty = None;
-        self.mu = restoration.mu;
+        let Some(restoration) = self.mode.restoration() else { return };
+        (self.mu, self.mode) = (restoration.mu, Mode::Filter);
         self.restart();
     }
 
     /// The curvature of the squared distance from `x_R`; 0 outside a restoration.
     pub(super) fn proximity_weight(&self) -> f64 {
-        self.restoration.as_ref().map_or(0.0, |restoration| restoration.proximity)
+        self.mode.restoration().map_or(0.0, |restoration| restoration.proximity)
     }
 
     /// Adds the gradient of the squared distance to the one of the Lagrangian.
     pub(super) fn add_proximity_gradient(&mut self) {
-        let Some(Restoration { x: centre, proximity, .. }) = &self.restoration else { return };
+        let Some(Restoration { x: centre, proximity, .. }) = self.mode.restoration() else { return };
         for ((g, x), centre) in self.negative_gradient.iter_mut().zip(&self.x).zip(centre) {
             *g -= proximity * (x - centre);
         }
@@ -196,7 +205,7 @@ impl<N: Nlp> State<'_, N> {
     /// objective, in a restoration the squared distance.
     pub(super) fn penalty_objective(&self, is_trial: bool) -> f64 {
         let (x, values) = if is_trial { (&self.trial.x, &self.trial.values) } else { (&self.x, &self.values) };
-        match &self.restoration {
+        match self.mode.restoration() {
             Some(Restoration { x: centre, proximity, .. }) => {
                 let squares = x.iter().zip(centre).map(|(x, centre)| (x - centre).powi(2));
                 0.5 * proximity * squares.sum::<f64>()
@@ -207,7 +216,7 @@ impl<N: Nlp> State<'_, N> {
 
     /// The derivative of [`State::penalty_objective`] along the step.
     pub(super) fn penalty_objective_slope(&self) -> f64 {
-        match &self.restoration {
+        match self.mode.restoration() {
             Some(Restoration { x: centre, proximity, .. }) => {
                 let terms = self.x.iter().zip(centre).zip(&self.step.x);
                 proximity * terms.map(|((x, centre), d)| (x - centre) * d).sum::<f64>()

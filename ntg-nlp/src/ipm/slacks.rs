@@ -64,6 +64,16 @@ impl Slacks {
         all
     }
 
+    /// Whether an inequality is the bound of a row, not of a variable.
+    pub(super) fn is_inequality_row(&self, inequality: usize) -> bool {
+        self.inequalities[inequality].function < self.first_variable
+    }
+
+    /// Whether an equality is a row, not a fixed variable.
+    pub(super) fn is_equality_row(&self, equality: usize) -> bool {
+        self.equalities[equality].function < self.first_variable
+    }
+
     fn add(&mut self, lower: &[f64], upper: &[f64], first: usize) {
         for (i, (&lower, &upper)) in lower.iter().zip(upper).enumerate() {
             let function = first + i;

@@ -3,8 +3,7 @@
 use super::best::Point;
 use super::equalities::Estimate;
 use super::filter::Filter;
-use super::penalty::Penalty;
-use super::restoration::Restoration;
+use super::mode::Mode;
 use super::slacks::{Slacks, log_sum};
 use super::step::Step;
 use super::watchdog::Watchdog;
@@ -55,12 +54,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) proximal: f64,
     /// The fraction of the convexifying term that the last matrix needed.
     pub(super) convex_fraction: f64,
-    /// What is added to the diagonal of the matrix to make steps shorter, (11.5b).
-    pub(super) damping: f64,
-    /// Set in penalty mode, where bounds are elastic.
-    pub(super) penalty: Option<Penalty>,
-    /// Set while feasibility is restored.
-    pub(super) restoration: Option<Restoration>,
+    /// How violations are treated.
+    pub(super) mode: Mode,
     /// How often feasibility was restored.
     pub(super) restorations: usize,
     /// How many short steps were made in a row.
@@ -162,7 +157,7 @@ impl<N: Nlp> State<'_, N> {
     fn collect_multipliers(&mut self) {
         let objective = self.system.objective();
         self.slacks.multipliers(objective, &mut self.multipliers);
-        if self.restoration.is_some() {
+        if self.mode.restoration().is_some() {
             self.multipliers[objective] = 0.0;
         }
     }
@@ -218,7 +213,7 @@ impl<N: Nlp> State<'_, N> {
     /// Why the solve is over at the present point; none where it goes on.
     pub(super) fn stop(&self) -> Option<Status> {
         let Self { options, record, history, iterations, begin, x, .. } = self;
-        let is_restoring = self.restoration.is_some();
+        let is_restoring = self.mode.restoration().is_some();
         let objective = if is_restoring { 0.0 } else { self.values[self.system.objective()] };
         Stage { options, record, history, iterations: *iterations, begin: *begin, objective, x, is_restoring }.stops()
     }

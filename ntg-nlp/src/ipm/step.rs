@@ -148,18 +148,18 @@ impl<N: Nlp> State<'_, N> {
     pub(super) fn compute_step(&mut self) -> bool {
         self.step.prepare(&self.slacks);
         self.step.compliance.fill(0.0);
-        if let Some(penalty) = &self.penalty {
-            penalty.weights(&self.slacks, &mut self.step.inequality_sigma, &mut self.step.compliance);
+        if let Some(relaxed) = self.mode.relaxed() {
+            relaxed.weights(&self.slacks, &mut self.step.inequality_sigma, &mut self.step.compliance);
         }
         self.step.accumulate_sigma(&self.slacks);
         for (c, equality) in self.step.equality_residual.iter_mut().zip(&self.slacks.equalities) {
             *c = self.values[equality.function] - equality.value;
         }
-        if let Some(penalty) = &self.penalty {
-            penalty.residuals(&self.slacks, self.mu, &mut self.step.residual, &mut self.step.equality_residual);
+        if let Some(relaxed) = self.mode.relaxed() {
+            relaxed.residuals(&self.slacks, self.mu, &mut self.step.residual, &mut self.step.equality_residual);
         }
-        // In penalty mode the compliances leave the proximal term nothing to do.
-        let largest = if self.penalty.is_some() { LEAST_PROXIMAL } else { LARGEST_PROXIMAL };
+        // The compliances of relaxed equalities leave the proximal term nothing to do.
+        let largest = if self.mode.relaxed().is_some() { LEAST_PROXIMAL } else { LARGEST_PROXIMAL };
         let mut proximal = (PROXIMAL_RISE * self.proximal).min(largest);
         loop {
             if !self.factorise(proximal) {
@@ -198,7 +198,7 @@ impl<N: Nlp> State<'_, N> {
     /// proximal term is tried before.
     fn factorise(&mut self, proximal: f64) -> bool {
         self.record.shift = 0.0;
-        let proximity = self.proximity_weight() + self.damping;
+        let proximity = self.proximity_weight();
         let is_settled = self.mu <= SETTLED * self.barrier_unit;
         self.assemble_exact(proximal);
         if self.system.factorise(0.0, proximity) {

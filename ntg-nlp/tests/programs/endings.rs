@@ -10,7 +10,7 @@ use std::time::Duration;
 
 const INF: f64 = f64::INFINITY;
 
-of_both_methods! {
+of_all_methods! {
     a_linear_contradiction_is_named_by_its_rows
     a_nonlinear_contradiction_ends_where_the_violation_is_least
     an_objective_that_falls_without_limit_is_recognised

@@ -1,7 +1,7 @@
 //! Both methods on the smooth problems of Hock and Schittkowski, from the published starts to the published optima.
 
 use crate::hs::Problem;
-use ntg_nlp::{Options, Outcome, Status, ipm, sqp};
+use ntg_nlp::{Method, Options, Outcome, Status, Violations, ipm, sqp};
 
 /// Iterations of one problem at most. A law, and a generous one.
 const MOST_ITERATIONS: usize = 100;
@@ -70,14 +70,24 @@ fn all_by(exceptions: &[(u32, &str)], solve: impl Fn(&Problem) -> Outcome) {
     assert!(wrong.is_empty(), "not as stated:\n{}", wrong.join("\n"));
 }
 
-#[test]
-fn damped_steps_solve_them_too() {
-    let options = Options { damping: true, ..Options::default() };
-    let is_solved = |problem: &&Problem| is_right(problem, &ipm::solve(&problem.program(), &problem.start, &options));
+/// Options of a further attempt solve at least so many of the problems.
+#[track_caller]
+fn at_least(count: usize, options: &Options) {
+    let is_solved = |problem: &&Problem| is_right(problem, &ipm::solve(&problem.program(), &problem.start, options));
     let problems = crate::hs::all();
     let unsolved: Vec<u32> =
         problems.iter().filter(|problem| !is_solved(problem)).map(|problem| problem.number).collect();
-    assert!(problems.len() - unsolved.len() >= 100, "{unsolved:?}");
+    assert!(problems.len() - unsolved.len() >= count, "{} of {}: {unsolved:?}", unsolved.len(), problems.len());
+}
+
+#[test]
+fn restoring_by_squares() {
+    at_least(100, &Options { restoration: Violations::Squared, ..Options::default() });
+}
+
+#[test]
+fn augmented_lagrangian() {
+    at_least(100, &Options { method: Method::AugmentedLagrangian, ..Options::default() });
 }
 
 #[test]

@@ -1,25 +1,31 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
 //!
 //! ```text
-//! interior point -> the same with damped steps -> the same with sizes taken anew -> from fewer knots -> sequential quadratic programming
+//! interior point -> restoring by squares -> with sizes taken anew -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
 //! ```
 
 use super::budget::{Budget, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
 use crate::guess::{Guess, start};
-use crate::settings::{Method, Settings};
+use crate::settings::{Method, Settings, Violations};
 use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Outcome, Start, Status, method};
+
+/// All of them, in their order.
+const ATTEMPTS: [Attempt; 5] =
+    [Attempt::Squares, Attempt::SizesAnew, Attempt::AugmentedLagrangian, Attempt::FewerKnots, Attempt::Sqp];
 
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Attempt {
-    /// From the first point, with damped steps.
-    Damped,
+    /// From the first point, with restorations that reduce the squares of violations.
+    Squares,
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
     /// what it guesses.
     SizesAnew,
+    /// From the first point, by the augmented Lagrangian.
+    AugmentedLagrangian,
     /// From a solution on fewer knots.
     FewerKnots,
     /// By sequential quadratic programming from the first point.
@@ -44,7 +50,7 @@ impl Session {
         let mut outcome = self.solve_once(nlp, first, &settings);
         budget.spend(outcome.iterations);
         if settings.method == Method::Auto && !is_guess {
-            for attempt in [Attempt::Damped, Attempt::SizesAnew, Attempt::FewerKnots, Attempt::Sqp] {
+            for attempt in ATTEMPTS {
                 if outcome.status.is_final() {
                     break;
                 }
@@ -67,10 +73,14 @@ impl Session {
         failed: &Outcome,
         budget: &mut Budget<'_>,
     ) -> Result<Option<Outcome>, SetupError> {
-        let Some(settings) = budget.attempt() else { return Ok(None) };
+        let Some(settings) = budget.further() else { return Ok(None) };
         let next = match attempt {
-            Attempt::Damped => {
-                let settings = Settings { damping: true, ..settings };
+            Attempt::Squares => {
+                let settings = Settings { restoration: Violations::Squared, ..settings };
+                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
+            }
+            Attempt::AugmentedLagrangian => {
+                let settings = Settings { method: Method::AugmentedLagrangian, ..settings };
                 self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
             }
             Attempt::SizesAnew => {
@@ -89,7 +99,7 @@ impl Session {
                 let task = Task { guess: curves.as_ref().or(task.guess), ..task };
                 let structure = nlp.model.structure.clone();
                 let Some(solution) = start_from_fewer(task, &structure, budget)? else { return Ok(None) };
-                let Some(settings) = budget.attempt() else { return Ok(None) };
+                let Some(settings) = budget.further() else { return Ok(None) };
                 let x = start(nlp, Some(&Guess::from(&solution)))?;
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
             }

@@ -120,7 +120,7 @@ impl Session {
         let options = settings.solver_options();
         match settings.method {
             Method::Sqp => method::solve_from(nlp, first.x, first.from, &options),
-            Method::InteriorPoint | Method::Auto => {
+            Method::InteriorPoint | Method::AugmentedLagrangian | Method::Auto => {
                 ipm::solve_again(&mut self.analysis, nlp, first.x, first.from, &options)
             }
         }

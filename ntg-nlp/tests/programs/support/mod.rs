@@ -3,10 +3,13 @@
 #![allow(dead_code, unreachable_pub, unused_macros, reason = "each test file uses the part that it needs")]
 
 /// Makes of every function of a method a test of each method.
-macro_rules! of_both_methods {
+macro_rules! of_all_methods {
     ($($law:ident)*) => {
         mod interior_point {
             $(#[test] fn $law() { super::$law(ntg_nlp::Method::InteriorPoint) })*
+        }
+        mod augmented_lagrangian {
+            $(#[test] fn $law() { super::$law(ntg_nlp::Method::AugmentedLagrangian) })*
         }
         mod sqp {
             $(#[test] fn $law() { super::$law(ntg_nlp::Method::Sqp) })*
