@@ -93,3 +93,10 @@ fn a_transfer_of_many_revolutions_is_not_crawled_through() {
     close(report.objective, 293.071_095, 1e-6);
     assert!(report.iterations <= 250, "{} iterations", report.iterations);
 }
+
+/// The first attempt runs to its limit; the augmented Lagrangian finds the published optimum.
+#[test]
+fn a_low_thrust_spiral_by_the_augmented_lagrangian() {
+    let report = Shipped::spec("gallery/low_thrust_spiral").solve();
+    close(report.objective, 45.721_763_9, 1e-7);
+}
