@@ -9,6 +9,8 @@
 //! Reference: C. de Boor, *A Practical Guide to Splines*, chapter X.
 
 use crate::knots::{Knots, MAX_ORDER, Side};
+use ntg_math::{MOST_LANES, Pack, Simd, Task, dispatch};
+use std::ops::{Add, Div, Mul, Sub};
 
 /// Writes derivatives `0 ..= highest` of the `order` B-splines that do not vanish at `x`.
 ///
@@ -26,11 +28,76 @@ use crate::knots::{Knots, MAX_ORDER, Side};
 /// If `out` is shorter than its shape or `span` is no interval of `knots`: a mistake of the
 /// calling code that no data can cause.
 pub fn derivatives(knots: &[f64], order: usize, span: usize, x: f64, highest: usize, out: &mut [f64]) {
+    triangle((knots, order, span), x, highest, out);
+}
+
+/// As [`derivatives`] at many points of one interval of a spline, for packs of them at once and with the same bits:
+/// derivative `j` of the `i`-th B-spline at point `k` is `out[(j * order + i) * points + k]`.
+///
+/// # Panics
+/// If `out` is shorter than that.
+pub fn derivatives_along(knots: &Knots, interval: usize, points: &[f64], highest: usize, out: &mut [f64]) {
+    dispatch(Along { knots, interval, points, highest, out });
+}
+
+struct Along<'a> {
+    knots: &'a Knots,
+    interval: usize,
+    points: &'a [f64],
+    highest: usize,
+    out: &'a mut [f64],
+}
+
+impl Task for Along<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { knots, interval, points, highest, out } = self;
+        let (order, count) = (knots.order(), points.len());
+        let mut packs = vec![Pack::splat(simd, 0.0); (highest + 1) * order];
+        // The last pack takes some points of the one before again, and where there are few it repeats the last point.
+        for from in (0..count).step_by(S::LANES).map(|from| from.min(count.saturating_sub(S::LANES))) {
+            let lanes: [f64; MOST_LANES] = std::array::from_fn(|lane| points[(from + lane).min(count - 1)]);
+            let x = Pack::load(simd, &lanes);
+            triangle((knots.knots(), order, knots.span(interval)), x, highest, &mut packs);
+            for (row, pack) in out.chunks_exact_mut(count).zip(&packs) {
+                let row = &mut row[from..];
+                match row.len() < S::LANES {
+                    true => row.copy_from_slice(&pack.to_array()[..row.len()]),
+                    false => pack.store(row),
+                }
+            }
+        }
+    }
+}
+
+/// A number, or a pack of them.
+trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    /// The number `x`, in every lane.
+    fn like(self, x: f64) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        x
+    }
+}
+
+impl<S: Simd> Real for Pack<S> {
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        Self::splat(self.simd(), x)
+    }
+}
+
+/// See [`derivatives`].
+#[inline(always)]
+fn triangle<T: Real>((knots, order, span): (&[f64], usize, usize), x: T, highest: usize, out: &mut [T]) {
     debug_assert!(order >= 1 && span + 1 >= order && span + order < knots.len());
     debug_assert!(knots[span] < knots[span + 1]);
     let (values, rest) = out[..(highest + 1) * order].split_at_mut(order);
-    rest.fill(0.0);
-    values[0] = 1.0;
+    rest.fill(x.like(0.0));
+    values[0] = x.like(1.0);
     for reached in 1..order {
         // Here `values[..reached]` holds the B-splines of order `reached`.
         let row = order - reached;
@@ -75,23 +142,27 @@ pub(crate) fn blossom(knots: &[f64], order: usize, span: usize, ends: usize, out
 }
 
 /// Raises the B-splines in `values[..reached]` from order `reached` to the next (equation 1.3).
-fn raise(knots: &[f64], span: usize, x: f64, reached: usize, values: &mut [f64]) {
-    let mut carry = 0.0;
+#[inline(always)]
+fn raise<T: Real>(knots: &[f64], span: usize, x: T, reached: usize, values: &mut [T]) {
+    let mut carry = x.like(0.0);
     for s in 0..reached {
         let (low, high) = (knots[span + 1 + s - reached], knots[span + 1 + s]);
-        let share = values[s] / (high - low);
-        values[s] = carry + (high - x) * share;
-        carry = (x - low) * share;
+        let share = values[s] / x.like(high - low);
+        values[s] = carry + (x.like(high) - x) * share;
+        carry = (x - x.like(low)) * share;
     }
     values[reached] = carry;
 }
 
 /// Derivatives of the B-splines of order `reached + 1` from those of order `reached` (equation 1.5).
-fn differentiate(knots: &[f64], span: usize, reached: usize, row: &mut [f64]) {
-    let mut carry = 0.0;
+#[inline(always)]
+fn differentiate<T: Real>(knots: &[f64], span: usize, reached: usize, row: &mut [T]) {
+    let like = |x: f64| row[0].like(x);
+    let factor = like(reached as f64);
+    let mut carry = like(0.0);
     for s in 0..reached {
         let width = knots[span + 1 + s] - knots[span + 1 + s - reached];
-        let quotient = reached as f64 * row[s] / width;
+        let quotient = factor * row[s] / factor.like(width);
         row[s] = carry - quotient;
         carry = quotient;
     }
@@ -142,5 +213,28 @@ impl<'a> Spline<'a> {
         derivative(knots.knots(), order, knots.span(interval), tau, j, &mut row);
         let active = &self.coefficients[knots.support_start(interval)..][..order];
         row.iter().zip(active).map(|(b, c)| b * c).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_points_have_the_bits_of_each_alone() {
+        const HIGHEST: usize = 6; // Beyond the order, where all is 0.
+        let knots = Knots::new(5, vec![0.0, 0.3, 0.45, 1.0], 3).expect("good knots");
+        for count in 0..10 {
+            let points: Vec<f64> = (0..count).map(|k| 0.3 + 0.15 * k as f64 / 9.0).collect();
+            let mut all = vec![f64::NAN; (HIGHEST + 1) * knots.order() * count];
+            derivatives_along(&knots, 1, &points, HIGHEST, &mut all);
+            for (k, x) in points.iter().enumerate() {
+                let mut alone = vec![0.0; (HIGHEST + 1) * knots.order()];
+                derivatives(knots.knots(), knots.order(), knots.span(1), *x, HIGHEST, &mut alone);
+                for (i, wanted) in alone.iter().enumerate() {
+                    assert_eq!(all[i * count + k].to_bits(), wanted.to_bits(), "number {i} at point {k} of {count}");
+                }
+            }
+        }
     }
 }

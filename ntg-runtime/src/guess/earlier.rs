@@ -3,10 +3,9 @@
 //! Agents, phases, outputs and variables are recognised by name. An output of a phase that the
 //! earlier problem did not have takes the same part of its agent's whole time.
 
-use super::start::{Curve, Function, set};
+use super::start::{Curve, pointwise, set};
 use crate::solution::Solution;
 use crate::transcribe::{Transcription, names};
-use std::rc::Rc;
 
 /// The earlier variables themselves, where both problems have the same layout.
 pub(super) fn same(nlp: &Transcription, solution: &Solution) -> Option<Vec<f64>> {
@@ -68,7 +67,7 @@ pub(super) fn curves<'a>(nlp: &Transcription, solution: &'a Solution) -> Vec<Cur
                 Some(old) => (old_layout.start(old, &solution.inner.x), old_layout.duration(old, &solution.inner.x)),
                 None => (trajectory.start(), trajectory.end() - trajectory.start()),
             };
-            let function: Function = Rc::new(move |tau| Ok(trajectory.si(start + tau * length, 0)));
+            let function = pointwise(move |tau| Ok(trajectory.si(start + tau * length, 0)));
             curves.push(Curve { phase, output, whole: same.is_none(), function });
         }
     }

@@ -17,4 +17,4 @@ pub(crate) use defaults::bounds as constant_bounds;
 pub use program::Guess;
 pub(crate) use route::Route;
 pub use start::start;
-pub(crate) use start::{Curve, Function, apply, finish, set};
+pub(crate) use start::{Curve, apply, finish, pointwise, set};

@@ -12,8 +12,13 @@ use ntg_nlp::Nlp;
 use ntg_splines::{Knots, Place, Sampled, fit_all};
 use std::rc::Rc;
 
-/// A guessed function of scaled time, SI.
-pub(crate) type Function<'a> = Rc<dyn Fn(f64) -> Result<f64, SetupError> + 'a>;
+/// A guessed function of scaled time, SI: its values at many times.
+pub(crate) type Function<'a> = Rc<dyn Fn(&[f64]) -> Result<Vec<f64>, SetupError> + 'a>;
+
+/// A function that is known one time after the other.
+pub(crate) fn pointwise<'a>(value: impl Fn(f64) -> Result<f64, SetupError> + 'a) -> Function<'a> {
+    Rc::new(move |times| times.iter().map(|time| value(*time)).collect())
+}
 
 /// A function that is guessed for one output of one phase.
 #[derive(Clone)]
@@ -111,9 +116,10 @@ fn fit_together(layout: &Layout, curves: &[&Curve], knots: &Knots, x: &mut [f64]
     let mut functions = vec![];
     for curve in curves {
         let time = if curve.whole { Whole::new(layout, curve.phase, x) } else { Whole::PHASE };
-        let value = |tau: f64| (curve.function)(time.at(tau));
-        let values: Result<Vec<f64>, SetupError> = places.iter().map(|place| value(place.tau)).collect();
-        functions.push(Sampled { values: values?, ends: (value(0.0)?, value(1.0)?) });
+        let times = places.iter().map(|place| place.tau).chain([0.0, 1.0]).map(|tau| time.at(tau));
+        let mut values = (curve.function)(&Vec::from_iter(times))?;
+        let ends = values.split_off(places.len());
+        functions.push(Sampled { values, ends: (ends[0], ends[1]) });
     }
     for (curve, fitted) in curves.iter().zip(fit_all(knots, &places, &functions)) {
         let member = &layout.phases[curve.phase].outputs[curve.output];

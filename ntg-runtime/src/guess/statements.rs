@@ -4,7 +4,8 @@
 
 use super::program::{Guess, Statement};
 use super::route::Route;
-use super::start::{Curve, Function, set};
+use super::start::{Curve, Function, pointwise, set};
+use crate::transcribe::frame::Frame;
 use crate::transcribe::instances::{index_at, members, position};
 use crate::transcribe::layout::Time;
 use crate::transcribe::node::Site;
@@ -30,17 +31,17 @@ impl<'a> Statements<'a> {
                 match &guess.kind {
                     GuessKind::Duration { value } => {
                         let (phases, _) = self.scope(&guess.scope, &indices)?;
-                        let seconds = self.value(value, &indices, f64::NAN, x)?[0];
+                        let seconds = self.value(value, &indices, x)?[0];
                         self.share(&phases, seconds, x);
                     }
                     GuessKind::Variable { variable, index, value } => {
                         let index = index_at(index.as_ref(), &indices);
                         let variable = layout.variable(structure, *variable, index)?;
-                        x[variable as usize] = self.value(value, &indices, f64::NAN, x)?[0];
+                        x[variable as usize] = self.value(value, &indices, x)?[0];
                     }
                     GuessKind::Start { value } => {
                         let (phases, _) = self.scope(&guess.scope, &indices)?;
-                        let seconds = self.value(value, &indices, f64::NAN, x)?[0];
+                        let seconds = self.value(value, &indices, x)?[0];
                         if let Some(phase) = phases.first() {
                             set(layout.agents[layout.phases[*phase].agent].start, seconds, x);
                         }
@@ -63,19 +64,18 @@ impl<'a> Statements<'a> {
                         let (phases, whole) = self.scope(&guess.scope, &indices)?;
                         let index = index_at(index.as_ref(), &indices);
                         let clock = Clock::at(&nlp.model.layout, x);
-                        let function: Function =
-                            Rc::new(move |tau| numbers(nlp, &clock, value, &indices, tau, 1).map(|n| n[0]));
+                        let function: Function = Rc::new(move |times| along(nlp, &clock, value, &indices, times));
                         self.add(&phases, whole, (output, index), &function, &mut curves);
                     }
                     GuessKind::Route { outputs, points, values } => {
                         let (phases, whole) = self.scope(&guess.scope, &indices)?;
                         let clock = Clock::at(&nlp.model.layout, x);
-                        let numbers = numbers(nlp, &clock, values, &indices, f64::NAN, points * outputs.len())?;
+                        let numbers = numbers(nlp, &clock, values, &indices, points * outputs.len())?;
                         let points = numbers.chunks(outputs.len().max(1)).map(<[f64]>::to_vec).collect();
                         let Some(route) = Route::new(points).map(Rc::new) else { continue };
                         for (axis, (output, index)) in outputs.iter().enumerate() {
                             let route = route.clone();
-                            let function: Function = Rc::new(move |s| Ok(route.at(axis, s)));
+                            let function = pointwise(move |s| Ok(route.at(axis, s)));
                             let index = index_at(index.as_ref(), &indices);
                             self.add(&phases, whole, (output, index), &function, &mut curves);
                         }
@@ -156,7 +156,7 @@ impl<'a> Statements<'a> {
                     self.named(output, &mut curves, |unit| {
                         let value = value.clone();
                         let name = output.clone();
-                        Ok(Rc::new(move |tau| finite(value(tau) * unit, &name)))
+                        Ok(pointwise(move |tau| finite(value(tau) * unit, &name)))
                     })?;
                 }
                 Statement::Route { outputs, points } => {
@@ -172,7 +172,7 @@ impl<'a> Statements<'a> {
                     for (axis, output) in outputs.iter().enumerate() {
                         self.named(output, &mut curves, |unit| {
                             let route = route.clone();
-                            Ok(Rc::new(move |s| Ok(route.at(axis, s) * unit)))
+                            Ok(pointwise(move |s| Ok(route.at(axis, s) * unit)))
                         })?;
                     }
                 }
@@ -200,7 +200,7 @@ impl<'a> Statements<'a> {
                     return Err(SetupError::Guess { message });
                 };
                 let unit = declared.unit.factor;
-                let function: Function = Rc::new(move |tau| {
+                let function = pointwise(move |tau| {
                     let side = if tau == 1.0 { Side::Left } else { Side::Right };
                     finite(spline.one_sided(tau, 0, side) * unit, name)
                 });
@@ -286,8 +286,8 @@ impl<'a> Statements<'a> {
         }
     }
 
-    fn value(&self, call: &Call, indices: &[i64], tau: f64, x: &[f64]) -> Result<Vec<f64>, SetupError> {
-        numbers(self.nlp, &Clock::at(&self.nlp.model.layout, x), call, indices, tau, 1)
+    fn value(&self, call: &Call, indices: &[i64], x: &[f64]) -> Result<Vec<f64>, SetupError> {
+        numbers(self.nlp, &Clock::at(&self.nlp.model.layout, x), call, indices, 1)
     }
 }
 
@@ -297,15 +297,28 @@ fn numbers(
     clock: &Clock,
     call: &Call,
     indices: &[i64],
-    tau: f64,
     count: usize,
 ) -> Result<Vec<f64>, SetupError> {
-    let frame = crate::transcribe::frame::Frame { clock, ..nlp.frame() };
-    let site = Site { indices: indices.to_vec(), point: Point { tau, ..Point::NONE } };
-    let values = frame.numbers(call, &site.indices, site.point)?;
+    let values = Frame { clock, ..nlp.frame() }.numbers(call, indices, Point::NONE)?;
     if values.len() < count {
         return Err(SetupError::malformed("a guess has too few values"));
     }
+    all_finite(values)
+}
+
+/// The finite first results of a call without slots at many scaled times, with guessed times.
+fn along(
+    nlp: &Transcription,
+    clock: &Clock,
+    call: &Call,
+    indices: &[i64],
+    taus: &[f64],
+) -> Result<Vec<f64>, SetupError> {
+    let site = |tau: &f64| Site { indices: indices.to_vec(), point: Point { tau: *tau, ..Point::NONE } };
+    all_finite(Frame { clock, ..nlp.frame() }.evaluate_all(call, taus.iter().map(site).collect(), &[])?)
+}
+
+fn all_finite(values: Vec<f64>) -> Result<Vec<f64>, SetupError> {
     match values.iter().find(|v| !v.is_finite()) {
         Some(value) => Err(SetupError::Guess { message: format!("a value in the spec's guess is {value}") }),
         None => Ok(values),

@@ -4,7 +4,7 @@
 //! that a start does not depend on how many others there are.
 
 use super::vehicles::Vehicle;
-use crate::guess::{Curve, Function, Route, apply, finish};
+use crate::guess::{Curve, Route, apply, finish, pointwise};
 use crate::transcribe::layout::Time;
 use crate::transcribe::{SetupError, Transcription};
 use fastrand::Rng;
@@ -62,7 +62,7 @@ fn along<'a>(nlp: &Transcription, vehicle: &Vehicle, points: Vec<Vec<f64>>) -> V
     for (phase, members) in nlp.model.layout.agents[vehicle.agent].phases.clone().zip(&vehicle.members) {
         for (axis, output) in members.iter().enumerate() {
             let route = route.clone();
-            let function: Function = Rc::new(move |s| Ok(route.at(axis, s)));
+            let function = pointwise(move |s| Ok(route.at(axis, s)));
             curves.push(Curve { phase, output: *output, whole: true, function });
         }
     }

@@ -5,7 +5,7 @@
 //! To build it costs far more than to evaluate it, so a problem that is solved again keeps it. Integrals that are
 //! variables are first replaced by their finer values.
 
-use crate::transcribe::batch::{Batch, BatchWork, evaluators};
+use crate::transcribe::batch::{Batch, BatchWork, batches};
 use crate::transcribe::elements::sites;
 use crate::transcribe::node::Site;
 use crate::transcribe::points::{Point, fine_quadrature, fine_set};
@@ -67,7 +67,7 @@ impl Plan {
             let (adds, checks) = (!group.rows.iter().all(checked), group.rows.iter().any(checked));
             let finer = if checks { fine_set } else { fine_quadrature };
             let sites = sites(&frame, group, |points, breakpoints, phase| finer(points, breakpoints, phase, samples))?;
-            for batch in evaluators(&frame, &group.call, sites)? {
+            for batch in batches(&frame, &group.call, sites)? {
                 let work = batch.work();
                 plan.parts.push(Part { group: index, adds, checks, batch, work, bounds: vec![] });
             }
@@ -92,7 +92,7 @@ impl Plan {
             let group = &nlp.model.structure.groups[*group];
             bounds.clear();
             for (element, site) in batch.sites.iter().enumerate() {
-                if element == 0 || batch.sites[element - 1].indices != site.indices {
+                if element == 0 || !batch.sites[element - 1].is_of_member(site) {
                     bounds.push((element, group_bounds(&frame, group, &site.indices)?));
                 }
             }

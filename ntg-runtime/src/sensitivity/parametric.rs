@@ -301,7 +301,7 @@ fn variable_limits(nlp: &Transcription, full: &Structure, x: &[f64]) -> Result<(
 fn bounds(frame: &Frame, call: &Call, indices: &[i64], x: &[f64]) -> Result<Vec<Bound>, SetupError> {
     let site = Site { indices: indices.to_vec(), point: Point::NONE };
     let mut found = vec![];
-    for (batch, maps) in batches(frame, call, vec![site])? {
+    for batch in batches(frame, call, vec![site])? {
         let kernels = &frame.structure.kernels;
         let [jacobian, hessian] = batch.patterns(kernels);
         let mut out = BlockValues {
@@ -312,8 +312,8 @@ fn bounds(frame: &Frame, call: &Call, indices: &[i64], x: &[f64]) -> Result<Vec<
         batch.derivatives(frame.problem, kernels, frame.tables, x, &mut batch.work(), &mut out);
         found.extend(out.values.iter().map(|value| Bound { value: *value, slope: vec![] }));
         for ((row, slot), slope) in jacobian.into_iter().zip(&out.jacobian) {
-            let terms = &maps[0][slot].terms;
-            found[row].slope.extend(terms.iter().map(|(variable, c)| (*variable, slope * c)));
+            let terms = frame.layout.affine(batch.sources()[slot], &Point::NONE).terms;
+            found[row].slope.extend(terms.into_iter().map(|(variable, c)| (variable, slope * c)));
         }
     }
     Ok(found)

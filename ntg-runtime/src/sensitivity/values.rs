@@ -128,7 +128,7 @@ impl Sensitivity {
         x[tau as usize] = if point.tau.is_nan() { 0.0 } else { point.tau };
         let frame = model.frame(&*self.problem);
         let call = &model.structure.named[place.named].call;
-        let (batch, maps) = batches(&frame, call, vec![site]).ok()?.pop()?;
+        let batch = batches(&frame, call, vec![site]).ok()?.pop()?;
         let kernels = &model.structure.kernels;
         let [jacobian, hessian] = batch.patterns(kernels);
         let mut out = BlockValues {
@@ -147,9 +147,9 @@ impl Sensitivity {
                 Source::Global(variable) if variable == tau => 1.0,
                 _ => 0.0,
             };
+            let map = model.layout.affine(batch.sources()[slot], &point);
             for (parameter, value) in values.iter_mut().enumerate() {
-                let own: f64 =
-                    maps[0][slot].terms.iter().map(|(j, c)| c * self.responses[parameter].x[*j as usize]).sum();
+                let own: f64 = map.terms.iter().map(|(j, c)| c * self.responses[parameter].x[*j as usize]).sum();
                 let rate = moment.as_ref().map_or(0.0, |moment| moment.rates[parameter]);
                 *value += slope * (own + along * rate);
             }

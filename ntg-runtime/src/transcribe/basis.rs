@@ -2,8 +2,8 @@
 //! with the same points (docs/maths.md, equation 4.5).
 
 use super::node::Site;
-use ntg_splines::basis::derivative;
-use ntg_splines::{Knots, MAX_ORDER};
+use ntg_splines::Knots;
+use ntg_splines::basis::derivatives_along;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -54,31 +54,20 @@ impl Basis {
 
     /// Adds the basis functions at points to all tables.
     fn compute(&mut self, knots: &Knots, points: &[Site]) -> Vec<Stretch> {
-        let order = knots.order();
+        let taus: Vec<f64> = points.iter().map(|site| site.point.tau).collect();
         let intervals: Vec<usize> = points.iter().map(|site| knots.interval(site.point.tau, site.point.side)).collect();
-        let (mut stretches, mut begin) = (vec![], 0);
+        let highest = self.derivatives.iter().copied().max().unwrap_or(0);
+        let (mut stretches, mut begin, mut all) = (vec![], 0, vec![]);
         for same in intervals.chunk_by(|a, b| a == b) {
-            let (interval, count) = (same[0], same.len());
-            let first = self.tables.first().map_or(0, Vec::len);
-            for (table, &order_of_derivative) in self.tables.iter_mut().zip(&self.derivatives) {
-                table.resize(first + order * count, 0.0);
-                for (k, site) in points[begin..begin + count].iter().enumerate() {
-                    let mut row = [0.0; MAX_ORDER];
-                    derivative(
-                        knots.knots(),
-                        order,
-                        knots.span(interval),
-                        site.point.tau,
-                        order_of_derivative,
-                        &mut row,
-                    );
-                    for (i, value) in row[..order].iter().enumerate() {
-                        table[first + i * count + k] = *value;
-                    }
-                }
+            let (interval, numbers) = (same[0], knots.order() * same.len());
+            let (first, end) = (self.tables.first().map_or(0, Vec::len), begin + same.len());
+            all.resize((highest + 1) * numbers, 0.0);
+            derivatives_along(knots, interval, &taus[begin..end], highest, &mut all);
+            for (table, &derivative) in self.tables.iter_mut().zip(&self.derivatives) {
+                table.extend_from_slice(&all[derivative * numbers..][..numbers]);
             }
-            begin += count;
-            stretches.push(Stretch { interval, end: begin, first });
+            begin = end;
+            stretches.push(Stretch { interval, end, first });
         }
         stretches
     }

@@ -9,7 +9,7 @@ use super::frame::Frame;
 use super::node::{Node, NodeWork, Site};
 use super::shape::{Traced, trace};
 use super::slot_maps::SlotMaps;
-use super::slots::{AffineMap, Source};
+use super::slots::Source;
 use crate::problem::{Derivatives, Lanes, Problem};
 use ntg_nlp::BlockValues;
 use ntg_splines::Table;
@@ -37,25 +37,8 @@ pub(crate) struct BatchWork {
     plan: PlanWork,
 }
 
-/// A batch and the affine maps of its elements' slots.
-pub(crate) type Mapped = (Batch, Vec<Vec<AffineMap>>);
-
 /// One batch for each shape among the sites, in order of first appearance.
-pub(crate) fn batches(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Mapped>, SetupError> {
-    let shaped = shaped(frame, call, sites)?.into_iter();
-    let mapped = shaped.map(|Shaped { sites, of, traced }| {
-        let map = |(site, of): (&Site, &usize)| {
-            traced[*of].sources.iter().map(|source| frame.layout.affine(*source, &site.point)).collect()
-        };
-        let maps: Vec<Vec<AffineMap>> = sites.iter().zip(&of).map(map).collect();
-        let slots = SlotMaps::new(frame.layout, &sites, &of, &traced);
-        Ok((Batch::new(frame, call, sites, slots, &traced[0])?, maps))
-    });
-    mapped.collect()
-}
-
-/// As [`batches`], where only values are wanted: without the maps of single elements.
-pub(crate) fn evaluators(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Batch>, SetupError> {
+pub(crate) fn batches(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Batch>, SetupError> {
     let shaped = shaped(frame, call, sites)?.into_iter();
     let batch = shaped.map(|Shaped { sites, of, traced }| {
         let slots = SlotMaps::new(frame.layout, &sites, &of, &traced);
@@ -80,7 +63,7 @@ fn shaped(frame: &Frame, call: &Call, sites: Vec<Site>) -> Result<Vec<Shaped>, S
     let mut last = 0;
     for site in sites {
         let known = shapes.get(last).and_then(|shaped: &Shaped| shaped.sites.last());
-        if known.is_some_and(|known| known.point.phase == site.point.phase && known.indices == site.indices) {
+        if known.is_some_and(|known| known.point.phase == site.point.phase && known.is_of_member(&site)) {
             let shaped = &mut shapes[last];
             shaped.of.push(shaped.traced.len() - 1);
             shaped.sites.push(site);

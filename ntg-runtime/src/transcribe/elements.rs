@@ -4,16 +4,16 @@
 //! evaluate them, and rows with bounds. Afterwards: every row has a maker, every element row a
 //! target; the last block, if integrals are variables, holds their identities.
 
-use super::batch::{Batch, Mapped, batches};
+use super::batch::{Batch, batches};
 use super::error::SetupError;
 use super::frame::Frame;
 use super::instances::members;
 use super::layout::{Layout, narrow, outside};
 use super::node::Site;
 use super::points::{Point, point_set, within};
+use super::range_maps::{identities, range_maps};
 use super::repeated::without_repetitions;
 use super::rows::{RowInfo, RowKind, group_bounds};
-use super::slots::AffineMap;
 use ntg_nlp::{Block, Target};
 use ntg_structure::{Affine, Degree, Domain, Group, PhaseRef, Points, Row};
 use std::collections::BTreeMap;
@@ -51,8 +51,8 @@ pub(crate) fn elements(frame: &Frame) -> Result<Elements, SetupError> {
             return Err(SetupError::malformed("a group has not one meaning for each row of its kernel"));
         }
         let sites = without_repetitions(frame, group, sites(frame, group, point_set)?)?;
-        for (batch, maps) in batches(frame, &group.call, sites)? {
-            all.add(frame, index, group, (batch, maps))?;
+        for batch in batches(frame, &group.call, sites)? {
+            all.add(frame, index, group, batch)?;
         }
     }
     all.add_identities(frame);
@@ -98,14 +98,13 @@ pub(crate) fn domain_sites(
 }
 
 impl Elements {
-    fn add(&mut self, frame: &Frame, index: usize, group: &Group, mapped: Mapped) -> Result<(), SetupError> {
-        let (batch, maps) = mapped;
+    fn add(&mut self, frame: &Frame, index: usize, group: &Group, batch: Batch) -> Result<(), SetupError> {
         let kernels = &frame.structure.kernels;
         let [jacobian, hessian] = batch.patterns(kernels);
         let count = batch.sites.len();
         let mut block = Block {
             elements: count,
-            slots: maps.first().map_or(0, Vec::len),
+            slots: batch.slots.slots(),
             rows: group.rows.len(),
             jacobian,
             hessian,
@@ -113,18 +112,18 @@ impl Elements {
             weight: vec![1.0; group.rows.len() * count],
             ..Block::default()
         };
-        map_block(&mut block, &maps);
-        let mut bounds = (vec![], vec![]);
+        range_maps(&mut block, &batch.slots);
+        let mut bounds = vec![];
         for (element, site) in batch.sites.iter().enumerate() {
-            if element == 0 || bounds.0 != site.indices {
-                bounds = (site.indices.clone(), group_bounds(frame, group, &site.indices)?);
+            if element == 0 || !batch.sites[element - 1].is_of_member(site) {
+                bounds = group_bounds(frame, group, &site.indices)?;
             }
             for (row, meaning) in group.rows.iter().enumerate() {
                 let at = row * count + element;
                 match meaning {
                     Row::Constraint { constraint, .. } => {
                         let maker = (self.blocks.len(), element, row);
-                        block.target[at] = self.add_row(*constraint, site, bounds.1[row], maker);
+                        block.target[at] = self.add_row(*constraint, site, bounds[row], maker);
                     }
                     _ => block.weight[at] = weight(group, site)?,
                 }
@@ -144,7 +143,7 @@ impl Elements {
             batch.take_data(frame, &group.call)?;
             let mut bounds = vec![];
             for (element, site) in batch.sites.iter().enumerate() {
-                if element == 0 || batch.sites[element - 1].indices != site.indices {
+                if element == 0 || !batch.sites[element - 1].is_of_member(site) {
                     bounds = group_bounds(frame, group, &site.indices)?;
                 }
                 for (row, bounds) in bounds.iter().enumerate() {
@@ -174,7 +173,7 @@ impl Elements {
     /// The block of `variable - sum = 0`: one element for each member of each integral
     /// (docs/maths.md, equation 4.12); the sums are added by [`Elements::add_parts`].
     fn add_identities(&mut self, frame: &Frame) {
-        let (mut maps, mut targets) = (vec![], vec![]);
+        let (mut variables, mut targets) = (vec![], vec![]);
         for (integral, members) in frame.layout.integral_members.iter().enumerate() {
             for (member, indices) in members.iter().enumerate() {
                 let row = narrow(self.rows.len());
@@ -183,19 +182,19 @@ impl Elements {
                     kind: RowKind::Integral(integral),
                     indices: indices.clone(),
                     point: Point::NONE,
-                    maker: (self.blocks.len(), maps.len(), 0),
+                    maker: (self.blocks.len(), variables.len(), 0),
                 });
                 self.lower.push(0.0);
                 self.upper.push(0.0);
                 self.integral_rows.push(row);
                 targets.push(Target::Row(row));
-                maps.push(vec![AffineMap { terms: vec![(variable, 1.0)], offset: 0.0 }]);
+                variables.push(variable);
             }
         }
-        if maps.is_empty() {
+        if variables.is_empty() {
             return;
         }
-        let count = maps.len();
+        let count = variables.len();
         let mut block = Block {
             elements: count,
             slots: 1,
@@ -205,7 +204,7 @@ impl Elements {
             weight: vec![1.0; count],
             ..Block::default()
         };
-        map_block(&mut block, &maps);
+        identities(&mut block, variables);
         self.blocks.push(block);
     }
 
@@ -263,29 +262,6 @@ fn evaluate(index: &[Affine], indices: &[i64]) -> Vec<i64> {
 fn no_maker(frame: &Frame, constraint: usize, index: &[i64]) -> SetupError {
     let place = frame.structure.constraints.get(constraint).map(|c| c.place.clone()).unwrap_or_default();
     outside(format!("the constraint `{}`", place.text), index, place)
-}
-
-/// Fills variables, maps and offsets of a block (docs/maths.md, equation 4.5).
-fn map_block(block: &mut Block, maps: &[Vec<AffineMap>]) {
-    block.variable_start = vec![0];
-    block.map_start = vec![0];
-    block.offset = vec![0.0; block.slots * maps.len()];
-    for (element, slots) in maps.iter().enumerate() {
-        let mut variables: Vec<u32> = slots.iter().flat_map(|map| map.terms.iter().map(|t| t.0)).collect();
-        variables.sort_unstable();
-        variables.dedup();
-        for (slot, map) in slots.iter().enumerate() {
-            block.offset[slot * maps.len() + element] = map.offset;
-            let first = block.map.len();
-            block.map.resize(first + variables.len(), 0.0);
-            for (variable, coefficient) in &map.terms {
-                block.map[first + variables.partition_point(|v| v < variable)] += coefficient;
-            }
-        }
-        block.variables.extend(variables);
-        block.variable_start.push(block.variables.len());
-        block.map_start.push(block.map.len());
-    }
 }
 
 impl Frame<'_> {

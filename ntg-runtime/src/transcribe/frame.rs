@@ -4,7 +4,7 @@
 //! thing a slot stands for ([`Source`]) and the number that a datum is. Finds: indices outside
 //! families and arrays, parameters that are not finite.
 
-use super::batch::evaluators;
+use super::batch::batches;
 use super::error::SetupError;
 use super::instances::{index_at, members};
 use super::layout::Layout;
@@ -66,10 +66,12 @@ impl Frame<'_> {
     /// all sites are of one phase and have the same indices.
     pub(crate) fn evaluate_all(&self, call: &Call, sites: Vec<Site>, x: &[f64]) -> Result<Vec<f64>, SetupError> {
         let mut values = vec![];
-        for batch in evaluators(self, call, sites)? {
+        for batch in batches(self, call, sites)? {
             let mut work = batch.work();
             batch.values(self.problem, self.tables, x, &mut work);
-            values.extend_from_slice(&work.node.values[..batch.sites.len()]);
+            let first = work.node.values.get(..batch.sites.len());
+            values
+                .extend_from_slice(first.ok_or_else(|| SetupError::malformed("a call without results is evaluated"))?);
         }
         Ok(values)
     }
@@ -84,7 +86,7 @@ impl Frame<'_> {
     ) -> Result<Vec<(Vec<i64>, f64)>, SetupError> {
         let sites = members(loops).into_iter().map(|indices| Site { indices, point: Point::NONE }).collect();
         let mut found = vec![];
-        for batch in evaluators(self, call, sites)? {
+        for batch in batches(self, call, sites)? {
             let mut work = batch.work();
             batch.values(self.problem, self.tables, x, &mut work);
             let values = work.node.values[..batch.sites.len()].iter();

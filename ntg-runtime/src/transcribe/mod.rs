@@ -27,6 +27,7 @@ pub(crate) mod linear;
 pub(crate) mod names;
 pub(crate) mod node;
 pub(crate) mod points;
+mod range_maps;
 mod reduce;
 mod repeated;
 pub(crate) mod rows;

@@ -27,6 +27,12 @@ pub(crate) struct Site {
 }
 
 impl Site {
+    /// Whether the loops' indices are those of another site. Mostly there are none, which a loop tells sooner than a
+    /// comparison of memory.
+    pub(crate) fn is_of_member(&self, other: &Self) -> bool {
+        self.indices.iter().eq(&other.indices)
+    }
+
     /// The site inside one more loop.
     pub(crate) fn inside(&self, value: i64) -> Self {
         let indices = self.indices.iter().copied().chain([value]).collect();

@@ -19,41 +19,41 @@ pub(crate) struct SlotMaps {
     elements: usize,
     slots: usize,
     /// Outputs at the elements' own points.
-    bundles: Vec<Bundle>,
+    pub(super) bundles: Vec<Bundle>,
     /// All other slots.
-    constants: Vec<Constant>,
+    pub(super) constants: Vec<Constant>,
     /// Basis functions, one table for each derivative: those of a run stand together, the first at all its elements, the
     /// second at all of them, and so on.
-    tables: Vec<Vec<f64>>,
+    pub(super) tables: Vec<Vec<f64>>,
 }
 
 /// Slots of one output, which is fetched once for all of its derivatives, and for all elements in a row that depend on
 /// the same variables (the points of one interval).
 #[derive(Clone, Debug, Default)]
-struct Bundle {
+pub(super) struct Bundle {
     /// The slots, each with the number of its table.
-    slots: Vec<(usize, usize)>,
+    pub(super) slots: Vec<(usize, usize)>,
     /// Variables of each run: the order of the spline.
-    width: usize,
-    runs: Vec<Run>,
+    pub(super) width: usize,
+    pub(super) runs: Vec<Run>,
     /// `width` for each run.
-    variables: Vec<u32>,
+    pub(super) variables: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Run {
+pub(super) struct Run {
     /// One past the last element.
-    end: usize,
+    pub(super) end: usize,
     /// Where its basis functions begin in every table.
-    first: usize,
+    pub(super) first: usize,
 }
 
 /// A slot that is the same number at all points of a member.
 #[derive(Clone, Debug)]
-struct Constant {
-    slot: usize,
+pub(super) struct Constant {
+    pub(super) slot: usize,
     /// One past the last element of each member, and what the slot is there.
-    members: Vec<(usize, AffineMap)>,
+    pub(super) members: Vec<(usize, AffineMap)>,
 }
 
 /// The elements of one member, which are neighbours, and what their slots stand for.
@@ -87,6 +87,11 @@ impl SlotMaps {
     /// Writes slot `s` of element `e` to `u[s * elements + e]`.
     pub(crate) fn refresh(&self, x: &[f64], u: &mut [f64]) {
         dispatch(Refresh { maps: self, x, u });
+    }
+
+    /// How many slots an element has.
+    pub(super) fn slots(&self) -> usize {
+        self.slots
     }
 
     /// How many numbers `refresh` writes.
@@ -253,7 +258,9 @@ impl Task for Refresh<'_> {
 mod tests {
     use super::super::layout::{AgentMember, OutputMember, PhaseMember, Time};
     use super::super::points::Point;
+    use super::super::range_maps::range_maps;
     use super::*;
+    use ntg_nlp::Block;
     use ntg_splines::{Knots, Side};
     use std::sync::Arc;
 
@@ -316,9 +323,20 @@ mod tests {
         let maps = SlotMaps::new(&layout, &sites, &of, &traced);
         let mut u = vec![f64::NAN; maps.len()];
         maps.refresh(&x, &mut u);
+        let mut block = Block { elements: sites.len(), slots: maps.slots(), ..Block::default() };
+        range_maps(&mut block, &maps);
         for (e, site) in sites.iter().enumerate() {
+            let variables = block.variables(e);
+            assert!(variables.is_sorted_by(|a, b| a < b), "variables of element {e}");
             for (s, source) in traced[of[e]].sources.iter().enumerate() {
-                let (found, wanted) = (u[s * sites.len() + e], layout.affine(*source, &site.point).value(&x));
+                let map = layout.affine(*source, &site.point);
+                let row = &block.map(e)[s * variables.len()..][..variables.len()];
+                let mut terms: Vec<(u32, f64)> = variables.iter().copied().zip(row.iter().copied()).collect();
+                terms.retain(|(_, coefficient)| *coefficient != 0.0);
+                let mut wanted = map.terms.clone();
+                wanted.sort_by_key(|(variable, _)| *variable);
+                assert_eq!((terms, block.offset[s * sites.len() + e]), (wanted, map.offset), "slot {s} of element {e}");
+                let (found, wanted) = (u[s * sites.len() + e], map.value(&x));
                 assert!(
                     (found - wanted).abs() <= 1e-13 * wanted.abs().max(1.0),
                     "slot {s} of element {e}: {found} {wanted}"

@@ -26,8 +26,12 @@ const FEW: usize = 2;
 pub(super) fn batch_elements(block: &Block, supports: &Supports) -> (Batching<LANES>, Batching<1>) {
     let same = same_variables(block, supports);
     let most = same.iter().map(Vec::len).max().unwrap_or(0);
-    let runs = (1..=most).map(|depth| runs(&same, depth)).min_by_key(|runs| effort(block, supports, runs));
-    let runs = runs.unwrap_or_default();
+    let mut lengths = vec![];
+    let best = (1..=most).min_by_key(|depth| {
+        run_lengths(&same, *depth, &mut lengths);
+        effort(block, supports, &lengths)
+    });
+    let runs = best.map_or(vec![], |depth| runs(&same, depth));
     let (packed, remainder) = runs.split_at(full(runs.len()));
     (Batching::of(packed), Batching::of(remainder))
 }
@@ -70,18 +74,31 @@ fn runs(same: &[Vec<u32>], depth: usize) -> Vec<Vec<u32>> {
     runs
 }
 
+/// The lengths of [`runs`].
+fn run_lengths(same: &[Vec<u32>], depth: usize, lengths: &mut Vec<usize>) {
+    lengths.clear();
+    for elements in same {
+        let mut rest = elements.len();
+        for part in (1..=rest.div_ceil(depth)).rev() {
+            lengths.push(rest.div_ceil(part));
+            rest -= rest.div_ceil(part);
+        }
+    }
+    lengths.sort_unstable_by_key(|length| std::cmp::Reverse(*length));
+}
+
 /// How many of so many runs are in batches.
 fn full(runs: usize) -> usize {
     if runs % LANES <= FEW { runs - runs % LANES } else { runs }
 }
 
-/// About how many instructions it takes to assemble the matrix with these runs.
-fn effort(block: &Block, supports: &Supports, runs: &[Vec<u32>]) -> usize {
+/// About how many instructions it takes to assemble the matrix with runs of these lengths.
+fn effort(block: &Block, supports: &Supports, runs: &[usize]) -> usize {
     let element_variables = supports.element_variables;
     let (pack, batch) = (60 * block.slots * element_variables, 20 * element_variables * element_variables);
     let (packed, remainder) = runs.split_at(full(runs.len()));
-    let packed = packed.chunks(LANES).map(|runs| runs[0].len() * pack + batch);
-    let remainder = remainder.iter().map(|run| run.len() * pack / 2 + batch / 4);
+    let packed = packed.chunks(LANES).map(|runs| runs[0] * pack + batch);
+    let remainder = remainder.iter().map(|run| run * pack / 2 + batch / 4);
     packed.chain(remainder).sum()
 }
 

@@ -16,7 +16,7 @@ mod prices;
 mod rates;
 
 use super::vehicles::Vehicle;
-use crate::guess::{Curve, Function, apply, finish, set};
+use crate::guess::{Curve, apply, finish, pointwise, set};
 use crate::transcribe::{SetupError, Transcription};
 use grid::Grid;
 use path::Path;
@@ -98,7 +98,7 @@ fn follow(nlp: &Transcription, vehicle: &Vehicle, path: &Path, x: &mut [f64]) ->
     for (number, phase) in phases.enumerate() {
         for (axis, output) in vehicle.members[number].iter().enumerate().take(grid::AXES) {
             let leg = Rc::new(path.legs[number].clone());
-            let function: Function = Rc::new(move |tau| Ok(leg.at(axis, tau)));
+            let function = pointwise(move |tau| Ok(leg.at(axis, tau)));
             curves.push(Curve { phase, output: *output, whole: false, function });
         }
     }
