@@ -1,4 +1,4 @@
-//! The mistakes of people who come from CasADi, MATLAB, Modelica or Python, and what is said of each: docs/mistakes.md
+//! The mistakes of people who come from CasADi, MATLAB, Modelica, JuMP, Dymos, acados or GPOPS, and what is said of each: docs/mistakes.md
 //! is made of this table, and is held against it.
 //!
 //! `NTG_MISTAKES=write cargo test -p ntg-compiler --test mistakes` writes the page anew: read the difference.
@@ -51,6 +51,10 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("let a = der(der(x), 2, 3);", "E001"),
             ("let a = der(x, n / 2);", "E027"),
             ("trajectory { der(x, 7) <= 1; }", "E054"),
+            ("let a = der(x, t);", "E064"),
+            ("let a = deriv(x, t);", "E024"),
+            ("let a = der x;", "E001"),
+            ("let a = ẏ;", "E020"),
         ],
     ),
     (
@@ -64,6 +68,13 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("trajectory { final(x) <= 1 [m]; }", "E052"),
             ("param a = x;", "E029"),
             ("temporal { x <= 3 [m]; }", "E050"),
+            ("initial { x(t0) == 0; }", "E024"),
+            ("minimize tf;", "E020"),
+            ("minimize duration;", "E001"),
+            ("let a = sin(time);", "E020"),
+            ("maximize x.final / 1 [m];", "E012"),
+            ("initial: x == 0;", "E001"),
+            ("at t = 3 [s] { x == 1 [m]; }", "E001"),
         ],
     ),
     (
@@ -114,6 +125,16 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("param a[3] = (1 [m], 2 [m/s], 0);", "E041"),
             ("let a = x^m;", "E042"),
             ("let a = (2 * n, 0, 0) [m] + r;", "E041"),
+            ("param a [kg] = 1;", "E027"),
+            ("param a: kg = 1;", "E001"),
+            ("param a = \"1 kg\";", "E001"),
+            ("param a = 1 (kg);", "E001"),
+            ("param a = 9.81 * [m/s^2];", "E001"),
+            ("param a = 9.81 [m/s**2];", "E018"),
+            ("param a = 2 [N.m];", "E018"),
+            ("param a = 20 [degC];", "E040"),
+            ("param a = 9,81 [m];", "E001"),
+            ("let a = x [km];", "E026"),
         ],
     ),
     (
@@ -141,6 +162,20 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("var a in 0 .. 1;", "E001"),
             ("equation der(x) == y;", "E017"),
             ("import std::gravity;", "E001"),
+            ("from std import gravity;", "E001"),
+            ("import numpy as np;", "E001"),
+            ("let a = np.sin(1);", "E001"),
+            ("let a = math.pi;", "E012"),
+            ("@constraint(model, x <= 5 [m]);", "E008"),
+            ("N = 20;", "E001"),
+            ("solver ipopt;", "E001"),
+            ("minimize { x; }", "E001"),
+            ("minimize T / 1 [s], 2 * m / 1 [kg];", "E001"),
+            ("trajectory { x <= 5 [m], y <= 5 [m]; }", "E001"),
+            ("trajectory { x <= 5 [m] and y <= 5 [m]; }", "E001"),
+            ("let a = x > 1 [m];", "E001"),
+            ("let a = true;", "E020"),
+            ("let a(b) = b^2;", "E001"),
             ("let a = x", "E002"),
             ("let a = x;  let b = a y;", "E001"),
             ("% the mass\n    param a = 1;", "E008"),
@@ -157,6 +192,9 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("let a = sum(i in 1:3, r[i]);", "E001"),
             ("let a = sum(i in 1 .. 3);", "E001"),
             ("let a = sum(r[i], i, 1, 3);", "E025"),
+            ("let a = sum(r[i] for i in 1:3);", "E001"),
+            ("trajectory { if x <= 1 [m] { y <= 1 [m]; } }", "E001"),
+            ("trajectory { y >= 0 if x <= 1 [m]; }", "E001"),
             ("trajectory { for i = 1:3 { r[i] >= 0; } }", "E001"),
             ("trajectory { for i in range(3) { r[i] >= 0; } }", "E001"),
             ("let a = if x <= 1 [m] then 1 else 2;", "E001"),
@@ -181,6 +219,26 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("output z: spline(degree = 4, intervals = 4);", "E016"),
             ("variable z = 3;", "E001"),
             ("variable z in [0, 1];", "E001"),
+            ("variable z in (0, 1);", "E001"),
+            ("variable z in [0, inf];", "E001"),
+            ("variable z in 0 .. inf;", "E020"),
+            ("variable z = 0 .. 1;", "E001"),
+            ("variable z >= 0;", "E001"),
+            ("trajectory { y in [-1, 1] [km]; }", "E001"),
+            ("param z in 0 .. 1;", "E001"),
+            ("state z = 0;", "E001"),
+            ("state z(start = 0);", "E001"),
+            ("state z: 0 .. 3;", "E001"),
+            ("input z: piecewise_constant;", "E001"),
+            ("duration S = 1 .. 9 [s];", "E001"),
+            ("duration S;", "E001"),
+            ("collocation gauss(3, 20);", "E001"),
+            ("const k = 2.5;  output z[1 .. k]: spline(order = 4, intervals = 2);", "E027"),
+            ("phase coast follows boost { }", "E001"),
+            ("table drag(a) = { 0: 1;  2: 3; }", "E001"),
+            ("table drag(a) = linear { 0: 1, 2: 3 }", "E001"),
+            ("guess { x = [0, 1]; }", "E001"),
+            ("guess { x = 0 .. 1; }", "E001"),
             ("final { x == 11 [m]; }", "E057"),
             ("param a = sqrt(-1);", "E032"),
             ("guess { x = linspace(0, 1, 5); }", "E024"),
@@ -214,7 +272,7 @@ fn first(written: &str) -> Option<Diagnostic> {
 
 fn page() -> String {
     let mut page = String::from(
-        "# Mistakes of newcomers\n\nWhat people write who come from CasADi, MATLAB, Modelica or Python, and what ntg says of it.\n\
+        "# Mistakes of newcomers\n\nWhat people write who come from CasADi, MATLAB, Modelica, JuMP, Dymos, acados or GPOPS, and what ntg says of it.\n\
          This page is made by a test, so the words are those of the compiler.\n\
          [coming-from.md](coming-from.md) puts whole problems side by side; [errors.md](errors.md) explains the codes.\n",
     );
@@ -241,7 +299,7 @@ fn the_problem_around_is_right() {
 fn every_mistake_has_the_code_of_the_table_and_a_place() {
     let mut wrong = String::new();
     let mistakes: Vec<&(&str, &str)> = MISTAKES.iter().flat_map(|(_, mistakes)| *mistakes).collect();
-    assert!(mistakes.len() >= 60);
+    assert!(mistakes.len() >= 150);
     for (written, code) in mistakes {
         let Some(finding) = first(written) else {
             let _ = writeln!(wrong, "{written}: nothing is said");
@@ -255,6 +313,23 @@ fn every_mistake_has_the_code_of_the_table_and_a_place() {
         }
     }
     assert!(wrong.is_empty(), "\n{wrong}");
+}
+
+/// Mistakes that are told with more than one error: of two names, and of a list that also has a sum around it.
+const SEVERAL: &[&str] = &["let a = dx/dt;", "let a = (2 * n, 0, 0) [m] + r;"];
+
+#[test]
+fn one_mistake_is_told_once() {
+    let mut several = String::new();
+    for (written, _) in MISTAKES.iter().flat_map(|(_, mistakes)| *mistakes) {
+        let found = found(&with(written));
+        let errors: Vec<&Diagnostic> = found.iter().filter(|finding| finding.severity == Severity::Error).collect();
+        if (errors.len() > 1) != SEVERAL.contains(written) {
+            let messages: Vec<&str> = errors.iter().map(|finding| finding.message.as_str()).collect();
+            let _ = writeln!(several, "{written}: {messages:?}");
+        }
+    }
+    assert!(several.is_empty(), "\n{several}");
 }
 
 #[test]

@@ -14,6 +14,8 @@
 //!
 //! Afterwards: no two nodes of one `Dag` are the same operation on the same operands.
 
+use std::collections::hash_map::Entry;
+
 use super::hash::{Map, Set};
 use super::node::{InputId, Node, NodeId, Number};
 
@@ -98,6 +100,23 @@ impl Dag {
         inputs
     }
 
+    /// Whether every input that a root mentions is as wanted; the first that is not ends the search.
+    pub fn all_inputs(&self, root: NodeId, mut is_wanted: impl FnMut(InputId) -> bool) -> bool {
+        let mut seen: Set<NodeId> = Set::default();
+        let mut open = vec![root];
+        while let Some(id) = open.pop() {
+            match self.node(id) {
+                Node::Input(input) if !is_wanted(*input) => return false,
+                node => node.for_each_operand(|x| {
+                    if seen.insert(x) {
+                        open.push(x);
+                    }
+                }),
+            }
+        }
+        true
+    }
+
     fn reachable(&self, roots: &[NodeId], into_bodies: bool) -> Vec<NodeId> {
         let mut seen: Set<NodeId> = Set::default();
         let mut found = Vec::new();
@@ -118,13 +137,13 @@ impl Dag {
 
     /// The one node that is this operation on these operands; made if it is new.
     pub(super) fn intern(&mut self, node: Node) -> NodeId {
-        if let Some(id) = self.ids.get(&node) {
-            return *id;
+        match self.ids.entry(node) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(place) => {
+                let next = u32::try_from(self.nodes.len()).expect("2^32 nodes do not fit into memory");
+                self.nodes.push(place.key().clone());
+                *place.insert(NodeId(next))
+            }
         }
-        let next = u32::try_from(self.nodes.len()).expect("2^32 nodes do not fit into memory");
-        let id = NodeId(next);
-        self.nodes.push(node.clone());
-        self.ids.insert(node, id);
-        id
     }
 }

@@ -9,8 +9,8 @@ use std::hash::{BuildHasherDefault, Hasher};
 /// A map that is looked up and never iterated.
 pub type Map<K, V> = HashMap<K, V, BuildHasherDefault<Mixer>>;
 
-/// A set that is looked up and never iterated.
-pub(super) type Set<K> = HashSet<K, BuildHasherDefault<Mixer>>;
+/// A set that is asked and never iterated.
+pub type Set<K> = HashSet<K, BuildHasherDefault<Mixer>>;
 
 /// An odd number near 2^64 divided by the golden ratio: multiples of it spread evenly
 /// (D. E. Knuth, The Art of Computer Programming, vol. 3, section 6.4).

@@ -22,7 +22,7 @@ mod tests;
 pub use dag::Dag;
 pub use derivative::{Again, DerivativeError, Entry, SecondIndex, forward, gradient, hessian};
 pub use eval::{Environment, EvalError, eval, eval_in};
-pub use hash::Map;
+pub use hash::{Map, Set};
 pub use node::{Binary, Fold, InputId, Node, NodeId, Number, Unary};
 pub use scalar::Scalar;
 pub use structure::{Degree, degree, hessian_pattern, kinks, singular_operations};

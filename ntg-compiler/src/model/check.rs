@@ -129,6 +129,11 @@ impl Elaborator<'_> {
 
     /// Tells, and says, when the fixed values put the body of a constraint outside its constant bounds.
     fn check_against(&mut self, fixed: &Fixed, k: usize) -> bool {
+        let body = self.problem.constraints[k].body;
+        let is_duration = |input| matches!(self.problem.leaves.leaf(input), Leaf::Duration(_));
+        if !self.problem.dag.all_inputs(body, |input| fixed.contains_key(&input) || is_duration(input)) {
+            return false;
+        }
         let constraint = self.problem.constraints[k].clone();
         let inputs = self.problem.dag.inputs_of(&[constraint.body]);
         let mut values: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.

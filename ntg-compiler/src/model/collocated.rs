@@ -56,13 +56,14 @@ impl<'a> Elaborator<'a> {
             (Course::Collocated, _) => (points, 0),
         };
         let Some(breakpoints) = self.common_breakpoints(phase) else {
-            let what = if role == Role::State { "state" } else { "input" };
-            let message = format!(
-                "the {what} `{}` needs intervals: write collocation gauss(points = 3, intervals = 20)",
-                name.name.text
-            );
-            let finding = Diagnostic::new(Code::WrongSpline, name.name.span, message);
-            self.report(finding.help("`intervals` in `collocation` serve every spline without its own"));
+            let message = "states and inputs without a spline of their own need intervals";
+            // However many they are, that is one mistake.
+            if self.found.iter().all(|finding| finding.message != message) {
+                let finding = Diagnostic::new(Code::WrongSpline, name.name.span, message);
+                self.report(
+                    finding.help("write `collocation gauss(points = 3, intervals = 20);`, which serves all of them"),
+                );
+            }
             return stand_in();
         };
         match Knots::new(order, breakpoints, smoothness) {
@@ -100,10 +101,13 @@ impl<'a> Elaborator<'a> {
                 let points: Vec<Option<f64>> =
                     knots.elements.iter().map(|e| self.pure_constant(&cx, e, "a breakpoint of a spline")).collect();
                 // Any order will do: only the breakpoints are looked at.
-                (Knots::new(2, points.into_iter().collect::<Option<_>>()?, 1), knots.span)
+                let Some(points) = points.into_iter().collect() else { return Some(vec![0.0, 1.0]) };
+                (Knots::new(2, points, 1), knots.span)
             }
             (None, Some(intervals)) => {
-                let n = self.natural(&cx, intervals, "the number of intervals of a spline")?;
+                let Some(n) = self.natural(&cx, intervals, "the number of intervals of a spline") else {
+                    return Some(vec![0.0, 1.0]);
+                };
                 (Knots::uniform(2, n, 1), intervals.span)
             }
             (knots, _) => {

@@ -13,7 +13,7 @@ use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::mention::mentioned;
 use super::problem::{Form, IndexId, Loop};
-use super::scope::{Allow, Context, Meaning};
+use super::scope::{Allow, Context, Entity, Meaning, look_up};
 use super::value::{Value, What};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -25,6 +25,14 @@ pub(super) struct Constant {
     pub(super) value: f64,
     pub(super) dimension: Option<Dimension>,
     pub(super) unit: Option<Rc<Unit>>,
+}
+
+/// Why an expression is no form.
+enum NoForm {
+    /// A finding has told.
+    Told,
+    /// It is made of other things than a form, which nobody has told.
+    OtherShape,
 }
 
 /// The largest index or size: beyond it, nothing could be solved any more.
@@ -118,15 +126,14 @@ impl<'a> Elaborator<'a> {
 
     /// A whole number that depends on nothing but constants and indices in sight.
     pub(super) fn form(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Form> {
-        let failed = self.found.len();
         let form = self.affine(cx, expr);
-        if form.is_none() && self.found.len() == failed {
+        if let Err(NoForm::OtherShape) = form {
             self.report(
                 Diagnostic::new(Code::NotWhole, expr.span, "this is not a whole number made of constants and indices")
                     .help("write something like `2`, `N`, `i + 1` or `2 * i - 1`"),
             );
         }
-        form.filter(|form| self.is_small(form, expr.span))
+        form.ok().filter(|form| self.is_small(form, expr.span))
     }
 
     /// A whole number that depends on no index.
@@ -137,12 +144,33 @@ impl<'a> Elaborator<'a> {
         if pure && number.fract() == 0.0 && number.abs() <= LARGEST as f64 {
             return Some(number as i64);
         }
-        let message = format!(
-            "{what} must be a whole number, this is {}",
-            if pure { number.to_string() } else { constant.dimension.unwrap_or(Dimension::NONE).describe() }
-        );
+        let this = if pure { number.to_string() } else { constant.dimension.unwrap_or(Dimension::NONE).describe() };
+        // However often a constant is used so, it is wrong once.
+        if let Some((name, value)) = self.constant_named(cx, expr) {
+            let message = format!("`{name}` must be a whole number, this is {this}");
+            let finding =
+                Diagnostic::new(Code::NotWhole, value, message).label(expr.span, format!("it is {what} here"));
+            self.report(finding.help("write a whole number without a unit, or use another constant there"));
+            return None;
+        }
+        let message = format!("{what} must be a whole number, this is {this}");
         self.report(Diagnostic::new(Code::NotWhole, expr.span, message).help("write a whole number without a unit"));
         None
+    }
+
+    /// The name of the constant that an expression is, and the place of its value; none of a library's.
+    fn constant_named(&self, cx: &Context<'a>, expr: &'a Expr) -> Option<(&'a str, Span)> {
+        let ExprKind::Path(path) = &expr.kind else { return None };
+        let [only] = path.segments.as_slice() else { return None };
+        let name = only.name.text.as_str();
+        let is_own = only.indices.is_empty() && cx.local(name).is_none() && cx.library.is_none();
+        let (scope, declared) = look_up(&self.scopes, cx.names(), name).filter(|_| is_own)?;
+        match declared.entity {
+            Entity::Definition(k) if self.definitions[k].is_const && !self.scopes[scope].is_library => {
+                Some((name, self.definitions[k].value.span))
+            }
+            _ => None,
+        }
     }
 
     fn is_small(&mut self, form: &Form, span: Span) -> bool {
@@ -156,46 +184,48 @@ impl<'a> Elaborator<'a> {
     }
 
     /// As `form`; silent where only the shape is wrong.
-    fn affine(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Form> {
+    fn affine(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Result<Form, NoForm> {
         match &expr.kind {
             ExprKind::Path(path) if path.segments.len() == 1 && path.segments[0].indices.is_empty() => {
                 match self.index_in_sight(cx, &path.segments[0].name.text) {
-                    Some(form) => Some(form),
+                    Some(form) => Ok(form),
                     None => self.whole_leaf(cx, expr),
                 }
             }
-            ExprKind::Neg(inner) => Form::default().plus(-1, &self.affine(cx, inner)?),
+            ExprKind::Neg(inner) => Form::default().plus(-1, &self.affine(cx, inner)?).ok_or(NoForm::OtherShape),
             ExprKind::Sum(terms) => {
                 let mut total = Form::default();
                 for (sign, term) in terms {
                     let term = self.affine(cx, term)?;
-                    total = total.plus(if *sign == Sign::Plus { 1 } else { -1 }, &term)?;
+                    let sign = if *sign == Sign::Plus { 1 } else { -1 };
+                    total = total.plus(sign, &term).ok_or(NoForm::OtherShape)?;
                 }
-                Some(total)
+                Ok(total)
             }
             ExprKind::Product(factors) => {
                 let mut total = Form::number(1);
                 for (op, factor) in factors {
                     let factor = self.affine(cx, factor)?;
-                    total = match op {
+                    let joined = match op {
                         MulOp::Multiply => match (total.as_number(), factor.as_number()) {
-                            (_, Some(number)) => Form::default().plus(number, &total)?,
-                            (Some(number), None) => Form::default().plus(number, &factor)?,
-                            (None, None) => return None,
+                            (_, Some(number)) => Form::default().plus(number, &total),
+                            (Some(number), None) => Form::default().plus(number, &factor),
+                            (None, None) => None,
                         },
-                        MulOp::Divide => total.divided(factor.as_number()?)?,
+                        MulOp::Divide => factor.as_number().and_then(|divisor| total.divided(divisor)),
                     };
+                    total = joined.ok_or(NoForm::OtherShape)?;
                 }
-                Some(total)
+                Ok(total)
             }
             // What is not affine in an index is no form; without an index it may be a constant.
-            _ if mentioned(expr).iter().any(|name| self.index_in_sight(cx, name).is_some()) => None,
+            _ if mentioned(expr).iter().any(|name| self.index_in_sight(cx, name).is_some()) => Err(NoForm::OtherShape),
             _ => self.whole_leaf(cx, expr),
         }
     }
 
-    fn whole_leaf(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Form> {
-        self.whole(cx, expr, "an index or size").map(Form::number)
+    fn whole_leaf(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Result<Form, NoForm> {
+        self.whole(cx, expr, "an index or size").map(Form::number).ok_or(NoForm::Told)
     }
 
     /// The form of a name, if it is an index.
@@ -237,8 +267,7 @@ impl<'a> Elaborator<'a> {
         let name = index.text.as_str();
         self.index_names.entry(name).or_insert(index.span);
         let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
-        let declared =
-            super::scope::look_up(&self.scopes, cx.library.unwrap_or(cx.lexical), name).map(|(_, declared)| declared);
+        let declared = look_up(&self.scopes, cx.library.unwrap_or(cx.lexical), name).map(|(_, declared)| declared);
         if hidden || declared.is_some() {
             let mut finding = Diagnostic::new(Code::DeclaredTwice, index.span, format!("`{name}` is declared twice"))
                 .label(index.span, "declared again as an index here");
@@ -295,9 +324,28 @@ impl<'a> Elaborator<'a> {
 /// The least and greatest values of a form over the members of the loops; none where there are no
 /// members.
 pub(super) fn extremes(form: &Form, loops: &[Loop]) -> Option<(i64, i64)> {
+    let ends: Option<Vec<(i64, i64)>> =
+        loops.iter().map(|over| over.first.as_number().zip(over.last.as_number())).collect();
+    if let Some(ends) = ends {
+        return extremes_between(form, loops, &ends);
+    }
     let mut search = Search { form, loops, indices: HashMap::new(), found: None, budget: 50_000, visits: 0 };
     search.descend(0);
     search.found
+}
+
+/// The same where every loop runs from a number to a number: a form is least and greatest at their ends.
+fn extremes_between(form: &Form, loops: &[Loop], ends: &[(i64, i64)]) -> Option<(i64, i64)> {
+    if ends.iter().any(|(first, last)| first > last) {
+        return None;
+    }
+    let (mut least, mut most) = (form.constant, form.constant);
+    for (index, factor) in &form.terms {
+        let Some(at) = loops.iter().rposition(|over| over.index == *index) else { continue };
+        let (a, b) = (factor.saturating_mul(ends[at].0), factor.saturating_mul(ends[at].1));
+        (least, most) = (least.saturating_add(a.min(b)), most.saturating_add(a.max(b)));
+    }
+    Some((least, most))
 }
 
 struct Search<'s> {

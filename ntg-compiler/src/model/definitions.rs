@@ -13,6 +13,7 @@ use super::problem::Form;
 use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up};
 use super::value::{Flaw, Misplaced, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Set;
 use crate::source::Span;
 use crate::syntax::ast::{self, Segment};
 
@@ -84,7 +85,10 @@ impl<'a> Elaborator<'a> {
             return open;
         }
         self.memo.insert(key.clone(), Memo::InProgress);
-        self.warm(cx, definition);
+        // What the first element is made of, the others are made of too.
+        if place.is_empty() || self.warmed.insert(MemoKey { place: Vec::new(), ..key.clone() }) {
+            self.warm(cx, definition);
+        }
         let outer_event = self.event.take();
         self.members.push((definition, place.clone()));
         let value = self.elaborate_definition(cx, definition, &place, allow);
@@ -234,7 +238,8 @@ impl<'a> Elaborator<'a> {
     /// Elaborates what a definition is made of, the innermost first, so that long chains of
     /// definitions do not nest on the stack.
     fn warm(&mut self, cx: &Context<'a>, definition: usize) {
-        let mut seen: HashSet<usize> = HashSet::from([definition]);
+        let mut seen: Set<usize> = Set::default();
+        seen.insert(definition);
         let mut open = vec![(definition, false)];
         while let Some((next, expanded)) = open.pop() {
             let span = self.definitions[next].name.span;
@@ -262,7 +267,8 @@ impl<'a> Elaborator<'a> {
 
     /// Finds the shapes of what a definition is made of, the innermost first, for the same reason.
     pub(super) fn warm_shapes(&mut self, cx: &Context<'a>, definition: usize) {
-        let mut seen: HashSet<usize> = HashSet::from([definition]);
+        let mut seen: Set<usize> = Set::default();
+        seen.insert(definition);
         let mut open = vec![(definition, false)];
         while let Some((next, expanded)) = open.pop() {
             if expanded {

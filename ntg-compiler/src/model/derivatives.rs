@@ -5,15 +5,16 @@
 //! of its arguments.
 //! Finds: derivatives that a spline does not have; notes those that jump at its knots.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use super::dimension::Ratio;
 use super::elaborator::Elaborator;
+use super::mention::mentions_time;
 use super::problem::{Collocation, Domain, Form, IndexId, Leaf, Leaves, Loop, PhaseAt, Problem};
 use super::scope::{Context, Entity, Meaning, look_up};
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Again, Dag, InputId, NodeId, SecondIndex, forward};
+use crate::expr::{Again, Dag, InputId, Map, NodeId, SecondIndex, forward};
 use crate::source::Span;
 use crate::syntax::ast::{Call, Expr, ExprKind};
 
@@ -140,6 +141,13 @@ impl<'a> Elaborator<'a> {
     }
 
     fn derivative_order(&mut self, cx: &Context<'a>, order: &'a Expr) -> Option<i64> {
+        if mentions_time(order, &self.problem.independent.name) {
+            let text = self.text(order.span);
+            let message =
+                format!("a derivative is with respect to time without saying so, `{text}` stands for its order");
+            self.report(Diagnostic::new(Code::WrongOrder, order.span, message).help("write `der(x)`, `der(x, 2)`"));
+            return None;
+        }
         let times = self.whole(cx, order, "the order of a derivative")?;
         if (0..=MAX_DERIVATIVE).contains(&times) {
             return Some(times);
@@ -152,7 +160,7 @@ impl<'a> Elaborator<'a> {
     /// The derivative of a node with respect to real time, to be differentiated `remaining` times more;
     /// whether it jumps is told of the last only.
     fn rate(&mut self, cx: &Context<'a>, node: NodeId, span: Span, remaining: usize) -> Option<NodeId> {
-        let mut rates: HashMap<InputId, NodeId> = HashMap::new(); // Looked up, never iterated.
+        let mut rates: Map<InputId, NodeId> = Map::default(); // Looked up, never iterated.
         let mut sound = true;
         for input in self.problem.dag.inputs_of(&[node]) {
             let leaf = self.problem.leaves.leaf(input).clone();

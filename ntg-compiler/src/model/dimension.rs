@@ -10,8 +10,8 @@ use std::fmt;
 /// A rational number in lowest terms, its denominator positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Ratio {
-    numerator: i64,
-    denominator: i64,
+    numerator: i32,
+    denominator: i32,
 }
 
 impl Ratio {
@@ -20,20 +20,25 @@ impl Ratio {
 
     /// `numerator / denominator`; a zero denominator counts as one.
     pub(super) fn new(numerator: i64, denominator: i64) -> Self {
-        Self::reduce(i128::from(numerator), i128::from(denominator))
+        Self::reduce(numerator, denominator)
     }
 
-    /// A whole number.
+    /// A whole number; one beyond all exponents that anyone means counts as the largest.
     pub(super) const fn whole(n: i64) -> Self {
-        Self { numerator: n, denominator: 1 }
+        let numerator = match n {
+            ..=MINUS_LARGEST => -i32::MAX,
+            LARGEST.. => i32::MAX,
+            n => n as i32,
+        };
+        Self { numerator, denominator: 1 }
     }
 
     /// The ratio of small whole numbers that a floating-point number is, if it is one.
     pub(super) fn of(value: f64) -> Option<Self> {
         // Exponents in use are halves, thirds, quarters and the like; 360 holds them all.
         const LARGEST_DENOMINATOR: i64 = 360;
-        const LARGEST: f64 = 1e6;
-        if !value.is_finite() || value.abs() > LARGEST {
+        const LARGEST_RATIO: f64 = 1e6;
+        if !value.is_finite() || value.abs() > LARGEST_RATIO {
             return None;
         }
         (1..=LARGEST_DENOMINATOR).find_map(|d| {
@@ -42,28 +47,37 @@ impl Ratio {
         })
     }
 
-    fn reduce(numerator: i128, denominator: i128) -> Self {
+    fn reduce(numerator: i64, denominator: i64) -> Self {
         let (mut a, mut b) = (numerator.unsigned_abs(), denominator.unsigned_abs().max(1));
         let (n, d) = (a, b);
         while b != 0 {
             (a, b) = (b, a % b);
         }
         let sign = if (numerator < 0) == (denominator < 0) { 1 } else { -1 };
-        let narrow = |x: u128| i64::try_from(x / a).unwrap_or(i64::MAX);
+        let narrow = |x: u64| i32::try_from(x / a).unwrap_or(i32::MAX);
         Self { numerator: sign * narrow(n), denominator: narrow(d) }
     }
 
-    fn plus(self, other: Self) -> Self {
-        let (a, b) = (i128::from(self.numerator), i128::from(self.denominator));
-        let (c, d) = (i128::from(other.numerator), i128::from(other.denominator));
+    /// `self + sign * other`, for a sign of 1 or -1.
+    fn plus(self, sign: i64, other: Self) -> Self {
+        let (a, b) = (i64::from(self.numerator), i64::from(self.denominator));
+        let (c, d) = (sign * i64::from(other.numerator), i64::from(other.denominator));
+        if b == 1 && d == 1 {
+            return Self::whole(a + c);
+        }
         Self::reduce((a * d).saturating_add(c * b), b * d)
     }
 
     fn times(self, other: Self) -> Self {
-        let n = i128::from(self.numerator) * i128::from(other.numerator);
-        Self::reduce(n, i128::from(self.denominator) * i128::from(other.denominator))
+        let n = i64::from(self.numerator) * i64::from(other.numerator);
+        let d = i64::from(self.denominator) * i64::from(other.denominator);
+        if d == 1 { Self::whole(n) } else { Self::reduce(n, d) }
     }
 }
+
+/// The largest exponent, and the least.
+const LARGEST: i64 = i32::MAX as i64;
+const MINUS_LARGEST: i64 = -LARGEST;
 
 /// How many base units there are.
 const BASES: usize = 7;
@@ -101,7 +115,7 @@ impl Dimension {
     /// Of a product.
     #[must_use]
     pub(super) fn times(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].plus(other.0[i])))
+        Self(std::array::from_fn(|i| self.0[i].plus(1, other.0[i])))
     }
 
     /// Of a power.
@@ -113,7 +127,7 @@ impl Dimension {
     /// Of a quotient.
     #[must_use]
     pub(super) fn over(&self, other: &Self) -> Self {
-        self.times(&other.power(Ratio::whole(-1)))
+        Self(std::array::from_fn(|i| self.0[i].plus(-1, other.0[i])))
     }
 
     /// What a person calls it: `a speed [m/s]`, `a pure number`, `a quantity in [kg/s^3]`.

@@ -18,6 +18,7 @@ use super::derivatives::{Jump, Lacking};
 use super::dimension::Dimension;
 use super::files::Contents;
 use super::kinds::Kinds;
+use super::known_shapes::KnownShapes;
 use super::problem::{Form, IndexId, Leaf, Loop, Problem};
 use super::rates::{FunctionNeeds, Rates};
 use super::scope::{Context, Declared, Entity, Scope, ScopeId};
@@ -26,7 +27,7 @@ use super::soft::Slack;
 use super::units::{self, Quantity};
 use super::value::{Flaw, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Map, NodeId};
+use crate::expr::{Map, NodeId, Set};
 use crate::source::{Source, Span};
 use crate::syntax::ast;
 
@@ -150,6 +151,8 @@ pub(super) struct Elaborator<'a> {
     /// The functions being inlined.
     pub(super) inlining: Vec<usize>,
     pub(super) memo: Map<MemoKey, Memo>,
+    /// The definitions of which an element was made, with no place, by their contexts.
+    pub(super) warmed: Set<MemoKey>, // Asked, never iterated.
     /// The members of definitions that are being elaborated, each inside the one before.
     pub(super) members: Vec<(usize, Vec<Form>)>,
     /// Axes of parameters, of variables, and of the outputs of each phase.
@@ -165,6 +168,8 @@ pub(super) struct Elaborator<'a> {
     /// The axes of definitions with a size, where these are numbers.
     pub(super) written_axes: Map<(usize, ScopeId), Vec<Ends>>, // Looked up, never iterated.
     pub(super) function_shapes: Map<FunctionKey, Option<Shape>>, // Looked up, never iterated.
+    /// The shapes of expressions, kept once all names are declared.
+    pub(super) shapes: Option<KnownShapes>,
     /// The definitions whose shapes are being looked for, and whether one needs its own.
     pub(super) shaping: Vec<usize>,
     pub(super) recurs: bool,
@@ -238,6 +243,7 @@ impl<'a> Elaborator<'a> {
             domain: None,
             inlining: Vec::new(),
             memo: Map::default(),
+            warmed: Set::default(),
             members: Vec::new(),
             parameter_axes: Vec::new(),
             variable_axes: Vec::new(),
@@ -247,6 +253,7 @@ impl<'a> Elaborator<'a> {
             member_shapes: Map::default(),
             written_axes: Map::default(),
             function_shapes: Map::default(),
+            shapes: None,
             shaping: Vec::new(),
             recurs: false,
             unknown_indices: 0,
@@ -353,7 +360,7 @@ impl<'a> Elaborator<'a> {
     /// Notes where a node was first written, and the nodes made on the way to it. What stands in a library has the
     /// place where the spec uses it.
     pub(super) fn origin(&mut self, node: NodeId, span: Span) {
-        if self.main.is_some_and(|end| span.start > end) {
+        if self.main.is_some_and(|end| span.start > end) || self.problem.origin.contains_key(&node) {
             return;
         }
         let mut open = vec![node];

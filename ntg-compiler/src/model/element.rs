@@ -6,7 +6,6 @@
 //! the loop around it then runs over numbers (`repeat.rs`).
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::elaborator::Elaborator;
@@ -15,8 +14,9 @@ use super::scope::Context;
 use super::shape::{Ends, Shape, whole_axes};
 use super::value::{Flaw, Value};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Map;
 use crate::source::Span;
-use crate::syntax::ast::{Expr, MulOp, Segment, Unit};
+use crate::syntax::ast::{Expr, ExprKind, MulOp, Segment, Unit};
 
 /// An argument of a function that is a vector: an expression, and where it was written.
 pub(super) struct Lazy<'a> {
@@ -25,7 +25,7 @@ pub(super) struct Lazy<'a> {
     pub(super) shape: Shape,
     /// The unit that was stated for it.
     pub(super) stated: Option<Stated<'a>>,
-    pub(super) known: RefCell<HashMap<Vec<Form>, Value>>, // Looked up, never iterated.
+    pub(super) known: RefCell<Map<Vec<Form>, Value>>, // Looked up, never iterated.
 }
 
 /// The unit that something is said to have, and what that is.
@@ -57,7 +57,18 @@ impl<'a> Elaborator<'a> {
 
     /// An element of an expression that may be the literal 0, which has every shape.
     pub(super) fn element_or_zero(&mut self, cx: &Context<'a>, expr: &'a Expr, at: &[Form]) -> Value {
-        if at.is_empty() {
+        // Lists are never the literal 0, and what hands its indices on comes here again with its parts.
+        let asks_itself = matches!(
+            expr.kind,
+            ExprKind::Tuple(_)
+                | ExprKind::Path(_)
+                | ExprKind::Call(_)
+                | ExprKind::If(_)
+                | ExprKind::Steps(_)
+                | ExprKind::Sum(_)
+                | ExprKind::Der { .. }
+        );
+        if at.is_empty() || asks_itself {
             return self.element(cx, expr, at);
         }
         match self.shape(cx, expr) {

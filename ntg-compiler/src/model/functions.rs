@@ -99,6 +99,13 @@ const HABITS: &[(&str, &str)] = &[
     ("diff", "der(x)"),
     ("ddt", "der(x)"),
     ("derivative", "der(x)"),
+    ("deriv", "der(x)"),
+    ("D", "der(x)"),
+    ("integrate", "integral(x)"),
+    ("trapz", "integral(x)"),
+    ("cumtrapz", "integral(x)"),
+    ("quad", "integral(x)"),
+    ("sumsq", "dot(u, u)"),
     ("vertcat", "(x, y)"),
     ("horzcat", "((a, b), (c, d))"),
     ("if_else", "if a <= b { x } else { y }"),
@@ -169,7 +176,9 @@ impl<'a> Elaborator<'a> {
                 (None, None) if other.is_none() && name == AT => self.value_at(cx, call, at),
                 (None, Some(function)) if other.is_none() => self.vector_call(cx, function, call, at),
                 _ => {
-                    for argument in &call.arguments {
+                    // What stands in the parentheses of a function of time is a time.
+                    let of_time = matches!(other, Some(Entity::Output)) && call.arguments.len() == 1;
+                    for argument in call.arguments.iter().filter(|_| !of_time) {
                         if self.shape(cx, argument).is_some_and(|shape| shape.is_number()) {
                             self.value(cx, argument);
                         }
@@ -195,7 +204,7 @@ impl<'a> Elaborator<'a> {
             let has_members = self.axes_of(cx, entity, name).is_some_and(|axes| !axes.is_empty());
             let help = match call.arguments.as_slice() {
                 [only] if has_members => format!("an element is `{name}[{}]`", self.text(only.span)),
-                [Expr { kind: ExprKind::Number(_), .. }] if entity == Entity::Output => {
+                [Expr { kind: ExprKind::Number(_) | ExprKind::Path(_), .. }] if entity == Entity::Output => {
                     format!("at an end write `initial({name})` or `final({name})`; to multiply, write `{name} * (...)`")
                 }
                 _ => format!("to multiply, write `{name} * (...)`"),

@@ -4,8 +4,6 @@
 //! numbers in SI units. Finds what an expression of constants in a spec can have wrong, and units
 //! of another dimension; names that are no constants. Bare numbers are in the declared unit.
 
-use std::collections::HashMap;
-
 use ntg_structure::Unit;
 
 use super::Loader;
@@ -16,6 +14,7 @@ use super::scope::{Allow, Context, Entity, PROBLEM, Scope};
 use super::suggest::nearest;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::expr::Map;
 use crate::source::Source;
 use crate::syntax::{self, ast};
 
@@ -81,9 +80,9 @@ fn alone(source: &Source) -> Elaborator<'_> {
         agent: None,
         phase: None,
         index: None,
-        names: HashMap::new(),
+        names: Map::default(),
         order: vec![],
-        libraries: HashMap::new(),
+        libraries: Map::default(),
         is_library: false,
         is_broken: false,
     });

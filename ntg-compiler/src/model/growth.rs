@@ -9,6 +9,9 @@ use super::library::Libraries;
 use crate::source::Source;
 use crate::syntax;
 
+/// A kind of spec: what it is called, and the spec of so many parts.
+type Kind = (&'static str, fn(usize) -> String);
+
 struct NoFiles;
 
 impl Loader for NoFiles {
@@ -86,9 +89,19 @@ fn phases(count: usize) -> String {
     text + "minimize integral(u^2) / 1 [m^2/s^3]; initial { x == 0;  v == 0; } final { x == 1 [m]; } }"
 }
 
+/// A vector in so many parentheses, each of which asks for shapes.
+fn nested(count: usize) -> String {
+    let (open, close) = ("2 * (s + ".repeat(count), ")".repeat(count));
+    format!(
+        "problem Nested {{ duration T = 5; output r[3], s[3]: spline(order = 5, intervals = 4); \
+         let y = {open}r{close}; minimize integral(norm(der(r, 2))^2 + norm(y)^2); }}"
+    )
+}
+
 #[test]
 fn work_is_in_proportion_to_the_text() {
-    for (name, spec) in [("bodies", bodies as fn(usize) -> String), ("functions", functions), ("phases", phases)] {
+    let kinds: [Kind; 4] = [("bodies", bodies), ("functions", functions), ("phases", phases), ("nested", nested)];
+    for (name, spec) in kinds {
         let [first, second, third] = [32, 64, 96].map(|count| work(&spec(count)));
         // As much text again takes as much work again.
         let steps = [(first.0, second.0, third.0), (first.1, second.1, third.1)];

@@ -1,9 +1,7 @@
 //! On what kinds of leaves a node depends, found once for each node.
 
-use std::collections::HashMap;
-
 use super::problem::{At, Leaf, Problem};
-use crate::expr::{Node, NodeId};
+use crate::expr::{Map, Node, NodeId};
 
 /// A set of kinds of leaves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,11 +57,14 @@ impl Kind {
 
 /// Kinds of the nodes that were asked for, and of what they are made of.
 #[derive(Default)]
-pub(super) struct Kinds(HashMap<NodeId, Kind>); // Looked up, never iterated.
+pub(super) struct Kinds(Map<NodeId, Kind>); // Looked up, never iterated.
 
 impl Kinds {
     /// The kinds of one node.
     pub(super) fn of(&mut self, problem: &Problem, node: NodeId) -> Kind {
+        if let Some(known) = self.0.get(&node) {
+            return *known;
+        }
         let mut open = vec![node];
         while let Some(&id) = open.last() {
             if self.0.contains_key(&id) {

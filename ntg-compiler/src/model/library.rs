@@ -136,6 +136,9 @@ impl Libraries {
                 "names of a library stand in braces: `use {outer}::{{{}}};`",
                 names[names.len() - 1].text
             )),
+            _ if standard::library(&format!("std::{text}")).is_some() => {
+                finding.help(format!("write `use std::{text};`"))
+            }
             _ if names[0].text != "std" => finding.help(format!("a file is named in quotes: `use \"{text}.ntg\";`")),
             Some(near) => finding.help(format!("did you mean `{near}`?")),
             None => finding.help(format!("libraries of the language are {}", listed(&known))),

@@ -29,6 +29,7 @@ mod growth;
 mod guess;
 mod independent;
 mod kinds;
+mod known_shapes;
 mod library;
 mod measure;
 mod mention;
@@ -182,6 +183,7 @@ impl<'a> Elaborator<'a> {
         self.variables();
         self.durations();
         self.shared();
+        self.shapes = Some(known_shapes::KnownShapes::default());
         self.continuity();
         self.periodic();
         self.objective();

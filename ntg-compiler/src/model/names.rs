@@ -8,6 +8,7 @@ use std::rc::Rc;
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
+use super::mention::names_in;
 use super::problem::{At, Form, Instant, Leaf};
 use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up, visible};
 use super::shape::Ends;
@@ -16,6 +17,28 @@ use super::value::{Flaw, Misplaced, Value, What};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 use crate::syntax::ast::{Ident, Path, Segment};
+
+/// Names that people take for known, and what to write.
+const HABITS: &[(&[&str], &str)] = &[
+    (&["time"], "the time is `t`"),
+    (&["tf", "t_f", "tend", "t_end", "t1"], "the time at the end is `final(t)`, or the name of the duration"),
+    (&["t0", "t_0"], "the time at the start is `initial(t)`"),
+    (&["inf", "Inf", "infinity", "Infinity", "oo"], "leave the bound out: `1 ..` or `.. 5`"),
+    (&["free"], "what is free is written with `in`, between bounds: `in 1 .. 9`"),
+    (&["e"], "write `exp(1)`, and `exp(x)` for a power of it"),
+    (
+        &["true", "false", "True", "False"],
+        "there are no logical values: write 1 and 0, or `if a <= b { 1 } else { 0 }`",
+    ),
+];
+
+/// A dot over a name means the derivative, two the second one.
+fn dotted(name: &str) -> Option<String> {
+    use unicode_normalization::UnicodeNormalization;
+    let letters: String = name.nfd().collect();
+    let once = letters.strip_suffix('\u{307}').map(|base| format!("{base}_dot"));
+    once.or_else(|| letters.strip_suffix('\u{308}').map(|base| format!("{base}_ddot")))
+}
 
 /// `r_dot`, `rddot` and the `dr` of `dr/dt` mean derivatives of `r`, where there is one.
 fn as_derivative(name: &str, known: &[&str]) -> Option<String> {
@@ -113,7 +136,10 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding.label(*bound, "bound here").help(help), segment.span);
         }
         let elsewhere = self.lacking_in_phase(cx, text).or_else(|| self.elsewhere(text));
-        let elsewhere = elsewhere.or_else(|| as_derivative(text, &names));
+        let elsewhere = elsewhere.or_else(|| as_derivative(&dotted(text).unwrap_or_else(|| text.clone()), &names));
+        let habit =
+            || HABITS.iter().find(|(wrong, _)| wrong.contains(&text.as_str())).map(|(_, help)| (*help).to_owned());
+        let elsewhere = elsewhere.or_else(habit);
         let finding = match (elsewhere, nearest(text, names.iter().copied())) {
             (Some(help), _) => finding.help(help),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
@@ -301,12 +327,25 @@ impl<'a> Elaborator<'a> {
             (m, n) => format!("`{name}` takes {m} indices, not {n}"),
         };
         let help = match axes {
+            0 if self.is_unit_text(segment) => {
+                let unit = segment.indices.iter().map(|index| self.text(index.span)).collect::<Vec<_>>().join(", ");
+                format!("a quantity has its unit already; `let z [{unit}] = {name};` shows it in another")
+            }
             0 => format!("write `{name}` alone"),
             1 => format!("write `{name}[1]` or `{name}[i]`"),
             _ => format!("write `{name}[1, 1]` or `{name}[i, j]`"),
         };
         let finding = Diagnostic::new(Code::WrongIndices, segment.span, message).help(help);
         self.refuse(finding, segment.span)
+    }
+
+    /// Whether what stands in the brackets behind a name is a unit.
+    fn is_unit_text(&self, segment: &Segment) -> bool {
+        let is_symbol = |name: &&str| super::units::is_symbol(name);
+        segment.indices.iter().all(|index| {
+            index.last.is_none()
+                && names_in(&index.first).is_some_and(|names| !names.is_empty() && names.iter().all(is_symbol))
+        })
     }
 
     /// A value for something that has none here; whoever uses it tells.

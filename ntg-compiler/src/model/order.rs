@@ -47,9 +47,16 @@ impl<'a> Elaborator<'a> {
                 let phases = names.iter().filter(|(_, entity)| matches!(entity, Entity::Phase(_)));
                 let near = nearest(name, phases.map(|(name, _)| *name));
                 let mut finding = Diagnostic::new(Code::UnknownPhase, after.name.span, message);
-                if let Some(near) = near {
-                    finding = finding.help(format!("did you mean `{near}`?"));
-                }
+                let phases: Vec<String> = names
+                    .iter()
+                    .filter(|(name, entity)| matches!(entity, Entity::Phase(_)) && *name != self.phase_name(phase))
+                    .map(|(name, _)| format!("`{name}`"))
+                    .collect();
+                finding = match near {
+                    Some(near) => finding.help(format!("did you mean `{near}`?")),
+                    None if phases.is_empty() => finding.help("leave `after` out: there is no other phase here"),
+                    None => finding.help(format!("the other phases here are {}", phases.join(", "))),
+                };
                 self.report(finding);
                 None
             }

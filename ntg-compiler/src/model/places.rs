@@ -165,7 +165,6 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Where a time lies in these stretches; else a value that says why there is no such place.
-    #[expect(clippy::result_large_err, reason = "the error is the value that is returned in place of the place")]
     pub(super) fn spot(&mut self, cx: &Context<'a>, time: &'a Expr, stretches: &[Stretch]) -> Result<Spot, Value> {
         if !self.is_number(cx, time) {
             return Err(self.poison(time.span));
@@ -189,7 +188,6 @@ impl<'a> Elaborator<'a> {
 
     /// The places of a time that depends on the index of a loop, one for each of its values: so the members of the loop
     /// stay one formula. `flawed` says which index it is; where there is no such formula it comes back.
-    #[expect(clippy::result_large_err, reason = "the error is the value that is returned in place of the places")]
     fn spots(
         &mut self,
         cx: &Context<'a>,

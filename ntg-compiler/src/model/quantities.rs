@@ -11,6 +11,7 @@ use ntg_structure::{Parameter, Unit};
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Steps, doc_text};
+use super::mention::names_in;
 use super::problem::{Bounds, Continuation, Form, Loop, Variable};
 use super::scope::{Allow, Context, Entity, PROBLEM};
 use super::settle::Use;
@@ -91,10 +92,34 @@ impl<'a> Elaborator<'a> {
         );
     }
 
+    /// Tells of a unit where the size stands.
+    fn is_unit_for_size(&mut self, shape: &'a ast::Shape, name: &str, value: Span) -> bool {
+        let [axis] = shape.axes.as_slice() else { return false };
+        let Some(names) = names_in(&axis.last).filter(|_| axis.index.is_none() && axis.first.is_none()) else {
+            return false;
+        };
+        let declared = |name: &str| self.scopes[PROBLEM].names.contains_key(name);
+        if names.is_empty()
+            || !names.iter().all(|name| units::is_symbol(name))
+            || names.iter().all(|name| declared(name))
+        {
+            return false;
+        }
+        let unit = self.text(shape.span);
+        let message = format!("the unit of `{name}` stands behind its value: these brackets hold its size");
+        let finding = Diagnostic::new(Code::NotWhole, shape.span, message);
+        let text = self.text(value);
+        self.report(finding.help(format!("write `param {name} = {text} {unit};`")));
+        true
+    }
+
     fn parameter_default(&mut self, k: usize, param: &'a ast::Param, doc: String) {
         let cx = Context::of(PROBLEM, Allow::Constants);
         let name = &param.name.text;
         let what = format!("the default of `{name}`");
+        if param.shape.as_ref().is_some_and(|shape| self.is_unit_for_size(shape, name, param.default.span)) {
+            return;
+        }
         let mut axes = param.shape.as_ref().map(|shape| (self.declared_axes(&cx, shape), shape.span));
         let file = file_of(&param.default);
         if let (None, Some(file)) = (&axes, file) {

@@ -5,13 +5,14 @@
 //! agent outside its phases is resolved in each phase (docs/language.md, section 4), so names
 //! are looked up from the phase of the [`Context`] outwards, wherever the text stands.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::rc::Rc;
 
 use super::element::Lazy;
 use super::problem::{Form, IndexId, Instant, Loop, PhaseAt};
 use super::shape::Shape;
 use super::value::Value;
+use crate::expr::Map;
 use crate::source::Span;
 use crate::syntax::ast;
 
@@ -30,14 +31,14 @@ pub(super) struct Scope<'a> {
     /// The phase it is.
     pub(super) phase: Option<usize>,
     /// The libraries that are known here by a name.
-    pub(super) libraries: HashMap<&'a str, ScopeId>, // Looked up, never iterated.
+    pub(super) libraries: Map<&'a str, ScopeId>, // Looked up, never iterated.
     /// Whether it is a library, and whether that could not be read: nothing is told of its names then.
     pub(super) is_library: bool,
     pub(super) is_broken: bool,
     /// The name of its family's index.
     pub(super) index: Option<&'a ast::Ident>,
     /// Its own names.
-    pub(super) names: HashMap<&'a str, Declared>, // Looked up, never iterated.
+    pub(super) names: Map<&'a str, Declared>, // Looked up, never iterated.
     /// Its own names in the order of declaration.
     pub(super) order: Vec<&'a str>,
 }
@@ -287,7 +288,9 @@ pub(super) fn visible<'s, 'a: 's>(scopes: &'s [Scope<'a>], scope: ScopeId) -> Ve
 
 /// What a name means in a scope, and in which scope it was found.
 pub(super) fn look_up(scopes: &[Scope<'_>], scope: ScopeId, name: &str) -> Option<(ScopeId, Declared)> {
-    if let Some((library, inner)) = name.split_once("::") {
+    if name.as_bytes().contains(&b':')
+        && let Some((library, inner)) = name.split_once("::")
+    {
         let id = library_named(scopes, scope, library)?;
         return scopes[id].names.get(inner).map(|declared| (id, *declared));
     }

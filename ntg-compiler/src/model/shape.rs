@@ -5,6 +5,7 @@
 //! Finds: shapes that do not fit (E046), vectors where one number is needed (E047).
 
 use super::elaborator::Elaborator;
+use super::known_shapes::ShapeKey;
 use super::problem::{Form, IndexId};
 use super::scope::{Context, Meaning, Point, ScopeId};
 use crate::diagnostic::{Code, Diagnostic};
@@ -97,8 +98,16 @@ impl Shape {
 impl<'a> Elaborator<'a> {
     /// The shape of an expression; none where something in it was told of.
     pub(super) fn shape(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<Shape> {
+        // What needs itself is a number as long as its shape is being looked for.
+        let key = if self.shaping.is_empty() { ShapeKey::of(cx, expr) } else { None };
+        if let Some(known) = key.as_ref().and_then(|key| self.shapes.as_ref()?.get(key)) {
+            return known.clone();
+        }
         let shape = if self.deeper(expr.span) { self.shape_kind(cx, expr) } else { None };
         self.leave();
+        if let (Some(key), Some(shapes)) = (key, &mut self.shapes) {
+            shapes.insert(key, shape.clone());
+        }
         shape
     }
 

@@ -175,6 +175,17 @@ const HABITS: &[(&str, &str)] = &[
     ("Ω", "ohm"),
     ("Nm", "N*m"),
     ("ton", "t"),
+    ("degC", "K"),
+    ("degF", "K"),
+    ("celsius", "K"),
+    ("Celsius", "K"),
+    ("kelvin", "K"),
+    ("kilogram", "kg"),
+    ("kilograms", "kg"),
+    ("newton", "N"),
+    ("joule", "J"),
+    ("watt", "W"),
+    ("volt", "V"),
     ("lbs", "lb"),
 ];
 
@@ -211,6 +222,11 @@ fn product(factors: &[UnitFactor]) -> Result<Quantity, Diagnostic> {
         };
     }
     Ok(value)
+}
+
+/// Whether a name is the symbol of a unit.
+pub(super) fn is_symbol(text: &str) -> bool {
+    symbol(text).is_some()
 }
 
 fn symbol(text: &str) -> Option<Quantity> {

@@ -133,7 +133,6 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A number for an index that must be known; where it is not, a value that says which index that is.
-    #[expect(clippy::result_large_err, reason = "the error is the value that is returned in place of the element")]
     pub(super) fn known(&mut self, form: &Form, span: Span) -> Result<i64, Value> {
         match (form.as_number(), form.terms.first()) {
             (Some(number), _) => Ok(number),

@@ -14,6 +14,8 @@ use crate::source::Span;
 mod conditions;
 mod expected;
 mod habits;
+pub(super) mod imports;
+mod ranges;
 
 use expected::Expected;
 
@@ -86,6 +88,10 @@ fn foreign_item(scan: &Scan, body: Body, token: &Token, word: &str) -> Option<Di
 fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Diagnostic {
     let statement =
         scan.tokens[at..end].iter().map(|token| text(scan, token)).take_while(|text| !matches!(*text, ";" | "{"));
+    let follows = |at: usize, word: &str, sign: &str| {
+        let own = (at..end).find(|index| text(scan, &scan.tokens[*index]) == word);
+        own.and_then(|own| scan.tokens.get(own + 1)).is_some_and(|next| text(scan, next) == sign)
+    };
     let mut relates = false;
     for part in statement {
         relates |= matches!(part, "==" | "<=" | ">=" | "<" | ">" | "!=");
@@ -96,6 +102,9 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
     }
     let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
     match nearest_item_word(word) {
+        _ if follows(at, word, "=") => finding.help(format!(
+            "say what it is: `const {word} = ...;`, `param {word} = ...;` if it may be set, `let {word} = ...;` if it is made of others, `duration {word} = ...;`"
+        )),
         _ if matches!(word, "control" | "controls") => finding.help("what is chosen freely is an `input`"),
         _ if matches!(word, "parameter" | "parameters" | "constant") => {
             finding.help("a number that may be set is a `param`, one that never changes a `const`")
@@ -103,8 +112,8 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
         _ if matches!(word, "Real" | "real" | "var" | "variables" | "free") => {
             finding.help("what moves is a `state`, an `input` or an `output`, a number that is sought a `variable`, a time a `duration`")
         }
-        _ if matches!(word, "objective" | "cost" | "J") => finding.help("write `minimize name: e;` or `maximize name: e;`"),
-        _ if matches!(word, "subject_to" | "subject" | "such" | "constraint" | "constraints" | "path") => {
+        _ if matches!(word, "objective" | "cost" | "J" | "mayer" | "lagrange" | "bolza" | "Min" | "Max" | "min" | "max") => finding.help("write `minimize name: e;` or `maximize name: e;`"),
+        _ if matches!(word, "subject_to" | "subject" | "such" | "constraint" | "constraints" | "path" | "boundary" | "bounds" | "events") => {
             finding.help("constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`")
         }
         _ if matches!(word, "equation" | "equations" | "ode" | "system") => {
@@ -113,8 +122,21 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
         _ if matches!(word, "vector" | "matrix") => {
             finding.help("a vector is declared by its size: `output r[3]: ...`, `param J[3, 3] = ...`")
         }
-        _ if matches!(word, "import" | "include" | "from") => {
-            finding.help("a library is used before the problem: `use std::gravity;`")
+        _ if imports::IMPORTING.contains(&word) => {
+            let target = imports::as_use(scan, at);
+            finding.help(format!("a library is used before the problem: {target}"))
+        }
+        _ if matches!(word, "solver" | "options" | "option" | "nlp" | "tolerance") => {
+            finding.help("how it is solved is said where it is solved: `ntg solve --help`")
+        }
+        _ if matches!(word, "mesh" | "grid" | "transcription") => {
+            finding.help("points and intervals stand in `collocation gauss(points = 3, intervals = 20);`")
+        }
+        _ if matches!(word, "time" | "horizon") => {
+            finding.help("how long it takes is the duration: `duration T = 5;`, or `duration T in 1 .. 9;`")
+        }
+        _ if matches!(word, "link" | "linkage" | "link_phases") => {
+            finding.help("phases follow one another by `phase coast after boost { ... }`")
         }
         _ if matches!(word, "function" | "def" | "func") => finding.help("write `fn f(a) = a / 2;`"),
         _ if word == "if" => finding.help("an `if` is a value: `let y = if a <= b { ... } else { ... };`"),
@@ -174,6 +196,9 @@ impl Here<'_> {
             return None;
         }
         let finding = Diagnostic::new(Code::ReservedWord, token.span, format!("`{word}` is a reserved word"));
+        if let Some(help) = self.behind_a_point(word) {
+            return Some(finding.help(help));
+        }
         Some(match word {
             "t" | "tau" | "pi" if self.expected.has(Rule::name) => finding
                 .help(format!("`{word}` has a meaning in every expression; choose another name, such as `{word}_`")),
@@ -189,6 +214,16 @@ impl Here<'_> {
         let finding = Diagnostic::new(Code::MalformedUnit, self.span(), self.message());
         if self.token.is_some_and(|token| text(self.scan, token) == "..") {
             return Some(finding.help("a family names its index, `let x[i in 1 .. N]`; sizes stand in `output` only"));
+        }
+        let this = self.word(self.index);
+        if this == "**" {
+            return Some(finding.help("write `^` for a power: `[m/s^2]`"));
+        }
+        if this == "-" {
+            return Some(finding.help("a pure number has no unit, or `[1]`"));
+        }
+        if this == "." || self.token.is_some_and(|token| token.kind == TokenKind::Word) {
+            return Some(finding.help("a product of units has its sign: `[N*m]`"));
         }
         Some(finding.help("write units as in `[km]`, `[m/s^2]`, `[kg*m^2]`, `[1]`, with whole powers"))
     }
@@ -253,7 +288,10 @@ impl Here<'_> {
             return Some("one time has a block of its own: `at 2.5 [s] { ... }`".into());
         }
         let in_declaration = matches!(self.first_word(), Some("state" | "input" | "output" | "param" | "const"));
-        if in_declaration && this == "(" {
+        if let Some(advice) = self.advice_on_ranges(this, before).or_else(|| self.advice_on_heads(this, before)) {
+            return Some(advice);
+        }
+        if in_declaration && this == "(" && self.before.is_some_and(|token| token.kind == TokenKind::Word) {
             return Some(format!("a size stands in brackets: `{before}[3]`"));
         }
         if in_declaration && this == ":" && after_number {
@@ -279,10 +317,18 @@ impl Here<'_> {
             && (self.expected.has(Rule::alias) || self.expected.has(Rule::kw_as)))
             || (this == "(" && word(earlier) == ".")
         {
-            return Some("names of a library stand behind `::`: `use std::rotation;`, `rotation::matrix(q)`".into());
+            if self.first_word() == Some("use") {
+                return Some(format!("write {}", imports::as_use(self.scan, self.statement_start())));
+            }
+            return Some("functions of the language stand alone, `sin(x)`, those of a library behind `::`: `use std::rotation;`, `rotation::matrix(q)`".into());
         }
         if let Some(advice) = self.advice_on_conditions(this, before) {
             return Some(advice.into());
+        }
+        if after_number && matches!(this, "(" | "{" | "<") && self.expected.has(Rule::operator) {
+            return Some(format!(
+                "a unit stands in brackets, `{before} [kg]`; a product has its sign, `{before} * ...`"
+            ));
         }
         if after_number && is_word {
             return Some(format!(
@@ -292,14 +338,15 @@ impl Here<'_> {
         if this == "+" && self.expected.has_expression() {
             return Some("a number without a sign is positive: remove the `+`".into());
         }
-        if this == "[" && before == "in" {
-            return Some("a range is written without brackets: `in 0 .. 1`".into());
-        }
         if this == "=" && self.first_word() == Some("variable") {
             return Some("a `variable` is sought, between bounds or without: `variable z in 0 .. 3;`; a number that is given is a `param`".into());
         }
         if this == "[" && before == "]" {
             return Some("several indices stand in one bracket: `A[1, 2]`".into());
+        }
+        let is_unit = matches!(before, "*" | "/") && word(earlier).ends_with(|c: char| c.is_ascii_digit() || c == ']');
+        if this == "[" && is_unit {
+            return Some("a unit stands behind its number without a sign, in one bracket: `9.81 [m/s^2]`".into());
         }
         if this == "[" && self.expected.has_expression() {
             return Some("a vector is a list in parentheses, `(1, 0, 0)`; brackets are units and indices".into());
@@ -315,7 +362,7 @@ impl Here<'_> {
                 "constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`, with `==`".into(),
             );
         }
-        if this == "," && after_number && self.expected.has(Rule::semicolon) {
+        if this == "," && self.is_decimal_comma() && self.expected.has(Rule::semicolon) {
             return Some("the decimal point is `.`; a list stands in parentheses, `(1, 2)`".into());
         }
         if this == "," && self.expected.has(Rule::semicolon) {

@@ -83,7 +83,9 @@ impl Build {
     /// A name, in the form in which equal names are equal bytes.
     fn name(&mut self, pair: &Pair<'_>) -> Ident {
         use unicode_normalization::UnicodeNormalization;
-        Ident { text: pair.as_str().nfc().collect(), span: self.span(pair) }
+        let written = pair.as_str();
+        let text = if written.is_ascii() { written.to_owned() } else { written.nfc().collect() };
+        Ident { text, span: self.span(pair) }
     }
 
     /// The span of a pair, without the white space that pest leaves at the end of rules with

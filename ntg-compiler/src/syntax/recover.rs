@@ -107,9 +107,11 @@ impl Walk<'_> {
             let at = tokens.first().map_or(Span::new(0, 0), |token| token.span);
             return self.one_problem(at, "there is no problem here");
         };
-        if self.text(first) == "import" {
-            let finding = Diagnostic::new(Code::Unexpected, tokens[first].span, "`import` begins no statement");
-            return self.found.push(finding.help("libraries are used: `use std::rotation;`, `use \"shuttle.ntg\";`"));
+        if explain::imports::IMPORTING.contains(&self.text(first)) {
+            let message = format!("`{}` begins no statement", self.text(first));
+            let finding = Diagnostic::new(Code::Unexpected, tokens[first].span, message);
+            let target = explain::imports::as_use(self.scan, first);
+            return self.found.push(finding.help(format!("libraries are used: {target}")));
         }
         if matches!(self.text(first), "const" | "fn" | "table") {
             let finding = Diagnostic::new(Code::OneProblem, tokens[first].span, "this is a library: it has no problem");

@@ -108,13 +108,17 @@ mod tests {
             .and_then(|(_, rest)| rest.split_once('}'))
             .expect("the rule is there")
             .0;
-        for group in rule.split('&').skip(1) {
-            let words: Vec<&str> = group.split('"').skip(1).step_by(2).collect();
-            assert!(words.iter().all(|word| group.starts_with(&format!("'{0}'..'{0}'", &word[..1]))), "{group}");
-            let hidden = |k: usize| words[..k].iter().any(|before| words[k].starts_with(before));
-            assert!(!(0..words.len()).any(hidden), "{words:?}");
+        let mut reserved: Vec<String> = Vec::new();
+        for group in rule.lines().filter(|line| line.contains('"')) {
+            let (first, rests) = group.split_once('~').expect("a letter and what may follow");
+            let first = first.split('"').nth(1).expect("a letter");
+            let rests: Vec<&str> = rests.split('"').skip(1).step_by(2).collect();
+            let hidden = |k: usize| rests[..k].iter().any(|before| rests[k].starts_with(before));
+            assert!(!(0..rests.len()).any(hidden), "{group}");
+            reserved.extend(rests.iter().map(|rest| format!("{first}{rest}")));
+            // With a question mark the letter is a word itself.
+            reserved.extend(group.contains(")?").then(|| first.to_owned()));
         }
-        let mut reserved: Vec<&str> = rule.split('"').skip(1).step_by(2).collect();
         let mut words: Vec<&str> =
             [ITEM_WORDS, EXPRESSION_WORDS].iter().flat_map(|list| list.iter()).copied().collect();
         reserved.sort_unstable();

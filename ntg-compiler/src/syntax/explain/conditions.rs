@@ -15,6 +15,12 @@ impl Here<'_> {
         let has = |rule| self.expected.has(rule);
         let is_relation = matches!(this, "==" | "<=" | ">=" | "<" | ">" | "!=" | "=");
         match (this, before) {
+            (_, word) | (word, _) if JOINING.contains(&word) && has(Rule::semicolon) => {
+                Some("write two statements: all of them hold")
+            }
+            ("if", _) if has(Rule::semicolon) && has(Rule::operator) => {
+                Some("what must hold at times only is written in a phase")
+            }
             (_, word) | (word, _) if JOINING.contains(&word) && (has(Rule::relation) || has(Rule::left_brace)) => {
                 Some("a condition is one relation: write one `if` inside the other, or `a in lo .. hi`")
             }
@@ -52,7 +58,7 @@ impl Here<'_> {
     }
 
     /// Whether the statement has that word before the place.
-    fn is_behind(&self, word: &str) -> bool {
+    pub(super) fn is_behind(&self, word: &str) -> bool {
         let before = self.scan.tokens[..self.index].iter().rev().map(|token| text(self.scan, token));
         before.take_while(|text| !matches!(*text, ";" | "}")).any(|text| text == word)
     }

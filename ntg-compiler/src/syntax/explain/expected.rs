@@ -50,7 +50,9 @@ impl Expected {
         let has = |kind: Kind| kinds.contains(&kind);
         let (expression, statement) = (has(Kind::Expression), has(Kind::Statement));
         let (operator, relation) = (has(Kind::Operator), has(Kind::Relation));
-        let (opens, ends) = (has(Kind::Mark("(")), has(Kind::Mark(";")));
+        // Behind a bare name a path or an argument may go on.
+        let opens = has(Kind::Mark("(")) || self.has(Rule::dot);
+        let ends = has(Kind::Mark(";"));
         let major = kinds.iter().any(|kind| !kind.is_minor());
         kinds.retain(|kind| match kind {
             // An expression may begin with both.
@@ -183,6 +185,7 @@ fn kind(rule: Rule) -> Kind {
         | R::kw_rows
         | R::call
         | R::callee
+        | R::bare_name
         | R::word
         | R::path
         | R::values

@@ -4,35 +4,151 @@ use super::Here;
 use crate::syntax::grammar::Rule;
 use crate::syntax::scan::{Token, TokenKind};
 
+/// What is called or taken of something, and stands before it.
+const TAKEN_OF: [&str; 7] = ["der", "integral", "initial", "final", "start", "end", "duration"];
+
 impl Here<'_> {
     /// Ranges, slices, definitions and splines as other languages write them.
     pub(super) fn advice_on_habits(&self, this: &str, before: &str) -> Option<&'static str> {
         let is = |kind: TokenKind, token: Option<&Token>| token.is_some_and(|token| token.kind == kind);
         let first = self.first_word().unwrap_or_default();
+        let has = |rule| self.expected.has(rule);
         Some(match (before, this) {
             ("[" | ",", ":") => {
                 "a range is written `1 .. 3`; indices that are left out at the end give the rest: `A[1]` is a row"
             }
             ("end", "]") => "the last element is written by its number or its constant: `r[3]`, `r[n]`",
-            (_, ":") if self.expected.has(Rule::equals) => "a definition is written with one `=`",
-            (_, ":") if self.expected.has(Rule::dots) => "a range is written `1 .. 3`",
-            (_, "=") if self.expected.has(Rule::kw_in) && first == "for" => "write `for i in 1 .. 3 { ... }`",
-            (_, "{") if self.expected.has(Rule::dots) => "a range is written `1 .. 3`",
-            (_, ";") if first == "output" && self.expected.has(Rule::colon) => {
+            (_, ":") if matches!(first, "param" | "const") && has(Rule::equals) => {
+                "a value is given with `=`, its unit stands behind it: `param m = 1 [kg];`"
+            }
+            (_, ":") if has(Rule::equals) => "a definition is written with one `=`",
+            (_, ":") if has(Rule::dots) => "a range is written `1 .. 3`",
+            (_, ":") if first == "table" || self.is_within("table") => "a row ends with `;`: `0: 1;  2: 3;`",
+            (_, ":") if has(Rule::relation) => "what shall hold is written with `==`, `<=` or `>=`",
+            (_, "=") if has(Rule::kw_in) && first == "for" => "write `for i in 1 .. 3 { ... }`",
+            (_, "{") if has(Rule::dots) => "a range is written `1 .. 3`",
+            (_, ";") if first == "output" && has(Rule::colon) => {
                 "an output says its spline, `output z: spline(order = 5, intervals = 8);`; a `state` needs none"
             }
-            ("(", _)
-                if is(TokenKind::Number, self.token)
-                    && matches!(first, "output" | "state" | "input" | "collocation") =>
-            {
+            ("(", _) if is(TokenKind::Number, self.token) && first == "collocation" => {
+                "settings have names: `gauss(points = 3, intervals = 20)`"
+            }
+            ("(", _) if is(TokenKind::Number, self.token) && matches!(first, "output" | "state" | "input") => {
                 "settings have names: `spline(order = 5, intervals = 8)`"
+            }
+            _ if is(TokenKind::String, self.token) && self.expected.has_expression() => {
+                "a number stands without quotes, its unit in brackets: `1 [kg]`"
+            }
+            ("lambda", _) | ("-", ">") => "a function is declared by `fn`: `fn f(x) = x^2;`",
+            (_, "for" | "in") if self.is_behind("sum") || self.is_behind("prod") => {
+                "the index comes first: `sum(i in 1 .. 3, r[i])`"
+            }
+            (")", "[") => "an element is taken of a name: `der(r[1])`, or of what has one by `let`",
+            (_, "==" | "<=" | ">=" | "<" | ">" | "!=") if has(Rule::operator) => {
+                "a value is a number: comparisons stand in blocks of constraints, or behind `if`: `if a <= b { 1 } else { 0 }`"
             }
             _ if is(TokenKind::Word, self.token)
                 && is(TokenKind::Word, self.before)
-                && self.expected.has(Rule::operator) =>
+                && !matches!(this, "for" | "in" | "if")
+                && has(Rule::operator) =>
             {
                 "a product has its sign, `a * b`"
             }
+            _ => return None,
+        })
+    }
+
+    /// Heads of statements and blocks as other languages write them.
+    pub(super) fn advice_on_heads(&self, this: &str, before: &str) -> Option<String> {
+        let first = self.first_word().unwrap_or_default();
+        let has = |rule| self.expected.has(rule);
+        // A head is looked at without its brace.
+        let opens = has(Rule::left_brace) || has(Rule::head_end);
+        let is_block = matches!(first, "initial" | "trajectory" | "final" | "temporal" | "dynamics" | "measure");
+        Some(match this {
+            _ if first == "trajectory" && opens && (self.is_behind("from") || self.is_behind("to")) => {
+                "a part of it is written `trajectory from a to b { ... }`".into()
+            }
+            _ if is_block && opens => {
+                format!("what holds there stands in braces: `{first} {{ ... }}`")
+            }
+            "=" | "==" if first == "at" && opens => {
+                let end = (self.index..self.index + 12).find(|at| self.word(*at) == "{").unwrap_or(self.index + 1);
+                format!("write the time alone: `at {} {{ ... }}`", self.written(self.index + 1, end))
+            }
+            _ if first == "phase" && (opens || has(Rule::name)) && !self.expected.has_expression() => {
+                "a phase has a name and says which it follows: `phase coast after boost { ... }`".into()
+            }
+            "{" if matches!(first, "minimize" | "maximize") => {
+                format!("write `{first} e;`; several terms are a sum, or statements of their own")
+            }
+            "," if matches!(first, "minimize" | "maximize") && has(Rule::semicolon) => {
+                format!("several terms are a sum, or statements of their own: `{first} a;  {first} b;`")
+            }
+            "(" if first == "let" && has(Rule::equals) => {
+                format!("a function is declared by `fn`: `fn {before}(x) = ...;`")
+            }
+            _ if first == "fn" && has(Rule::left_parenthesis) => "write `fn f(a) = a / 2;`".into(),
+            "{" if first == "table" && has(Rule::method) => {
+                "say how it goes between the nodes: `= monotone { 0: 1;  2: 3; }`".into()
+            }
+            "=" if first == "table" && has(Rule::left_parenthesis) => {
+                format!("a table names its arguments: `table {before}(x) = ...`")
+            }
+            "(" if self.is_within("guess") && has(Rule::equals) => {
+                format!("write `{before} = ...`: the right side may hold `t` and `tau`")
+            }
+            _ if TAKEN_OF.contains(&before) && this != "]" && has(Rule::left_parenthesis) => self.taken_of(before),
+            "," if has(Rule::semicolon) && has(Rule::operator) && !self.is_decimal_comma() => {
+                match self.block_around()? {
+                    "initial" | "trajectory" | "final" | "temporal" | "dynamics" | "measure" | "guess" | "at" => {
+                        "every statement ends with `;`".into()
+                    }
+                    _ => return None,
+                }
+            }
+            _ => return None,
+        })
+    }
+
+    /// `der x`, `duration;`
+    fn taken_of(&self, word: &str) -> String {
+        match (word, self.token.filter(|token| token.kind == TokenKind::Word)) {
+            (_, Some(_)) => format!("write `{word}({})`", self.word(self.index)),
+            ("duration" | "end" | "start", None) => {
+                format!("write `{word}(phase)`; of the whole, the name in `duration T = ...;`, or `final(t)`")
+            }
+            _ => format!("write `{word}(x)`"),
+        }
+    }
+
+    /// `9,81`
+    pub(super) fn is_decimal_comma(&self) -> bool {
+        let number = |token: Option<&Token>| token.copied().filter(|token| token.kind == TokenKind::Number);
+        let (left, right) = (number(self.before), number(self.scan.tokens.get(self.index + 1)));
+        left.zip(right).is_some_and(|(left, right)| left.span.end + 1 == right.span.start)
+    }
+
+    /// `h.final`, `boost.duration`, `math.pi`: what other languages have behind a point.
+    pub(super) fn behind_a_point(&self, word: &str) -> Option<String> {
+        let mut at = self.index.checked_sub(1).filter(|at| self.word(*at) == ".")?;
+        let mut path = Vec::new();
+        while self.word(at) == "." && at > 0 {
+            path.push(self.word(at - 1));
+            match at.checked_sub(2) {
+                Some(next) if self.word(next) == "." => at = next,
+                _ => break,
+            }
+        }
+        path.reverse();
+        let argument = self.word(self.index + 2);
+        Some(match word {
+            "pi" | "t" | "tau" => format!("write `{word}` alone"),
+            "initial" | "final" if self.word(self.index + 1) == "(" && self.word(self.index + 3) == ")" => {
+                format!("write `{word}({}, {argument})`", path.join("."))
+            }
+            "initial" | "final" => format!("write `{word}({})`", path.join(", ")),
+            "start" | "end" | "duration" => format!("write `{word}({})`", path.join(".")),
             _ => return None,
         })
     }

@@ -14,6 +14,9 @@ impl Scanner<'_> {
         if c == '\'' {
             help = self.prime(count);
         }
+        if c == '@' {
+            help = self.at_sign().map_or(help, str::to_owned);
+        }
         let name = if c.is_control() || c.is_whitespace() || c == '\u{feff}' {
             format!("the character U+{:04X}", c as u32)
         } else {
@@ -23,6 +26,24 @@ impl Scanner<'_> {
         self.report(Diagnostic::new(Code::UnknownCharacter, self.ahead(length), message).help(help));
         self.replace(start, start + length, instead);
         self.pos += length;
+    }
+
+    /// Macros begin with `@` in Julia.
+    fn at_sign(&self) -> Option<&'static str> {
+        let rest = &self.text[self.pos + 1..];
+        Some(match &rest[..super::name_length(rest)] {
+            "variable" | "variables" | "infinite_variable" => {
+                "what moves is a `state`, an `input` or an `output`, a number that is sought a `variable z in 0 .. 1;`"
+            }
+            "constraint" | "constraints" | "NLconstraint" => {
+                "constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`"
+            }
+            "objective" | "NLobjective" => "write `minimize e;` or `maximize e;`",
+            "infinite_parameter" => "the time is `t`, how long it takes is `duration T = 5;`",
+            "parameter" | "finite_parameter" | "parameters" => "write `param p = 1;`",
+            "expression" => "write `let e = ...;`",
+            _ => return None,
+        })
     }
 
     /// Primes after a name mean a derivative to every engineer.
@@ -65,6 +86,7 @@ fn advice(c: char) -> (&'static str, String) {
         '%' => ("", "write a share as a number, `0.05`; comments begin with `//`"),
         '#' => ("", "comments begin with `//`"),
         '@' => ("*", "write `*`, which is the product of matrices too"),
+        '~' => ("", "say which side is meant, with `<=` or `>=`"),
         '!' => ("", "write each constraint with `==`, `<=` or `>=`"),
         '\\' => ("", "write the equation: `A * x == b`, with `x` a state, an input or an output"),
         '?' => ("", "write `if a <= b { ... } else { ... }`"),
