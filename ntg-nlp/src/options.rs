@@ -58,7 +58,7 @@ pub enum Method {
     /// The structured interior-point method alone.
     InteriorPoint,
     /// The same on the augmented Lagrangian, with estimates of multipliers in place of the filter (docs/maths.md, section
-    /// 11.7): slower as a rule, and it does not mind rows that depend on each other.
+    /// 11.11): slower as a rule, and it does not mind rows that depend on each other.
     AugmentedLagrangian,
 }
 

@@ -1,5 +1,5 @@
-//! How violations are treated: never accepted without gain (the filter), or at a price (docs/maths.md, sections 11.5 to
-//! 11.7).
+//! How violations are treated: never accepted without gain (the filter), or at a price (docs/maths.md, sections 11.5,
+//! 11.6 and 11.11).
 
 use super::augmented::AugmentedLagrangian;
 use super::penalty::Penalty;

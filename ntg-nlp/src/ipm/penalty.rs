@@ -37,7 +37,7 @@ pub(super) struct Penalty {
     pub(super) above: Vec<f64>,
 }
 
-/// The best relaxation and slack of an inequality with the distance `d`, (11.9b).
+/// The best relaxation and slack of an inequality with the distance `d`, (11.8).
 fn best_split(d: f64, rho: f64, mu: f64) -> (f64, f64) {
     // A root of rho n^2 + (rho d - 2 mu) n - mu d = 0, and s = n + d.
     let root = (rho * d).hypot(2.0 * mu);
