@@ -4,7 +4,7 @@
 //! that both give the same bits.
 
 use ntg_compiler::expr::{Binary, Unary};
-use ntg_runtime::math::{self, Pack, Simd, Task, Work, dispatch};
+use ntg_runtime::math::{self, MOST_LANES, Pack, Simd, Task, Work, dispatch};
 use ntg_splines::Table;
 
 use crate::tape::{Operation, Step, Tape};
@@ -175,17 +175,17 @@ impl<S: Simd> Execution<'_, S> {
 
     #[inline(always)]
     fn table(&mut self, table: usize, args: &[usize], orders: &[u8], results: &[usize]) {
-        let mut point = [Pack::splat(self.simd, 0.0); MOST_ARGUMENTS];
+        let mut point = [[0.0; MOST_LANES]; MOST_ARGUMENTS];
         for lane in (0..self.count).step_by(S::LANES) {
             for (x, register) in point.iter_mut().zip(args) {
-                *x = Pack::load(self.simd, &self.registers[register * CHUNK + lane..]);
+                x[..S::LANES].copy_from_slice(&self.registers[register * CHUNK + lane..][..S::LANES]);
             }
             let groups = results.chunks(MOST_RESULTS).zip(orders.chunks(MOST_RESULTS * args.len()));
             for (results, orders) in groups {
-                let mut out = [Pack::splat(self.simd, 0.0); MOST_RESULTS];
-                self.tables[table].look_up(self.simd, &point[..args.len()], orders, &mut out[..results.len()]);
+                let mut out = [[0.0; MOST_LANES]; MOST_RESULTS];
+                self.tables[table].look_up(S::LANES, &point[..args.len()], orders, &mut out[..results.len()]);
                 for (register, derivative) in results.iter().zip(out) {
-                    derivative.store(&mut self.registers[register * CHUNK + lane..]);
+                    self.registers[register * CHUNK + lane..][..S::LANES].copy_from_slice(&derivative[..S::LANES]);
                 }
             }
         }

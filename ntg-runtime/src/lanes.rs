@@ -7,7 +7,7 @@
 
 use std::marker::PhantomData;
 
-use ntg_math::{MOST_LANES, Pack, Simd, Task, Work, dispatch};
+use ntg_math::{MOST_LANES, Pack, Scalar, Simd, Task, Work, dispatch};
 use ntg_splines::Table;
 use ntg_structure::Structure;
 
@@ -27,8 +27,8 @@ pub trait Kernels: Sync {
     /// As [`Problem::derivatives`].
     fn derivatives<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>);
 
-    /// As [`Problem::probes`]; there are no weights.
-    fn probes<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], probes: &mut [f64]);
+    /// As [`Problem::probes`]; there are no weights. Asked once a solve at most, so it is compiled for one lane alone.
+    fn probes(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], probes: &mut [f64]);
 }
 
 impl<T: Kernels> Problem for T {
@@ -50,8 +50,7 @@ impl<T: Kernels> Problem for T {
     }
 
     fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]) {
-        let call = Call { problem: self, kernel, point: Lanes { lanes, inputs, weights: &[] }, tables };
-        dispatch(AllProbes(call, probes));
+        Kernels::probes(self, kernel, Lanes { lanes, inputs, weights: &[] }, tables, probes);
     }
 }
 
@@ -65,7 +64,6 @@ struct Call<'a, T> {
 
 struct AllValues<'a, T>(Call<'a, T>, &'a mut [f64]);
 struct AllDerivatives<'a, T>(Call<'a, T>, Derivatives<'a>);
-struct AllProbes<'a, T>(Call<'a, T>, &'a mut [f64]);
 
 impl<T: Kernels> Task for AllValues<'_, T> {
     #[inline]
@@ -80,14 +78,6 @@ impl<T: Kernels> Task for AllDerivatives<'_, T> {
     fn run<S: Simd>(self, simd: S) {
         let Call { problem, kernel, point, tables } = self.0;
         problem.derivatives(simd, kernel, point, tables, self.1);
-    }
-}
-
-impl<T: Kernels> Task for AllProbes<'_, T> {
-    #[inline]
-    fn run<S: Simd>(self, simd: S) {
-        let Call { problem, kernel, point, tables } = self.0;
-        problem.probes(simd, kernel, point, tables, self.1);
     }
 }
 
@@ -140,10 +130,9 @@ pub fn values<S: Simd, K: Values<I, R>, const I: usize, const R: usize>(
     simd.vectorize(EveryPack::<S, OfValues<K>, I, R> { simd, point, tables, out, kernel: PhantomData });
 }
 
-/// As [`values`], of what is probed.
+/// As [`values`], of what is probed, one lane after the other.
 #[inline]
-pub fn probes<S: Simd, K: Probes<I, P>, const I: usize, const P: usize>(
-    simd: S,
+pub fn probes<K: Probes<I, P>, const I: usize, const P: usize>(
     _: K,
     point: Lanes<'_>,
     tables: &[Table],
@@ -152,7 +141,7 @@ pub fn probes<S: Simd, K: Probes<I, P>, const I: usize, const P: usize>(
     if point.lanes == 0 || point.inputs.len() < I * point.lanes || out.len() < P * point.lanes {
         return;
     }
-    simd.vectorize(EveryPack::<S, OfProbes<K>, I, P> { simd, point, tables, out, kernel: PhantomData });
+    EveryPack::<Scalar, OfProbes<K>, I, P> { simd: Scalar, point, tables, out, kernel: PhantomData }.run();
 }
 
 /// Calls a kernel with the inputs and weights of every pack of lanes and stores values, first
@@ -338,8 +327,8 @@ mod tests {
             derivatives(simd, Twice, point, tables, out);
         }
 
-        fn probes<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], out: &mut [f64]) {
-            Kernels::values(self, simd, kernel, point, tables, out);
+        fn probes(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], out: &mut [f64]) {
+            Kernels::values(self, Scalar, kernel, point, tables, out);
         }
     }
 

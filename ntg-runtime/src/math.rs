@@ -15,7 +15,7 @@ pub fn table<S: Simd, const N: usize, const K: usize>(
     args: [Pack<S>; N],
     orders: [[u8; N]; K],
 ) -> [Pack<S>; K] {
-    let mut out = [Pack::splat(simd, 0.0); K];
-    table.look_up(simd, &args, orders.as_flattened(), &mut out);
-    out
+    let mut out = [[0.0; MOST_LANES]; K];
+    table.look_up(S::LANES, &args.map(Pack::to_array), orders.as_flattened(), &mut out);
+    out.map(|derivative| Pack::load(simd, &derivative))
 }

@@ -39,7 +39,7 @@ pub(super) struct Functions {
 /// Writes a kernel as a type of this name.
 pub(super) fn functions(name: &str, shape: &Kernel, body: &KernelBody) -> Functions {
     let values = Function::new(body, &[("out", &body.values)]);
-    let derivatives = (shape.slots > 0).then(|| {
+    let derivatives = (!body.jacobian.is_empty() || !body.hessian.is_empty()).then(|| {
         Function::new(body, &[("values", &body.values), ("jacobian", &body.jacobian), ("hessian", &body.hessian)])
     });
     let probes = (!body.probes.is_empty()).then(|| Function::new(body, &[("out", &body.probes)]));

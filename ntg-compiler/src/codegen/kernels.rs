@@ -38,7 +38,7 @@ pub(super) fn kernels(program: &Program) -> Kernels {
             false => quote! { #number => #only, },
         });
         if probed {
-            probes.push(quote! { #number => lanes::probes(simd, kernels::#kernel {}, point, tables, probes), });
+            probes.push(quote! { #number => lanes::probes(kernels::#kernel {}, point, tables, probes), });
         }
     }
     let items = quote! {

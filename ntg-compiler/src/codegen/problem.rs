@@ -90,7 +90,7 @@ fn contract(program: &Program, kernels: &Kernels, name: &proc_macro2::Ident) -> 
                     }
                 }
 
-                fn probes<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], probes: &mut [f64]) {
+                fn probes(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], probes: &mut [f64]) {
                     match kernel {
                         #(#probes)*
                         _ => probes.fill(f64::NAN),

@@ -67,7 +67,12 @@ pub(super) fn derive(formulas: Formulas, slots: usize, data: usize, mode: Mode) 
     };
     let mut body = KernelBody { dag, inputs, names: vec![], labels: vec![], values, jacobian, hessian: second, probes };
     strengthen(&mut body);
-    (shape, body, spans)
+    if matches!(mode, Mode::Solve | Mode::Slopes) {
+        return (shape, body, spans);
+    }
+    // Nobody asks what fails in a function that is not solved for.
+    body.probes.clear();
+    (shape, body, vec![])
 }
 
 /// Replaces all formulas of a kernel by the same with cheaper operations.

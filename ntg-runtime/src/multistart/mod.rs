@@ -189,7 +189,7 @@ pub struct Minima<S> {
 impl<S> Minima<S> {
     /// Shows every minimum as `show` makes a solution of its report.
     pub fn new(report: MultiReport, show: impl Fn(Report) -> S) -> Self {
-        Self { solutions: report.minima.iter().map(|minimum| show(minimum.report.clone())).collect(), report }
+        Self { solutions: report.reports().into_iter().map(show).collect(), report }
     }
 
     /// The best solution; none where no start was solved.
@@ -199,6 +199,11 @@ impl<S> Minima<S> {
 }
 
 impl MultiReport {
+    /// A copy of the report of every minimum. Not generic, so that copies are compiled here and not for every problem.
+    fn reports(&self) -> Vec<Report> {
+        self.minima.iter().map(|minimum| minimum.report.clone()).collect()
+    }
+
     /// How many starts were tried.
     pub fn tried(&self) -> usize {
         self.starts.len()

@@ -5,7 +5,7 @@
 //! very large tables, derivatives beyond the third) goes lane by lane through the weights of (7.1). Which way
 //! is taken depends on table and derivative alone, so a number has the same bits in any company.
 
-use ntg_math::{MOST_LANES, Pack, Scalar, Simd, Work};
+use ntg_math::{MOST_LANES, Pack, Scalar, Simd, Task, dispatch};
 
 use super::joined::Joined;
 use super::piece::Weights;
@@ -19,25 +19,29 @@ impl Table {
     /// at a node (at the last one from the left). Not a number if an argument is, or if `args`
     /// or `derivative` has not one entry for each argument.
     pub fn eval(&self, args: &[f64], derivative: &[u8]) -> f64 {
-        let mut packs = [Pack::splat(Scalar, 0.0); MAX_ARGUMENTS];
-        let Some(packs) = packs.get_mut(..args.len()) else { return f64::NAN };
-        for (pack, x) in packs.iter_mut().zip(args) {
-            *pack = Pack::splat(Scalar, *x);
-        }
-        let mut out = [Pack::splat(Scalar, f64::NAN)];
-        self.look_up(Scalar, packs, derivative, &mut out);
-        out[0].to_array()[0]
+        let mut lanes = [[0.0; MOST_LANES]; MAX_ARGUMENTS];
+        let Some(lanes) = lanes.get_mut(..args.len()) else { return f64::NAN };
+        lanes.iter_mut().zip(args).for_each(|(lane, x)| lane[0] = *x);
+        let mut out = [[f64::NAN; MOST_LANES]];
+        self.look_up(1, lanes, derivative, &mut out);
+        out[0][0]
     }
 
-    /// Several partial derivatives at the same place, for every lane: `out[k]` is `orders[k * n + i]` times
+    /// Several partial derivatives at the same place, for each of `lanes` places: `out[k]` is `orders[k * n + i]` times
     /// with respect to argument `i` of `n`. A lane has the bits that [`Table::eval`] gives.
-    #[inline]
-    pub fn look_up<S: Simd>(&self, simd: S, args: &[Pack<S>], orders: &[u8], out: &mut [Pack<S>]) {
+    ///
+    /// Lanes come as numbers and not as packs, so that this is compiled once and not with every kernel.
+    #[inline(never)]
+    pub fn look_up(&self, lanes: usize, args: &[[f64; MOST_LANES]], orders: &[u8], out: &mut [[f64; MOST_LANES]]) {
         if args.len() != self.pieces.len() || orders.len() != args.len() * out.len() {
-            out.fill(Pack::splat(simd, f64::NAN));
+            out.fill([f64::NAN; MOST_LANES]);
             return;
         }
-        simd.vectorize(LookUp { simd, table: self, args, orders, out });
+        let task = Lanes { table: self, lanes: lanes.min(MOST_LANES), args, orders, out };
+        match lanes {
+            1 => task.run(Scalar),
+            _ => dispatch(task),
+        }
     }
 
     /// A partial derivative at one place, by the weights of (7.1).
@@ -69,16 +73,41 @@ impl Table {
     }
 }
 
-/// A look-up, to be compiled for the processor's instructions.
+/// A look-up of some lanes, to be compiled for the processor's instructions.
+struct Lanes<'a> {
+    table: &'a Table,
+    lanes: usize,
+    args: &'a [[f64; MOST_LANES]],
+    orders: &'a [u8],
+    out: &'a mut [[f64; MOST_LANES]],
+}
+
+impl Task for Lanes<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { table, lanes, args, orders, out } = self;
+        let mut packs = [Pack::splat(simd, 0.0); MAX_ARGUMENTS];
+        for from in (0..lanes).step_by(S::LANES) {
+            for (pack, lanes) in packs.iter_mut().zip(args) {
+                *pack = Pack::load(simd, &lanes[from..]);
+            }
+            LookUp { simd, table, args: &packs[..args.len()], orders, out: &mut *out, from }.run();
+        }
+    }
+}
+
+/// A look-up of the lanes of one pack.
 struct LookUp<'a, S: Simd> {
     simd: S,
     table: &'a Table,
     args: &'a [Pack<S>],
     orders: &'a [u8],
-    out: &'a mut [Pack<S>],
+    out: &'a mut [[f64; MOST_LANES]],
+    /// The first of the lanes.
+    from: usize,
 }
 
-impl<S: Simd> Work for LookUp<'_, S> {
+impl<S: Simd> LookUp<'_, S> {
     #[inline(always)]
     fn run(self) {
         match (&self.table.joined, self.args) {
@@ -86,7 +115,7 @@ impl<S: Simd> Work for LookUp<'_, S> {
             (Some(joined), [x, y]) => self.two(joined, [*x, *y]),
             _ => {
                 for (out, derivative) in self.out.iter_mut().zip(self.orders.chunks_exact(self.args.len())) {
-                    *out = each_lane(self.simd, self.table, self.args, derivative);
+                    each_lane(self.simd, self.table, self.args, derivative).store(&mut out[self.from..]);
                 }
             }
         }
@@ -107,10 +136,11 @@ impl<S: Simd> LookUp<'_, S> {
         };
         let (valid, none) = (x.is_number(), Pack::splat(self.simd, f64::NAN));
         for (out, d) in self.out.iter_mut().zip(self.orders) {
-            *out = match jet.get(usize::from(*d)) {
+            let derivative = match jet.get(usize::from(*d)) {
                 Some(derivative) => valid.select(*derivative, none),
                 None => each_lane(self.simd, table, self.args, &[*d]),
             };
+            derivative.store(&mut out[self.from..]);
         }
     }
 
@@ -129,11 +159,12 @@ impl<S: Simd> LookUp<'_, S> {
         let valid = args[0].is_number().both(args[1].is_number());
         let none = Pack::splat(self.simd, f64::NAN);
         for (out, pair) in self.out.iter_mut().zip(pairs) {
-            *out = if altogether(*pair) < AT_ONCE {
+            let derivative = if altogether(*pair) < AT_ONCE {
                 valid.select(jet[usize::from(pair[0])][usize::from(pair[1])], none)
             } else {
                 each_lane(self.simd, table, self.args, pair)
             };
+            derivative.store(&mut out[self.from..]);
         }
     }
 }
@@ -158,7 +189,6 @@ fn each_lane<S: Simd>(simd: S, table: &Table, args: &[Pack<S>], derivative: &[u8
 mod tests {
     use super::super::{Axis, Extrapolation, Method, Symmetry};
     use super::*;
-    use ntg_math::{Task, dispatch};
 
     /// Tables of every method and symmetry, of one to three arguments, with few and many nodes.
     fn tables() -> Vec<Table> {
@@ -203,18 +233,16 @@ mod tests {
         all
     }
 
-    struct Lanes<'a>(&'a Table, &'a [Vec<f64>], &'a [u8], &'a mut [Vec<f64>]);
-
-    impl Task for Lanes<'_> {
-        fn run<S: Simd>(self, simd: S) {
-            let Self(table, args, orders, results) = self;
-            for at in (0..args[0].len()).step_by(S::LANES) {
-                let args: Vec<Pack<S>> = args.iter().map(|x| Pack::load(simd, &x[at..])).collect();
-                let mut out = vec![Pack::splat(simd, 0.0); results.len()];
-                table.look_up(simd, &args, orders, &mut out);
-                for (result, derivative) in results.iter_mut().zip(out) {
-                    derivative.store(&mut result[at..]);
-                }
+    /// Looks up as many places at once as there are at most.
+    fn look_up_all(table: &Table, args: &[Vec<f64>], orders: &[u8], results: &mut [Vec<f64>]) {
+        for at in (0..args[0].len()).step_by(MOST_LANES) {
+            let count = MOST_LANES.min(args[0].len() - at);
+            let lanes = |x: &Vec<f64>| std::array::from_fn(|lane| x[at + lane.min(count - 1)]);
+            let args: Vec<[f64; MOST_LANES]> = args.iter().map(lanes).collect();
+            let mut out = vec![[0.0; MOST_LANES]; results.len()];
+            table.look_up(MOST_LANES, &args, orders, &mut out);
+            for (result, derivative) in results.iter_mut().zip(out) {
+                result[at..at + count].copy_from_slice(&derivative[..count]);
             }
         }
     }
@@ -229,7 +257,7 @@ mod tests {
                 .collect();
             let orders = orders(n);
             let mut results = vec![vec![0.0; places.len()]; orders.len() / n];
-            dispatch(Lanes(&table, &args, &orders, &mut results));
+            look_up_all(&table, &args, &orders, &mut results);
             for (result, derivative) in results.iter().zip(orders.chunks_exact(n)) {
                 for (at, found) in result.iter().enumerate() {
                     let point: Vec<f64> = args.iter().map(|x| x[at]).collect();
