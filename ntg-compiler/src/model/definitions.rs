@@ -10,7 +10,7 @@ use std::rc::Rc;
 use super::elaborator::{Definition, Elaborator};
 use super::mention::mentioned;
 use super::problem::Form;
-use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up};
+use super::scope::{Allow, Context, Entity, Local, Meaning, Point, ScopeId, look_up};
 use super::value::{Flaw, Misplaced, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Set;
@@ -103,8 +103,8 @@ impl<'a> Elaborator<'a> {
         let (expr, lexical, unit, is_const, name) = (*expr, *scope, *unit, *is_const, *name);
         let indices: Vec<&'a ast::Ident> = self.definitions[definition].indices().collect();
         let mut inner = Context { allow, ..self.home(cx, lexical) };
-        for (index, form) in indices.iter().zip(place) {
-            inner = inner.with(&index.text, Meaning::Index(form.clone()));
+        if !indices.is_empty() {
+            inner.locals = self.member_names(&inner, definition, &indices, place);
         }
         let at = &place[indices.len().min(place.len())..];
         // One number of a constant stands for every element, as in a `param`.
@@ -124,6 +124,27 @@ impl<'a> Elaborator<'a> {
             Some(unit) => self.declared_unit(value, unit, &format!("`{}`", name.text)),
             None => value,
         }
+    }
+
+    /// The indices of a member as local names, the same ones for all elements of the member.
+    fn member_names(
+        &mut self,
+        cx: &Context<'a>,
+        definition: usize,
+        indices: &[&'a ast::Ident],
+        place: &[Form],
+    ) -> Option<Rc<Local<'a>>> {
+        let member: Vec<Form> = place.iter().take(indices.len()).cloned().collect();
+        self.member_names
+            .entry((definition, member))
+            .or_insert_with_key(|(_, member)| {
+                let named = indices
+                    .iter()
+                    .zip(member)
+                    .fold(cx.clone(), |inner, (index, form)| inner.with(&index.text, Meaning::Index(form.clone())));
+                named.locals
+            })
+            .clone()
     }
 
     /// Holds a value against the unit declared for it.

@@ -14,7 +14,7 @@ use super::problem::{Collocation, Domain, Form, IndexId, Leaf, Leaves, Loop, Pha
 use super::scope::{Context, Entity, Meaning, look_up};
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Again, Dag, InputId, Map, NodeId, SecondIndex, forward};
+use crate::expr::{Again, Dag, InputId, Map, NodeId, Rates, SecondIndex, forward, forward_from};
 use crate::source::Span;
 use crate::syntax::ast::{Call, Expr, ExprKind};
 
@@ -190,9 +190,15 @@ impl<'a> Elaborator<'a> {
         if !sound {
             return None;
         }
+        // What scaled time changes at depends on the phase.
+        let at = self.scopes[cx.scope].phase.map(|phase| cx.phase_at(phase));
+        if self.time_rates.0 != at {
+            self.time_rates = (at, Rates::default());
+        }
         let Problem { dag, leaves, ranges, .. } = &mut self.problem;
         let mut again = MoreIndices { leaves, ranges, next: &mut self.next_index };
-        Some(forward(dag, node, |input| rates.get(&input).copied(), &mut again))
+        let tangent = |input| rates.get(&input).copied();
+        Some(forward_from(dag, node, tangent, &mut again, &mut self.time_rates.1))
     }
 
     fn rate_of_tau(&mut self, cx: &Context<'a>) -> Option<NodeId> {
@@ -403,7 +409,7 @@ impl<'a> Elaborator<'a> {
             return self.refuse(finding.help("differentiate with respect to one number"), span);
         };
         arguments[k] = Meaning::Argument(Value { node: placeholder, ..argument.clone() });
-        let value = self.inline(cx, function, of, arguments, &[]);
+        let value = self.inline(cx, function, of, arguments);
         if !value.is_sound() {
             return value.at(span);
         }

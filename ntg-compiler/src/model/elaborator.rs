@@ -12,6 +12,7 @@ use std::rc::Rc;
 use ntg_structure::Unit;
 
 use super::Loader;
+use super::bodies::Bodies;
 use super::constants::Constant;
 use super::definitions::{Memo, MemoKey};
 use super::derivatives::{Jump, Lacking};
@@ -19,15 +20,15 @@ use super::dimension::Dimension;
 use super::files::Contents;
 use super::kinds::Kinds;
 use super::known_shapes::KnownShapes;
-use super::problem::{Form, IndexId, Leaf, Loop, Problem};
+use super::problem::{Form, IndexId, Leaf, Loop, PhaseAt, Problem};
 use super::rates::{FunctionNeeds, Rates};
-use super::scope::{Context, Declared, Entity, Scope, ScopeId};
+use super::scope::{Context, Declared, Entity, Local, Scope, ScopeId};
 use super::shape::{Ends, FunctionKey, Shape};
 use super::soft::Slack;
 use super::units::{self, Quantity};
 use super::value::{Flaw, OpenIndex, Value};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Map, NodeId, Set};
+use crate::expr::{self, Map, NodeId, Set};
 use crate::source::{Source, Span};
 use crate::syntax::ast;
 
@@ -168,6 +169,10 @@ pub(super) struct Elaborator<'a> {
     /// The axes of definitions with a size, where these are numbers.
     pub(super) written_axes: Map<(usize, ScopeId), Vec<Ends>>, // Looked up, never iterated.
     pub(super) function_shapes: Map<FunctionKey, Option<Shape>>, // Looked up, never iterated.
+    /// The contexts inside calls and behind steps.
+    pub(super) bodies: Bodies<'a>,
+    /// The indices of members of definitions as local names.
+    pub(super) member_names: Map<(usize, Vec<Form>), Option<Rc<Local<'a>>>>, // Looked up, never iterated.
     /// The shapes of expressions, kept once all names are declared.
     pub(super) shapes: Option<KnownShapes>,
     /// The definitions whose shapes are being looked for, and whether one needs its own.
@@ -184,6 +189,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) lacking: Vec<Lacking>,
     /// The derivatives that jump at knots, until all are known.
     pub(super) jumps: Vec<Jump>,
+    /// The derivatives of nodes with respect to time in the phase at hand.
+    pub(super) time_rates: (Option<PhaseAt>, expr::Rates),
     /// How many times the expression at hand is going to be differentiated.
     pub(super) derivatives_around: usize,
     /// The dimension of the objective, once there is one.
@@ -253,6 +260,8 @@ impl<'a> Elaborator<'a> {
             member_shapes: Map::default(),
             written_axes: Map::default(),
             function_shapes: Map::default(),
+            bodies: Bodies::default(),
+            member_names: Map::default(),
             shapes: None,
             shaping: Vec::new(),
             recurs: false,
@@ -263,6 +272,7 @@ impl<'a> Elaborator<'a> {
             found: Vec::new(),
             lacking: Vec::new(),
             jumps: Vec::new(),
+            time_rates: Default::default(),
             derivatives_around: 0,
             objective_dimension: None,
             slacks: Vec::new(),

@@ -160,8 +160,11 @@ impl<'a> Elaborator<'a> {
         let name = call.function.text.as_str();
         match look_up(&self.scopes, cx.names(), name).map(|(_, declared)| declared.entity) {
             Some(Entity::Function(function)) => {
+                if !at.is_empty() {
+                    return self.inline_element(cx, function, call, at);
+                }
                 let Some(arguments) = self.arguments(cx, call) else { return self.poison(call.span) };
-                self.inline(cx, function, call, arguments, at)
+                self.inline(cx, function, call, arguments)
             }
             Some(Entity::Table(table)) => {
                 let arguments = self.plain_arguments(cx, call);
@@ -380,22 +383,60 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// A user function applied to values.
+    /// Whether a user function may be applied here; told where it may not.
+    fn may_inline(&mut self, function: usize, call: &Call) -> bool {
+        let count = self.functions[function].function.parameters.len();
+        if !self.arity(call, count, count) {
+            return false;
+        }
+        if self.inlining.contains(&function) {
+            self.uses_itself(function, call);
+            return false;
+        }
+        true
+    }
+
+    /// An element of a user function's value: what it is applied to is the same for all elements.
+    fn inline_element(&mut self, cx: &Context<'a>, function: usize, call: &'a Call, at: &[Form]) -> Value {
+        if !self.may_inline(function, call) {
+            return self.poison(call.span);
+        }
+        let before = self.found.len();
+        let body = &self.functions[function].function.body;
+        let value = self.in_body(
+            cx,
+            call,
+            |this| {
+                let arguments = this.arguments(cx, call)?;
+                this.inside_function(cx, function, call, arguments)
+            },
+            |this, inner| {
+                this.inlining.push(function);
+                let value = this.element_or_zero(inner, body, at);
+                this.inlining.pop();
+                value
+            },
+        );
+        match value {
+            Some(value) => self.value_of_call(value, function, call, before),
+            None => {
+                self.tell_use(before, call);
+                self.poison(call.span)
+            }
+        }
+    }
+
+    /// A user function applied to values, where that is one number.
     pub(super) fn inline(
         &mut self,
         cx: &Context<'a>,
         function: usize,
         call: &'a Call,
         arguments: Vec<Meaning<'a>>,
-        at: &[Form],
     ) -> Value {
         let declared = self.functions[function].function;
-        let count = declared.parameters.len();
-        if !self.arity(call, count, count) {
+        if !self.may_inline(function, call) {
             return self.poison(call.span);
-        }
-        if self.inlining.contains(&function) {
-            return self.uses_itself(function, call);
         }
         let before = self.found.len();
         let Some(inner) = self.inside_function(cx, function, call, arguments) else {
@@ -403,7 +444,7 @@ impl<'a> Elaborator<'a> {
             return self.poison(call.span);
         };
         self.inlining.push(function);
-        let value = self.element_or_zero(&inner, &declared.body, at);
+        let value = self.value(&inner, &declared.body);
         self.inlining.pop();
         self.value_of_call(value, function, call, before)
     }

@@ -7,6 +7,7 @@
 
 mod acknowledged;
 mod arguments;
+mod bodies;
 mod check;
 mod collocated;
 mod conditions;

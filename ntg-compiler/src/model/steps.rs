@@ -19,10 +19,19 @@ use crate::syntax::ast::{self, Let, Steps};
 impl<'a> Elaborator<'a> {
     /// An element of the value behind steps.
     pub(super) fn behind_steps(&mut self, cx: &Context<'a>, steps: &'a Steps, at: &[Form], span: Span) -> Value {
-        match self.steps(cx, steps) {
-            Some(inner) => self.element_or_zero(&inner, &steps.value, at),
-            None => self.poison(span),
+        if at.is_empty() {
+            return match self.steps(cx, steps) {
+                Some(inner) => self.value(&inner, &steps.value),
+                None => self.poison(span),
+            };
         }
+        let value = self.in_body(
+            cx,
+            steps,
+            |this| this.steps(cx, steps),
+            |this, inner| this.element_or_zero(inner, &steps.value, at),
+        );
+        value.unwrap_or_else(|| self.poison(span))
     }
 
     /// The context in which the value behind the steps stands.

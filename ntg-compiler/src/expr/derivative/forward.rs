@@ -15,14 +15,29 @@ use crate::expr::node::{Fold, InputId, Node, NodeId};
 pub fn forward(
     dag: &mut Dag,
     root: NodeId,
+    tangent: impl FnMut(InputId) -> Option<NodeId>,
+    again: &mut dyn Again,
+) -> NodeId {
+    forward_from(dag, root, tangent, again, &mut Rates::default())
+}
+
+/// The derivatives of nodes along one direction; `None` where a node does not change.
+pub type Rates = Map<NodeId, Option<NodeId>>; // Looked up, never iterated.
+
+/// As [`forward`], where the derivatives of some nodes along the same direction are known; those of all nodes that the
+/// root is made of are known afterwards. So what many roots share is differentiated once.
+pub fn forward_from(
+    dag: &mut Dag,
+    root: NodeId,
     mut tangent: impl FnMut(InputId) -> Option<NodeId>,
     again: &mut dyn Again,
+    rates: &mut Rates,
 ) -> NodeId {
     let known = |dag: &Dag, id: NodeId| match dag.node(id) {
         Node::Input(input) => Some(tangent(*input)),
         _ => None,
     };
-    sweep(dag, &[root], known, Some(again)).expect("products have their indices")[0]
+    sweep(dag, &[root], known, Some(again), rates).expect("products have their indices")[0]
 }
 
 /// Makes a second index over the range of a reduction.
@@ -51,7 +66,7 @@ pub(super) fn tangents(
     roots: &[NodeId],
     known: impl FnMut(&Dag, NodeId) -> Option<Option<NodeId>>,
 ) -> Result<Vec<NodeId>, DerivativeError> {
-    sweep(dag, roots, known, None)
+    sweep(dag, roots, known, None, &mut Rates::default())
 }
 
 fn sweep(
@@ -59,10 +74,10 @@ fn sweep(
     roots: &[NodeId],
     mut known: impl FnMut(&Dag, NodeId) -> Option<Option<NodeId>>,
     mut again: Option<&mut dyn Again>,
+    rates: &mut Rates,
 ) -> Result<Vec<NodeId>, DerivativeError> {
-    let mut rates: Map<NodeId, Option<NodeId>> = Map::default();
-    for id in schedule_to_known(dag, roots, &mut rates, &mut known) {
-        let rate = push(dag, id, &rates, &mut again)?;
+    for id in schedule_to_known(dag, roots, rates, &mut known) {
+        let rate = push(dag, id, rates, &mut again)?;
         let zero = dag.constant(0.0);
         rates.insert(id, rate.filter(|rate| *rate != zero));
     }
@@ -75,14 +90,14 @@ fn sweep(
 fn schedule_to_known(
     dag: &Dag,
     roots: &[NodeId],
-    rates: &mut Map<NodeId, Option<NodeId>>,
+    rates: &mut Rates,
     known: &mut impl FnMut(&Dag, NodeId) -> Option<Option<NodeId>>,
 ) -> Vec<NodeId> {
     let mut seen: Set<NodeId> = Set::default();
     let mut found = Vec::new();
     let mut open: Vec<NodeId> = roots.to_vec();
     while let Some(id) = open.pop() {
-        if !seen.insert(id) {
+        if rates.contains_key(&id) || !seen.insert(id) {
             continue;
         }
         match known(dag, id) {
@@ -103,7 +118,7 @@ fn schedule_to_known(
 fn push(
     dag: &mut Dag,
     id: NodeId,
-    rates: &Map<NodeId, Option<NodeId>>,
+    rates: &Rates,
     again: &mut Option<&mut dyn Again>,
 ) -> Result<Option<NodeId>, DerivativeError> {
     let mut moves = false;

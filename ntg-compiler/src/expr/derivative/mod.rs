@@ -20,7 +20,7 @@ use std::fmt;
 
 use super::node::NodeId;
 
-pub use forward::{Again, SecondIndex, forward};
+pub use forward::{Again, Rates, SecondIndex, forward, forward_from};
 pub use hessian::{Entry, hessian};
 pub use reverse::gradient;
 

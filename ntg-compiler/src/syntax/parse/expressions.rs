@@ -27,6 +27,13 @@ enum Operator {
 impl Build {
     pub(in crate::syntax) fn expression(&mut self, pair: Pair<'_>) -> Expr {
         let (mut operands, operators) = self.flat(pair);
+        // Most expressions inside others are one operand.
+        if let [Operand { minus, .. }] = operands.as_slice()
+            && minus.is_empty()
+            && let Some(only) = operands.pop()
+        {
+            return only.expr;
+        }
         let (factors, operators) = powers(&mut operands, &operators);
         let (terms, signs) = products(factors, &operators);
         sum(terms, &signs)

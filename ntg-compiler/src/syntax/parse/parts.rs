@@ -5,18 +5,23 @@ use crate::syntax::grammar::{Pair, Pairs, Rule};
 /// The parts of a rule that mean something, in order.
 pub(super) struct Parts<'t> {
     pairs: Pairs<'t>,
+    /// The next part, once it was looked at: every look at a pair makes it anew.
+    ahead: Option<Pair<'t>>,
 }
 
 impl<'t> Parts<'t> {
     pub(super) fn of(pair: Pair<'t>) -> Self {
-        Self { pairs: pair.into_inner() }
+        Self { pairs: pair.into_inner(), ahead: None }
     }
 
     /// The next part if it is a `rule`.
     pub(super) fn optional(&mut self, rule: Rule) -> Option<Pair<'t>> {
-        self.skip();
-        let is_next = self.pairs.peek().is_some_and(|pair| pair.as_rule() == rule);
-        if is_next { self.pairs.next() } else { None }
+        let next = self.next()?;
+        if next.as_rule() == rule {
+            return Some(next);
+        }
+        self.ahead = Some(next);
+        None
     }
 
     /// The next part, which the grammar says is a `rule`.
@@ -28,20 +33,13 @@ impl<'t> Parts<'t> {
     pub(super) fn any(&mut self) -> Pair<'t> {
         self.next().expect("the grammar puts a part here")
     }
-
-    fn skip(&mut self) {
-        while self.pairs.peek().is_some_and(|pair| is_mute(pair.as_rule())) {
-            self.pairs.next();
-        }
-    }
 }
 
 impl<'t> Iterator for Parts<'t> {
     type Item = Pair<'t>;
 
     fn next(&mut self) -> Option<Pair<'t>> {
-        self.skip();
-        self.pairs.next()
+        self.ahead.take().or_else(|| self.pairs.find(|pair| !is_mute(pair.as_rule())))
     }
 }
 
