@@ -167,6 +167,9 @@ impl<N: Nlp> State<'_, N> {
     /// penalty parameter would have to rise and cannot, an augmented Lagrangian gives way to the filter, and an exact penalty
     /// ends with a status.
     pub(super) fn update_price(&mut self) -> Option<Status> {
+        if self.mode.restoration().is_some() {
+            return None; // The price of a restoration is fixed.
+        }
         let violation = self.slacks.violation(&self.values);
         let tolerance = self.options.constraint_tolerance;
         let solved = BarrierProblem { slacks: &self.slacks, violation, mu: self.mu, tolerance };
