@@ -77,7 +77,10 @@ const BY_PARAMETERS: &[Planted] = &[
 const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
     (&["slove", "mission.ntg"], "'solve'"),
     (&["solve", "mission.ntg", "--sett", "v_max=3"], "'--set'"),
-    (&["solve", "mission.ntg", "--method", "ipopt"], "[possible values: auto, sqp, interior-point]"),
+    (
+        &["solve", "mission.ntg", "--method", "ipopt"],
+        "[possible values: auto, sqp, interior-point, augmented-lagrangian]",
+    ),
     (&["check", "misson.ntg"], "did you mean `mission.ntg`?"),
     (&["solve", "specs/mission.ntg"], "there is no folder `specs`"),
     (&["solve", "."], "`.` is a folder; name a file in it, such as `mission.ntg`"),
