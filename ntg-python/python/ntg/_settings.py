@@ -32,7 +32,8 @@ class Settings:
     """How a problem is solved. The defaults suit most problems."""
 
     method: str = "auto"
-    """`auto` (the interior-point method, and what helps where it fails), `interior-point` alone, `augmented-lagrangian`, or `sqp`."""
+    """`auto` (the interior-point method, and what helps where it fails), `interior-point` alone,
+    `augmented-lagrangian`, or `sqp`."""
     tolerance: float = 1e-8
     """Largest scaled residual of stationarity and complementarity of a solution."""
     constraint_tolerance: float = 1e-8
