@@ -66,7 +66,7 @@ mod stopping;
 
 pub use contract::{Block, BlockValues, Entry, Evaluation, Limits, Nlp, NotFinite, Target};
 pub use method::{solve, solve_from};
-pub use options::{Control, Method, OnIteration, Options, Progress, Scaling, Violations};
+pub use options::{Control, InertiaCorrection, Method, OnIteration, Options, Progress, Scaling, Violations};
 pub use outcome::{IterationRecord, Multipliers, Outcome, Start};
 pub use scaling::Scales;
 pub use sparse::{Assembly, Csc, Pattern};

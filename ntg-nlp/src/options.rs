@@ -73,6 +73,19 @@ pub enum Violations {
     Squared,
 }
 
+/// How the matrix of a step is given the inertia of a minimum where it has another one (docs/maths.md, section 11.3).
+/// Either solves programs that the other one does not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum InertiaCorrection {
+    /// The second derivatives of each element are made positive semidefinite: steps keep a measure of length along
+    /// directions of negative curvature, and stay in the neighbourhood of a good guess.
+    #[default]
+    ByElement,
+    /// The least multiple of the identity that is enough is added: steps keep Newton's curvature along all other
+    /// directions, and large elements cost less.
+    ByShift,
+}
+
 /// The loosest tolerance at which a solution is polished: with this tolerance and looser ones a solution serves as a
 /// guess only.
 pub const ROUGH_TOLERANCE: f64 = 1e-4;
@@ -87,7 +100,7 @@ pub struct Options {
     pub tolerance: f64,
     /// Largest scaled violation of a constraint at a solution. Default 1e-8.
     pub constraint_tolerance: f64,
-    /// Most iterations of one method. Default 500.
+    /// Most iterations of one method; of sequential quadratic programming most quadratic programs. Default 500.
     pub max_iterations: usize,
     /// Most wall-clock time, checked once an iteration. Default none.
     pub time_limit: Option<Duration>,
@@ -103,6 +116,8 @@ pub struct Options {
     pub exact_hessian: bool,
     /// What the interior-point method makes small where it restores feasibility. Default [`Violations::Absolute`].
     pub restoration: Violations,
+    /// How the interior-point method corrects the inertia of its matrix. Default [`InertiaCorrection::ByElement`].
+    pub inertia_correction: InertiaCorrection,
 }
 
 impl Default for Options {
@@ -118,6 +133,7 @@ impl Default for Options {
             second_order_correction: true,
             exact_hessian: true,
             restoration: Violations::Absolute,
+            inertia_correction: InertiaCorrection::ByElement,
         }
     }
 }
@@ -135,6 +151,7 @@ impl fmt::Debug for Options {
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
             .field("restoration", &self.restoration)
+            .field("inertia_correction", &self.inertia_correction)
             .finish()
     }
 }

@@ -28,6 +28,13 @@ pub struct IterationRecord {
     pub barrier: f64,
 }
 
+impl IterationRecord {
+    /// Whether the exact Hessian was not that of a minimum, and was changed in either way.
+    pub(crate) fn is_corrected(&self) -> bool {
+        self.convexified || self.shift > 0.0
+    }
+}
+
 /// Multipliers from which a solve may start.
 #[derive(Clone, Copy, Debug)]
 pub struct Multipliers<'a> {

@@ -3,7 +3,7 @@
 //! Settings are plain data with defaults that suit most problems; [`Settings::validate`] says in
 //! words which field is out of its range. They can be cloned and sent to other threads.
 
-pub use ntg_nlp::options::{Control, Method, OnIteration, Progress, Scaling, Violations};
+pub use ntg_nlp::options::{Control, InertiaCorrection, Method, OnIteration, Progress, Scaling, Violations};
 
 use ntg_nlp::Options;
 use ntg_nlp::options::ROUGH_TOLERANCE;
@@ -89,6 +89,9 @@ pub struct Settings {
     /// What the interior-point method makes small where it restores feasibility. [`Method::Auto`] tries the other one where
     /// the first attempt fails. Default [`Violations::Absolute`].
     pub restoration: Violations,
+    /// How the interior-point method corrects the inertia of its matrix. [`Method::Auto`] tries the other way where the
+    /// first attempt fails. Default [`InertiaCorrection::ByElement`].
+    pub inertia_correction: InertiaCorrection,
 }
 
 impl Default for Settings {
@@ -109,6 +112,7 @@ impl Default for Settings {
             second_order_correction: true,
             exact_hessian: true,
             restoration: Violations::Absolute,
+            inertia_correction: InertiaCorrection::ByElement,
         }
     }
 }
@@ -131,6 +135,7 @@ impl fmt::Debug for Settings {
             .field("second_order_correction", &self.second_order_correction)
             .field("exact_hessian", &self.exact_hessian)
             .field("restoration", &self.restoration)
+            .field("inertia_correction", &self.inertia_correction)
             .finish()
     }
 }
@@ -166,6 +171,7 @@ impl Settings {
             second_order_correction: self.second_order_correction,
             exact_hessian: self.exact_hessian,
             restoration: self.restoration,
+            inertia_correction: self.inertia_correction,
         }
     }
 

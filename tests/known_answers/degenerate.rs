@@ -94,6 +94,21 @@ fn a_transfer_of_many_revolutions_is_not_crawled_through() {
     assert!(report.iterations <= 250, "{} iterations", report.iterations);
 }
 
+/// The first attempt ends acceptable; a further one solves it.
+#[test]
+fn terrain_after_an_acceptable_end() {
+    let report = Shipped::spec("gallery/terrain_linear").solve();
+    assert_eq!(report.status, Status::Solved);
+    close(report.objective, 409.179_599, 1e-6);
+}
+
+/// The first attempt runs to its limit; one with shifts of the diagonal finds the best known optimum.
+#[test]
+fn an_alpine_rider_with_shifts() {
+    let report = Shipped::spec("gallery/alpine_rider").solve();
+    close(report.objective, 2_059.895, 1e-5);
+}
+
 /// The first attempt runs to its limit; the augmented Lagrangian finds the published optimum.
 #[test]
 fn a_low_thrust_spiral_by_the_augmented_lagrangian() {

@@ -3,10 +3,11 @@
 use super::best::Point;
 use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
+use super::inertia::Corrections;
 use super::mode::Mode;
 use super::slacks::Slacks;
 use super::state::{Analysis, State, Trial};
-use super::step::{FIRST_FRACTION, LARGEST_PROXIMAL, Step};
+use super::step::{LARGEST_PROXIMAL, Step};
 use super::warm;
 use super::watchdog::Watchdog;
 use crate::contract::{Limits, Nlp, NotFinite};
@@ -81,7 +82,7 @@ impl<'a, N: Nlp> State<'a, N> {
             short_steps: 0,
             estimate: Estimate::default(),
             proximal: LARGEST_PROXIMAL,
-            convex_fraction: FIRST_FRACTION,
+            corrections: Corrections::default(),
             step,
             trial: Trial::new(&x, functions, slacks.s.clone()),
             record: IterationRecord::default(),

@@ -19,6 +19,7 @@ mod best;
 mod ending;
 mod equalities;
 mod filter;
+mod inertia;
 mod initial;
 mod line_search;
 mod mode;

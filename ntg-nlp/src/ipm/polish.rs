@@ -30,9 +30,9 @@ impl<N: Nlp> State<'_, N> {
             best.keep(x, slacks, record);
         }
         let fine = FINE * self.options.tolerance.min(self.options.constraint_tolerance);
-        // Close to the aim, an iteration whose matrix had to be convexified leads to nothing finer.
+        // Close to the aim, an iteration whose matrix had to be corrected leads to nothing finer.
         let astray = self.iterations > since
-            && self.history.last().is_some_and(|last| last.convexified)
+            && self.history.last().is_some_and(|last| last.is_corrected())
             && largest(&self.best.record) <= CLOSE * fine;
         // Beside inequalities, constraints that are met do not show how far the gradient is from 0.
         let free = self.slacks.inequalities.is_empty() && self.record.residuals.scaled.primal <= fine;

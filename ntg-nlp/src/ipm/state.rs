@@ -3,6 +3,7 @@
 use super::best::Point;
 use super::equalities::Estimate;
 use super::filter::Filter;
+use super::inertia::Corrections;
 use super::mode::Mode;
 use super::slacks::{Slacks, log_sum};
 use super::step::Step;
@@ -52,8 +53,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) before_step: Point,
     /// The proximal term of the last matrix.
     pub(super) proximal: f64,
-    /// The fraction of the convexifying term that the last matrix needed.
-    pub(super) convex_fraction: f64,
+    /// What earlier corrections of the inertia tell later ones.
+    pub(super) corrections: Corrections,
     /// How violations are treated.
     pub(super) mode: Mode,
     /// How often feasibility was restored.
@@ -215,6 +216,7 @@ impl<N: Nlp> State<'_, N> {
         let Self { options, record, history, iterations, begin, x, .. } = self;
         let is_restoring = self.mode.restoration().is_some();
         let objective = if is_restoring { 0.0 } else { self.values[self.system.objective()] };
-        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, x, is_restoring }.stops()
+        let (iterations, work) = (*iterations, *iterations);
+        Stage { options, record, history, iterations, work, begin: *begin, objective, x, is_restoring }.stops()
     }
 }

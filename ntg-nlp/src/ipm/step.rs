@@ -28,20 +28,6 @@ const PROXIMAL_FALL: f64 = 100.0;
 const LEFT: f64 = 1e-4;
 /// The weight of a function without bounds: none, but a number that may divide.
 const WEIGHTLESS: f64 = 1e-30;
-/// From this barrier parameter on, relative to its unit, the solution that the guess leads to is settled, and a fraction
-/// of the convexifying term is enough. Before, all of it keeps steps short: a fraction leaves the neighbourhood of a
-/// good guess. A fit to the flights of `examples/robustness.rs`.
-const SETTLED: f64 = 1e-3;
-/// The fraction of the convexifying term that counts as the last one in the first iteration, the least fraction, and the
-/// factor from one trial to the next. The last two are fits, as above.
-pub(super) const FIRST_FRACTION: f64 = 0.25;
-const LEAST_FRACTION: f64 = 1e-4;
-const FRACTION_FACTOR: f64 = 4.0;
-/// Shifts of the diagonal, where the convexified matrix is singular: the first, their factor, the largest.
-const FIRST_SHIFT: f64 = 1e-8;
-const SHIFT_FACTOR: f64 = 100.0;
-const LARGEST_SHIFT: f64 = 1e20;
-
 /// A step, and what is needed to compute it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Step {
@@ -162,7 +148,7 @@ impl<N: Nlp> State<'_, N> {
         let largest = if self.mode.relaxed().is_some() { LEAST_PROXIMAL } else { LARGEST_PROXIMAL };
         let mut proximal = (PROXIMAL_RISE * self.proximal).min(largest);
         loop {
-            if !self.factorise(proximal) {
+            if !self.factorise_for_minimum(proximal) {
                 return false;
             }
             let is_finite = self.solve_for_step();
@@ -174,7 +160,7 @@ impl<N: Nlp> State<'_, N> {
     }
 
     /// The matrix with exact second derivatives and a proximal term.
-    fn assemble_exact(&mut self, proximal: f64) {
+    pub(super) fn assemble_exact(&mut self, proximal: f64) {
         self.proximal = proximal;
         for (equality, compliance) in self.slacks.equalities.iter().zip(&self.step.compliance) {
             self.step.sigma[equality.function] = 1.0 / (compliance + proximal);
@@ -191,48 +177,6 @@ impl<N: Nlp> State<'_, N> {
             let weight = self.step.sigma[self.system.border_rows()[border]];
             self.system.set_border_diagonal(border, 1.0 / weight.max(WEIGHTLESS));
         }
-    }
-
-    /// Factorises the matrix with exact second derivatives where its inertia is that of a minimum; else with the
-    /// convexifying term, of which a fraction may be enough, and the smallest shift that helps. Near a solution the least
-    /// proximal term is tried before.
-    fn factorise(&mut self, proximal: f64) -> bool {
-        self.record.shift = 0.0;
-        let proximity = self.proximity_weight();
-        let is_settled = self.mu <= SETTLED * self.barrier_unit;
-        self.assemble_exact(proximal);
-        if self.system.factorise(0.0, proximity) {
-            return true;
-        }
-        if is_settled && proximal > LEAST_PROXIMAL && !self.slacks.equalities.is_empty() {
-            self.assemble_exact(LEAST_PROXIMAL);
-            if self.system.factorise(0.0, proximity) {
-                return true;
-            }
-            self.assemble_exact(proximal);
-        }
-        self.system.convexify(&self.step.sigma);
-        self.record.convexified = true;
-        if is_settled {
-            let mut fraction = (self.convex_fraction / FRACTION_FACTOR).max(LEAST_FRACTION);
-            while fraction < 1.0 {
-                if self.system.factorise(fraction, proximity) {
-                    self.convex_fraction = fraction;
-                    return true;
-                }
-                fraction *= FRACTION_FACTOR;
-            }
-            self.convex_fraction = 1.0;
-        }
-        let mut shift = 0.0;
-        while shift <= LARGEST_SHIFT {
-            if self.system.factorise(1.0, proximity + shift) {
-                self.record.shift = shift;
-                return true;
-            }
-            shift = if shift == 0.0 { FIRST_SHIFT } else { SHIFT_FACTOR * shift };
-        }
-        false
     }
 
     /// The step that removes the residuals `step.residual` and `step.equality_residual`, with the present factors;

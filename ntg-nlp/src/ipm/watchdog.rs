@@ -74,10 +74,10 @@ impl<N: Nlp> State<'_, N> {
         searched
     }
 
-    /// Whether whole steps may lead anywhere: the step is Newton's own, not that of a convexified matrix, and the point
+    /// Whether whole steps may lead anywhere: the step is Newton's own, not that of a matrix whose inertia was corrected, and the point
     /// is no more infeasible than the first one, or than 1.
     fn is_worth_watching(&self) -> bool {
-        !self.is_tiny() && !self.record.convexified && self.theta() <= self.filter.theta_max / LARGEST_THETA
+        !self.is_tiny() && !self.record.is_corrected() && self.theta() <= self.filter.theta_max / LARGEST_THETA
     }
 
     /// The longest step without a search; where the watch has failed, a search from where it began.

@@ -19,10 +19,10 @@ impl<N: Nlp> Run<'_, N> {
 
     /// Whether the solve is over, and why.
     pub(super) fn stops(&self) -> Option<Status> {
-        let Self { options, record, history, iterations, begin, x, .. } = self;
+        let Self { options, record, history, iterations, qps, begin, x, .. } = self;
         let objective = self.program.objective;
-        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, is_restoring: false, x }
-            .stops()
+        let (iterations, work) = (*iterations, (*iterations).max(*qps));
+        Stage { options, record, history, iterations, work, begin: *begin, objective, is_restoring: false, x }.stops()
     }
 
     /// The status for an evaluation that failed last.

@@ -1,7 +1,7 @@
 //! Both methods on the smooth problems of Hock and Schittkowski, from the published starts to the published optima.
 
 use crate::hs::Problem;
-use ntg_nlp::{Method, Options, Outcome, Status, Violations, ipm, sqp};
+use ntg_nlp::{InertiaCorrection, Method, Options, Outcome, Status, Violations, ipm, sqp};
 
 /// Iterations of one problem at most. A law, and a generous one.
 const MOST_ITERATIONS: usize = 100;
@@ -83,6 +83,11 @@ fn at_least(count: usize, options: &Options) {
 #[test]
 fn restoring_by_squares() {
     at_least(100, &Options { restoration: Violations::Squared, ..Options::default() });
+}
+
+#[test]
+fn with_shifts() {
+    at_least(100, &Options { inertia_correction: InertiaCorrection::ByShift, ..Options::default() });
 }
 
 #[test]

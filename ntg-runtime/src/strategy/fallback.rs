@@ -1,35 +1,46 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
 //!
 //! ```text
-//! interior point -> restoring by squares -> with sizes taken anew -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
+//! interior point -> sizes anew -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
 //! ```
 
 use super::budget::{Budget, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
 use crate::guess::{Guess, start};
-use crate::settings::{Method, Settings, Violations};
+use crate::settings::{InertiaCorrection, Method, Settings, Violations};
 use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Outcome, Start, Status, method};
 
 /// All of them, in their order.
 const ATTEMPTS: [Attempt; 5] =
-    [Attempt::Squares, Attempt::SizesAnew, Attempt::AugmentedLagrangian, Attempt::FewerKnots, Attempt::Sqp];
+    [Attempt::SizesAnew, Attempt::Squares, Attempt::AugmentedLagrangian, Attempt::FewerKnots, Attempt::Sqp];
 
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Attempt {
-    /// From the first point, with restorations that reduce the squares of violations.
-    Squares,
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
     /// what it guesses.
     SizesAnew,
+    /// From the first point, with shifts of the diagonal, and with restorations that reduce the squares of violations.
+    Squares,
     /// From the first point, by the augmented Lagrangian.
     AugmentedLagrangian,
     /// From a solution on fewer knots.
     FewerKnots,
     /// By sequential quadratic programming from the first point.
     Sqp,
+}
+
+impl Attempt {
+    /// Whether it follows an outcome of this status: any that is not final. After an acceptable point only what has been
+    /// seen to solve the problem then.
+    fn follows(self, status: &Status) -> bool {
+        match status {
+            Status::Acceptable => matches!(self, Self::SizesAnew | Self::Squares),
+            _ => !status.is_final(),
+        }
+    }
 }
 
 impl Session {
@@ -51,8 +62,8 @@ impl Session {
         budget.spend(outcome.iterations);
         if settings.method == Method::Auto && !is_guess {
             for attempt in ATTEMPTS {
-                if outcome.status.is_final() {
-                    break;
+                if !attempt.follows(&outcome.status) {
+                    continue;
                 }
                 if let Some(next) = self.attempt(attempt, nlp, task, first.x, &outcome, budget)? {
                     outcome = better(outcome, next);
@@ -75,14 +86,6 @@ impl Session {
     ) -> Result<Option<Outcome>, SetupError> {
         let Some(settings) = budget.further() else { return Ok(None) };
         let next = match attempt {
-            Attempt::Squares => {
-                let settings = Settings { restoration: Violations::Squared, ..settings };
-                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
-            }
-            Attempt::AugmentedLagrangian => {
-                let settings = Settings { method: Method::AugmentedLagrangian, ..settings };
-                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
-            }
             Attempt::SizesAnew => {
                 if failed.x.iter().any(|x| !x.is_finite()) {
                     return Ok(None);
@@ -91,6 +94,15 @@ impl Session {
                 let next = self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings);
                 nlp.set_scales(x, &settings)?;
                 next
+            }
+            Attempt::Squares => {
+                let inertia_correction = InertiaCorrection::ByShift;
+                let settings = Settings { restoration: Violations::Squared, inertia_correction, ..settings };
+                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
+            }
+            Attempt::AugmentedLagrangian => {
+                let settings = Settings { method: Method::AugmentedLagrangian, ..settings };
+                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
             }
             Attempt::FewerKnots => {
                 // Coefficients of this transcription fit no other one; the curves that they are do.
@@ -104,6 +116,7 @@ impl Session {
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
             }
             Attempt::Sqp => {
+                let Some(settings) = budget.quadratic() else { return Ok(None) };
                 let options = ntg_nlp::Options { method: Method::Sqp, ..settings.solver_options() };
                 method::solve(nlp, x, &options)
             }
