@@ -44,14 +44,13 @@ impl Attempt {
 }
 
 impl Session {
-    /// Solves by the method of the settings; an automatic one makes further attempts where that fails, unless the
-    /// solution only serves as a guess (a step of a continuation). Iterations are those of all attempts.
+    /// Solves by the method of the settings; an automatic one makes further attempts where that fails. Iterations are those
+    /// of all attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
         nlp: &mut Transcription,
         task: Task<'_>,
         first: FirstPoint<'_>,
-        is_guess: bool,
         budget: &mut Budget<'_>,
     ) -> Result<Outcome, SetupError> {
         let Some(settings) = budget.attempt() else {
@@ -60,7 +59,7 @@ impl Session {
         let spent = budget.spent();
         let mut outcome = self.solve_once(nlp, first, &settings);
         budget.spend(outcome.iterations);
-        if settings.method == Method::Auto && !is_guess {
+        if settings.method == Method::Auto {
             for attempt in ATTEMPTS {
                 if !attempt.follows(&outcome.status) {
                     continue;
