@@ -1,7 +1,8 @@
 //! What rustc says about mistakes in specs, word for word, in both forms of the macro.
 //!
 //! Each file of `tests/ui` is compiled as a program of its own, against the library that cargo has built for this test, so
-//! that nothing is built for it. `UPDATE_EXPECT=1 cargo test --test ui` rewrites the expectations: read the difference.
+//! that nothing is built for it. `UPDATE_EXPECT=1 cargo test --workspace --test ui` rewrites the expectations: read the
+//! difference.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
