@@ -1,6 +1,6 @@
 //! A quadrotor through gates: the course from above, and what its motors do.
 //!
-//! Run with `cargo run --release --example gates`; draws into `pictures/`.
+//! Run with `cargo run --release --bin gates`; draws into `pictures/`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

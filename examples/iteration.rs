@@ -1,7 +1,7 @@
 //! Where the time of an iteration goes: the flight without a limit (B1) with 8 to 512 intervals, from near its
 //! solution, on a solver that is kept.
 //!
-//! Run with `cargo run --release --example iteration`; prints the table of `docs/performance.md`.
+//! Run with `cargo run --release --bin iteration`; prints the table of `docs/performance.md`.
 
 use std::time::Instant;
 

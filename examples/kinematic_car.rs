@@ -1,6 +1,6 @@
 //! A car changes lane: outputs, and what follows from them, with units.
 //!
-//! Run with `cargo run --release --example kinematic_car`; draws `pictures/kinematic_car.svg`.
+//! Run with `cargo run --release --bin kinematic_car`; draws `pictures/kinematic_car.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

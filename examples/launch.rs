@@ -1,6 +1,6 @@
 //! A rocket of three stages into orbit: height, speed, mass and direction of thrust over time.
 //!
-//! Run with `cargo run --release --example launch`; draws `pictures/launch.svg`.
+//! Run with `cargo run --release --bin launch`; draws `pictures/launch.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

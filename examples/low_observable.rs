@@ -1,7 +1,7 @@
 //! The low-observability flight of AFRL-VA-WP-TP-2003-303, from both of the paper's coarse routes, on
 //! the paper's grid and with Gauss points; and every picture of it.
 //!
-//! Run with `cargo run --release --example low_observable`; draws into `pictures/`.
+//! Run with `cargo run --release --bin low_observable`; draws into `pictures/`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

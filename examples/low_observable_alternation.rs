@@ -1,6 +1,6 @@
 //! Low, high, low, high: the paper's equation 26, and how to keep a radar from tracking.
 //!
-//! Run with `cargo run --release --example low_observable_alternation`; draws into `pictures/`.
+//! Run with `cargo run --release --bin low_observable_alternation`; draws into `pictures/`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

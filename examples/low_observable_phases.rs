@@ -1,6 +1,6 @@
 //! The paper's section 4: hidden until an event, exposed after it, from both coarse routes.
 //!
-//! Run with `cargo run --release --example low_observable_phases`; draws into `pictures/`.
+//! Run with `cargo run --release --bin low_observable_phases`; draws into `pictures/`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

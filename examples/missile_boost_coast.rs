@@ -1,6 +1,6 @@
 //! Boost and coast to a target: acceleration to spare, little of it, and a target that pulls up.
 //!
-//! Run with `cargo run --release --example missile_boost_coast`; draws `pictures/missile_boost_coast.svg`.
+//! Run with `cargo run --release --bin missile_boost_coast`; draws `pictures/missile_boost_coast.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

@@ -1,6 +1,6 @@
 //! A missile that must turn around may turn either way. Both ways are tried, and compared.
 //!
-//! Run with `cargo run --release --example missile_intercept`; draws `pictures/missile_intercept.svg`.
+//! Run with `cargo run --release --bin missile_intercept`; draws `pictures/missile_intercept.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

@@ -1,7 +1,7 @@
 //! A fleet of four under four rules: each on its own, all at one time, each looking at what the one
 //! before it has struck, and all at one time without ever coming near each other.
 //!
-//! Run with `cargo run --release --example multi_vehicle`; draws into `pictures/`.
+//! Run with `cargo run --release --bin multi_vehicle`; draws into `pictures/`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

@@ -1,7 +1,7 @@
 //! Two problems with several local minima, each solved from sixteen starts: every minimum once, with
 //! its objective and how many starts led to it.
 //!
-//! Run with `cargo run --release --example multistart`; draws `pictures/multistart_flight.svg` and
+//! Run with `cargo run --release --bin multistart`; draws `pictures/multistart_flight.svg` and
 //! `pictures/multistart_missile.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]

@@ -1,6 +1,6 @@
 //! Through a net of radars, low over a mountain ridge: the map, the height, and what each radar sees.
 //!
-//! Run with `cargo run --release --example radar_net`; draws into `pictures/`.
+//! Run with `cargo run --release --bin radar_net`; draws into `pictures/`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

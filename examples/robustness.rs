@@ -1,6 +1,6 @@
 //! How dependable the solver is: the low-observability flight from 50 random coarse routes.
 //!
-//! Run with `cargo run --release --example robustness`; takes about half a minute. Without a limit on
+//! Run with `cargo run --release --bin robustness`; takes about half a minute. Without a limit on
 //! the signature; with the limit at once, whose gradient vanishes where the aircraft is turned away;
 //! with the limit by the spec's continuation, from a wide blend in azimuth to a narrow one; and so with
 //! two phases, of which the second may show more.

@@ -1,7 +1,7 @@
 //! How dependable the solver is on missions: four aircraft that keep 5 km apart, from 20 bowed guesses;
 //! and the intercept from 20 way-points, with the turn that each of them finds.
 //!
-//! Run with `cargo run --release --example robustness_missions`. The guesses are random, with a fixed seed.
+//! Run with `cargo run --release --bin robustness_missions`. The guesses are random, with a fixed seed.
 
 use fastrand::Rng;
 use ntg::prelude::*;

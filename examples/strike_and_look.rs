@@ -1,6 +1,6 @@
 //! One strikes, another looks at the result no less than a while later; beside the answer on paper.
 //!
-//! Run with `cargo run --release --example strike_and_look`; draws `pictures/strike_and_look.svg`.
+//! Run with `cargo run --release --bin strike_and_look`; draws `pictures/strike_and_look.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

@@ -1,6 +1,6 @@
 //! Van der Pol's oscillator: from a spec file to a report, a table and a picture.
 //!
-//! Run with `cargo run --release --example van_der_pol`; draws `pictures/van_der_pol.svg`.
+//! Run with `cargo run --release --bin van_der_pol`; draws `pictures/van_der_pol.svg`.
 
 #[allow(dead_code, reason = "the examples share their drawing; each uses a part of it")]
 mod drawing;

@@ -1,8 +1,9 @@
 //! The floors of the house: what may not know what (ARCHITECTURE.md).
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// All Rust files below a folder of the workspace, with their text.
 fn files(folder: &str) -> Vec<(PathBuf, String)> {
@@ -347,4 +348,24 @@ fn every_section_of_the_manual_that_code_cites_exists() {
             }
         }
     }
+}
+
+/// Where macros and programs have other features of a crate, cargo builds it for each, and the compiler with it:
+/// `benches/Cargo.toml` keeps them the same.
+#[test]
+fn no_crate_is_built_twice() {
+    let tree = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--workspace", "--edges", "normal,build,dev", "--prefix", "none"])
+        .args(["--format", "{p}|{f}"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo runs");
+    assert!(tree.status.success(), "{}", String::from_utf8_lossy(&tree.stderr));
+    let tree = String::from_utf8(tree.stdout).expect("names are text");
+    let mut features = BTreeMap::new();
+    for (package, its) in tree.lines().filter_map(|line| line.trim_end_matches(" (*)").split_once('|')) {
+        let first = features.entry(package).or_insert(its);
+        assert_eq!(*first, its, "macros and programs have other features of {package}");
+    }
+    assert!(features.keys().any(|package| package.starts_with("pest ")), "{features:?}");
 }

@@ -14,6 +14,7 @@ use ntg_runtime::nlp::{Block, Evaluation, Limits, Nlp, NotFinite, Options, Outco
 use ntg_runtime::problem::Problem;
 use ntg_runtime::settings::Settings;
 use ntg_runtime::transcribe::{Transcription, Workspace};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// A path of more iterations than this through a problem that is not convex depends on rounding: there only factors that
@@ -144,46 +145,50 @@ fn factors(relations: &[usize], base: f64, seed: &mut u64) -> Vec<f64> {
     relations.iter().map(|&relation| drawn[relation]).collect()
 }
 
-/// Solves every spec plainly and with factors; `law` compares the outcomes.
-fn holds(name: &str, base: f64, law: impl Fn(&Outcome, &Outcome, f64) -> bool) {
+/// Solves every spec plainly and with factors, on all cores; `law` compares the outcomes.
+fn holds(name: &str, base: f64, law: impl Fn(&Outcome, &Outcome, f64) -> bool + Sync) {
+    let broken: Vec<String> = specs().par_iter().flat_map_iter(|path| broken_by(path, base, &law)).collect();
+    assert!(broken.is_empty(), "{name}:\n{}", broken.join("\n"));
+}
+
+/// The factors that break the law for one spec, and what was found with them.
+fn broken_by(path: &Path, base: f64, law: impl Fn(&Outcome, &Outcome, f64) -> bool) -> Vec<String> {
+    let source = Source::new(path.display().to_string(), std::fs::read_to_string(path).expect("readable"));
+    let compiled = ntg_compiler::compile(&source, &BesideSpecs).unwrap_or_else(|_| panic!("{}", path.display()));
+    let problem = Interpreted::new(&compiled.program);
+    let mut nlp = Transcription::new(&problem).expect("a shipped spec transcribes");
+    let first = start(&nlp, None).expect("a start");
+    nlp.set_scales(&first, &Settings::default()).expect("sizes");
+    let options = Options::default();
+    let plain = ipm::solve(&nlp, &first, &options);
+    // A spec with a continuation says that its last program is too hard from its guess.
+    assert!(
+        plain.status.has_solution() || !problem.structure().continuations.is_empty(),
+        "{}: {} after {}",
+        path.display(),
+        plain.status,
+        plain.iterations
+    );
+    let (mut seed, relations) = (7, relations(&nlp));
+    assert!(relations.iter().any(|relation| *relation != relations[0]), "{}: one relation", path.display());
     let mut broken = vec![];
-    for path in specs() {
-        let source = Source::new(path.display().to_string(), std::fs::read_to_string(&path).expect("readable"));
-        let compiled = ntg_compiler::compile(&source, &BesideSpecs).unwrap_or_else(|_| panic!("{}", path.display()));
-        let problem = Interpreted::new(&compiled.program);
-        let mut nlp = Transcription::new(&problem).expect("a shipped spec transcribes");
-        let first = start(&nlp, None).expect("a start");
-        nlp.set_scales(&first, &Settings::default()).expect("sizes");
-        let options = Options::default();
-        let plain = ipm::solve(&nlp, &first, &options);
-        // A spec with a continuation says that its last program is too hard from its guess.
-        assert!(
-            plain.status.has_solution() || !problem.structure().continuations.is_empty(),
-            "{}: {} after {}",
-            path.display(),
-            plain.status,
-            plain.iterations
-        );
-        let (mut seed, relations) = (7, relations(&nlp));
-        assert!(relations.iter().any(|relation| *relation != relations[0]), "{}: one relation", path.display());
-        for (factor, has_factors) in [(base.powi(6), false), (base.powi(-6), false), (1.0, true), (base, true)] {
-            let rows = if has_factors { factors(&relations, base, &mut seed) } else { vec![1.0; nlp.rows()] };
-            let found = ipm::solve(&Multiplied::new(&nlp, factor, rows), &first, &options);
-            if !law(&plain, &found, factor) {
-                broken.push(format!(
-                    "{} ({factor:e}, rows {has_factors}): {} after {} for {} after {}, {:e} for {:e}",
-                    path.file_stem().expect("a name").to_string_lossy(),
-                    found.status,
-                    found.iterations,
-                    plain.status,
-                    plain.iterations,
-                    found.objective / factor,
-                    plain.objective
-                ));
-            }
+    for (factor, has_factors) in [(base.powi(6), false), (base.powi(-6), false), (1.0, true), (base, true)] {
+        let rows = if has_factors { factors(&relations, base, &mut seed) } else { vec![1.0; nlp.rows()] };
+        let found = ipm::solve(&Multiplied::new(&nlp, factor, rows), &first, &options);
+        if !law(&plain, &found, factor) {
+            broken.push(format!(
+                "{} ({factor:e}, rows {has_factors}): {} after {} for {} after {}, {:e} for {:e}",
+                path.file_stem().expect("a name").to_string_lossy(),
+                found.status,
+                found.iterations,
+                plain.status,
+                plain.iterations,
+                found.objective / factor,
+                plain.objective
+            ));
         }
     }
-    assert!(broken.is_empty(), "{name}:\n{}", broken.join("\n"));
+    broken
 }
 
 #[test]

@@ -160,15 +160,15 @@ pub(crate) fn compare(
             let mut second = 0.0;
             let mut size = 0.0;
             for (row, value) in rows.iter().enumerate() {
-                let what = format!("{} d{row}/d{i}", kernel.name);
+                let what = || format!("{} d{row}/d{i}", kernel.name);
                 let slope = value.0.eps1;
-                close(entry(&kernel.jacobian, jacobian, (row, i)), slope, RELATIVE, slope.abs() * 1e-9 + 1e-14, &what);
+                close(entry(&kernel.jacobian, jacobian, (row, i)), slope, RELATIVE, slope.abs() * 1e-9 + 1e-14, what);
                 let term = sample.weights[row * sample.lanes + lane] * value.0.eps1eps2;
                 second += term;
                 size += term.abs();
             }
-            let what = format!("{} d2/d{i} d{j}", kernel.name);
-            close(entry(&kernel.hessian, hessian, (i, j)), second, RELATIVE, size * 1e-9 + 1e-14, &what);
+            let what = || format!("{} d2/d{i} d{j}", kernel.name);
+            close(entry(&kernel.hessian, hessian, (i, j)), second, RELATIVE, size * 1e-9 + 1e-14, what);
         }
     }
 }

@@ -4,6 +4,7 @@
 use ntg::prelude::{Settings, solve};
 use ntg::runtime::nlp::{Assembly, Evaluation, Nlp};
 use ntg::runtime::transcribe::Transcription;
+use rayon::prelude::*;
 
 use crate::inputs::close;
 use crate::specs;
@@ -15,9 +16,9 @@ const TRUST: f64 = 1e-5;
 
 #[test]
 fn gradient_jacobian_and_hessian_assemble_from_the_elements() {
-    for spec in specs::all() {
+    specs::all().par_iter().for_each(|spec| {
         let nlp = Transcription::new(spec.generated.as_ref()).expect("shipped specs can be set up");
-        let x = near_the_solution(&spec);
+        let x = near_the_solution(spec);
         let multipliers: Vec<f64> = (0..nlp.rows()).map(|i| (1.0 + i as f64).sin()).collect();
         let (mut work, mut at) = nlp.workspace();
         let (mut spare, mut near) = nlp.workspace();
@@ -74,7 +75,7 @@ fn gradient_jacobian_and_hessian_assemble_from_the_elements() {
 
             let found = slope(values_low.objective, half_low.objective, half_high.objective, at.objective);
             let noise = 3.0 * middle.0.objective.abs() / step * 1e-13;
-            close(middle.1.gradient[j], found, TRUST, noise, &format!("{}: gradient {j}", spec.name));
+            close(middle.1.gradient[j], found, TRUST, noise, || format!("{}: gradient {j}", spec.name));
 
             let mut column = vec![0.0; nlp.rows()];
             middle.1.jacobian.column(j).for_each(|(row, value)| column[row] = value);
@@ -82,21 +83,21 @@ fn gradient_jacobian_and_hessian_assemble_from_the_elements() {
                 let rows = [&values_low, &half_low, &half_high, &at].map(|e| e.rows[row]);
                 let found = slope(rows[0], rows[1], rows[2], rows[3]);
                 let noise = 3.0 * (middle.0.rows[row].abs() * 1e-13 + terms[row] * f64::EPSILON) / step;
-                let what = format!("{}: {} by {}", spec.name, nlp.row_name(row), nlp.variable_name(j));
-                close(*wanted, found, TRUST, noise + 1e-9, &what);
+                let what = || format!("{}: {} by {}", spec.name, nlp.row_name(row), nlp.variable_name(j));
+                close(*wanted, found, TRUST, noise + 1e-9, what);
             }
 
             let found: Vec<f64> = slope_high.iter().zip(&slope_low).map(|(h, l)| (h - l) / step).collect();
             let largest = found.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             for (i, found) in found.iter().enumerate().take(j + 1) {
                 let wanted = middle.1.hessian.position(i, j).map_or(0.0, |k| middle.1.hessian.value[k]);
-                let what = format!("{}: Hessian {i}, {j}", spec.name);
+                let what = || format!("{}: Hessian {i}, {j}", spec.name);
                 // A term is the result of a hundred operations at most.
                 let noise = 1e2 * slope_terms[i] * f64::EPSILON / step;
-                close(wanted, *found, 1e-4, 1e-4 * largest + noise + 1e-12, &what);
+                close(wanted, *found, 1e-4, 1e-4 * largest + noise + 1e-12, what);
             }
         }
-    }
+    });
 }
 
 /// A point at which everything is defined and nothing is special.

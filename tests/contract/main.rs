@@ -1,7 +1,8 @@
 //! Every shipped spec, through both back ends.
 //!
 //! Generated code and interpreter must agree bit for bit; first and second derivatives must agree
-//! with central differences of the values, and with hyper-dual numbers to rounding.
+//! with central differences of the values, and with hyper-dual numbers to rounding. Every test goes
+//! through the specs on all cores.
 
 mod dual;
 mod elements;
@@ -12,6 +13,7 @@ use inputs::Sample;
 use ntg::runtime::problem::{Derivatives, Lanes, Parametric, Problem};
 use ntg::runtime::splines::Table;
 use ntg::runtime::structure::Kernel;
+use rayon::prelude::*;
 
 /// Lanes evaluated at once: more than one chunk of the interpreter, and not a multiple of it.
 const LANES: usize = 67;
@@ -48,7 +50,7 @@ fn same_bits(a: &[f64], b: &[f64]) -> bool {
 
 #[test]
 fn generated_code_and_interpreter_agree_bit_for_bit() {
-    for spec in specs::all() {
+    specs::all().par_iter().for_each(|spec| {
         let structure = spec.generated.structure();
         assert_eq!(structure, spec.interpreted.structure(), "{}", spec.name);
         for (number, kernel) in structure.kernels.iter().enumerate() {
@@ -62,12 +64,12 @@ fn generated_code_and_interpreter_agree_bit_for_bit() {
             assert!(same_bits(&generated.probes, &interpreted.probes), "probes of {what}");
             assert!(kernel.rows == 0 || generated.values.iter().any(|v| v.is_finite()), "{what} is never finite");
         }
-    }
+    });
 }
 
 #[test]
 fn generated_code_and_interpreter_have_one_parametric_form() {
-    for spec in specs::all() {
+    specs::all().par_iter().for_each(|spec| {
         let generated = spec.generated.parametric();
         let interpreted = spec.interpreted.parametric();
         let structure = generated.structure();
@@ -82,14 +84,14 @@ fn generated_code_and_interpreter_have_one_parametric_form() {
             assert!(same_bits(&one.jacobian, &other.jacobian), "first derivatives of {what}");
             assert!(same_bits(&one.hessian, &other.hessian), "second derivatives of {what}");
         }
-    }
+    });
 }
 
 #[test]
 fn derivatives_are_those_of_the_values_by_central_differences() {
     /// Relative step: the cube root of the rounding unit balances truncation and cancellation.
     const STEP: f64 = 6e-6;
-    for spec in specs::all() {
+    specs::all().par_iter().for_each(|spec| {
         let structure = spec.generated.structure();
         for (number, kernel) in structure.kernels.iter().enumerate() {
             if kernel.jacobian.is_empty() {
@@ -119,7 +121,7 @@ fn derivatives_are_those_of_the_values_by_central_differences() {
                     for (row, wanted) in wanted.iter().enumerate() {
                         let found = slope(&|at| at.values[row * LANES + lane], lane);
                         let size = middle.values[row * LANES + lane].abs() / step.abs() * 1e-10;
-                        inputs::close(*wanted, found, 1e-5, size * 1e2, &format!("{}: d{row}/d{slot}", spec.name));
+                        inputs::close(*wanted, found, 1e-5, size * 1e2, || format!("{}: d{row}/d{slot}", spec.name));
                     }
                     let gradient = |r: &Results, of: usize| inputs::weighted(kernel, &r.jacobian, &sample, of, lane);
                     for (entry, (i, j)) in kernel.hessian.iter().enumerate() {
@@ -128,18 +130,18 @@ fn derivatives_are_those_of_the_values_by_central_differences() {
                         }
                         let found = slope(&|at| gradient(at, *j), lane);
                         let size = gradient(&middle, *j).abs() / step.abs() * 1e-8;
-                        let what = format!("{}: {} d2/d{i} d{j}", spec.name, kernel.name);
-                        inputs::close(middle.hessian[entry * LANES + lane], found, 1e-5, size, &what);
+                        let what = || format!("{}: {} d2/d{i} d{j}", spec.name, kernel.name);
+                        inputs::close(middle.hessian[entry * LANES + lane], found, 1e-5, size, what);
                     }
                 }
             }
         }
-    }
+    });
 }
 
 #[test]
 fn derivatives_are_those_of_hyper_dual_numbers() {
-    for spec in specs::all() {
+    specs::all().par_iter().for_each(|spec| {
         let structure = spec.generated.structure();
         for (number, kernel) in structure.kernels.iter().enumerate() {
             let sample = Sample::new(&structure, number, 5, 3);
@@ -149,5 +151,5 @@ fn derivatives_are_those_of_hyper_dual_numbers() {
                 dual::compare(body, kernel, &sample, lane, &spec.tables, &found.jacobian, &found.hessian);
             }
         }
-    }
+    });
 }

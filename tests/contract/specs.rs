@@ -1,6 +1,7 @@
 //! The shipped specs: as generated code, and through the interpreter.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use ntg::runtime::problem::{Parametric, Problem};
 use ntg::runtime::splines::Table;
@@ -11,7 +12,7 @@ use ntg_interp::Interpreted;
 /// One spec, compiled both ways.
 pub(crate) struct Spec {
     pub(crate) name: &'static str,
-    pub(crate) generated: Box<dyn Parametric>,
+    pub(crate) generated: Box<dyn Parametric + Send>,
     pub(crate) program: Program,
     pub(crate) interpreted: Interpreted,
     pub(crate) tables: Vec<Table>,
@@ -25,9 +26,11 @@ macro_rules! specs {
             mod $module { ntg::ntg_file!($path); }
         )+
         const NAMES: &[&str] = &[$(stringify!($module)),+];
-        /// All specs of the folder `specs/`.
-        pub(crate) fn all() -> Vec<Spec> {
-            vec![$(spec(stringify!($module), Box::new($module::$problem::default()))),+]
+        /// All specs of the folder `specs/`, compiled once for all tests.
+        pub(crate) fn all() -> &'static [Spec] {
+            static ALL: LazyLock<Vec<Spec>> =
+                LazyLock::new(|| vec![$(spec(stringify!($module), Box::new($module::$problem::default()))),+]);
+            &ALL
         }
     };
 }
@@ -80,7 +83,7 @@ impl ntg_compiler::model::Loader for BesideSpecs {
     }
 }
 
-fn spec(name: &'static str, generated: Box<dyn Parametric>) -> Spec {
+fn spec(name: &'static str, generated: Box<dyn Parametric + Send>) -> Spec {
     let source = source(name);
     let compiled = ntg_compiler::compile(&source, &BesideSpecs)
         .unwrap_or_else(|found| panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n")));

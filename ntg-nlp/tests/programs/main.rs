@@ -1,5 +1,5 @@
 //! Programs whose answers are known, and laws that hold for all programs: one binary, because every binary would compile
-//! both methods, optimised, again.
+//! both methods again.
 
 #[macro_use]
 mod support;

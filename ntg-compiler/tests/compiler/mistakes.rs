@@ -1,0 +1,349 @@
+//! The mistakes of people who come from CasADi, MATLAB, Modelica, JuMP, Dymos, acados or GPOPS, and what is said of each: docs/mistakes.md
+//! is made of this table, and is held against it.
+//!
+//! `NTG_MISTAKES=write cargo test -p ntg-compiler --test compiler mistakes` writes the page anew: read the difference.
+
+use std::fmt::Write as _;
+
+use crate::model_support::Files;
+use ntg_compiler::diagnostic::{Diagnostic, Severity};
+use ntg_compiler::source::Source;
+
+/// The problem that mistakes stand in, right without them.
+const GOOD: &str = "problem Flight {
+    const n = 3;
+    duration T in 1 .. 60 [s];
+    state r[3] [m], v[3] [m/s], m in 1 .. 2 [kg];
+    input u[3] [N];
+    output x, y [m]: spline(order = 5, intervals = 4);
+    output w[3] [rad/s]: spline(order = 5, intervals = 4);
+    collocation gauss(points = 3, intervals = 4);
+    param A[3, 3] = ((1, 0, 0), (0, 1, 0), (0, 0, 1));
+    param J[3, 3] = ((2, 0, 0), (0, 3, 0), (0, 0, 4)) [kg*m^2];
+    param limit = 5 [m/s];
+    fn half(a) = a / 2;
+    minimize integral(norm(u)^2 / 1 [N^2*s] + norm(w)^2 * 1 [s]);
+    dynamics { der(r) == v;  der(v) == u / m;  der(m) == -norm(u) / 3 [km/s]; }
+    initial { r == 0;  v == 0;  m == 2 [kg];  x == 0;  y == 0; }
+    final { x == 10 [m]; }
+    HERE
+}";
+
+/// The equations of the good problem, in whose place those of a mistake may stand.
+const EQUATIONS: &str = "dynamics { der(r) == v;  der(v) == u / m;  der(m) == -norm(u) / 3 [km/s]; }";
+
+/// What is written, where it stands in the problem (`EQUATIONS` or an item), and the code.
+const MISTAKES: &[(&str, &[(&str, &str)])] = &[
+    (
+        "Derivatives",
+        &[
+            ("let a = x';", "E008"),
+            ("let a = xdot;", "E020"),
+            ("let a = x_dot;", "E020"),
+            ("let a = xddot;", "E020"),
+            ("let a = dx;", "E020"),
+            ("let a = dx/dt;", "E020"),
+            ("let a = diff(x);", "E024"),
+            ("let a = ddt(x);", "E024"),
+            ("let a = dot(x);", "E025"),
+            ("let a = der(der(x), 2, 3);", "E001"),
+            ("let a = der(x, n / 2);", "E027"),
+            ("trajectory { der(x, 7) <= 1; }", "E054"),
+            ("let a = der(x, t);", "E064"),
+            ("let a = deriv(x, t);", "E024"),
+            ("let a = der x;", "E001"),
+            ("let a = ẏ;", "E020"),
+        ],
+    ),
+    (
+        "Functions of time",
+        &[
+            ("let a = x(t);", "E024"),
+            ("initial { x(0) == 0; }", "E024"),
+            ("final { x(T) == 1 [m]; }", "E024"),
+            ("minimize x^2;", "E050"),
+            ("minimize integral(x^2, 0, T) / 1 [m^2*s];", "E001"),
+            ("trajectory { final(x) <= 1 [m]; }", "E052"),
+            ("param a = x;", "E029"),
+            ("temporal { x <= 3 [m]; }", "E050"),
+            ("initial { x(t0) == 0; }", "E024"),
+            ("minimize tf;", "E020"),
+            ("minimize duration;", "E001"),
+            ("let a = sin(time);", "E020"),
+            ("maximize x.final / 1 [m];", "E012"),
+            ("initial: x == 0;", "E001"),
+            ("at t = 3 [s] { x == 1 [m]; }", "E001"),
+        ],
+    ),
+    (
+        "Vectors and matrices",
+        &[
+            ("let a = A.T * r;", "E080"),
+            ("let a = A' * r;", "E008"),
+            ("param a[3] = [1, 0, 0];", "E001"),
+            ("let a = v * v;", "E046"),
+            ("let a = v^2;", "E047"),
+            ("let a = v .* v;", "E001"),
+            ("let a = A @ r;", "E008"),
+            ("let a = r + 1 [m];", "E046"),
+            ("let a = cross((1, 0), (0, 1));", "E046"),
+            ("let a = r(1);", "E024"),
+            ("let a = r[0];", "E028"),
+            ("let a = r[4];", "E028"),
+            ("let a = r[:, 1];", "E001"),
+            ("let a = r[1:2];", "E001"),
+            ("let a = r[end];", "E001"),
+            ("let a = A[1][2];", "E001"),
+            ("let a = inv(A) * r;", "E024"),
+            ("let a = mtimes(A, r);", "E024"),
+            ("let a = eye(3);", "E024"),
+            ("let a = vertcat(x, y);", "E024"),
+            ("let a = norm(r, 2);", "E025"),
+            ("let a = (x, der(x));", "E048"),
+            ("let a = r * A;", "E046"),
+            ("let a = abs(r);", "E047"),
+        ],
+    ),
+    (
+        "Units",
+        &[
+            ("final { y == 5; }", "E041"),
+            ("final { r == (1, 2, 3); }", "E041"),
+            ("trajectory { J * der(w) == cross(r, u) + 1; }", "E046"),
+            ("param I = 2 [kg*m2];", "E040"),
+            ("param I = 2 [kgm^2];", "E040"),
+            ("param a = 30 [degree];", "E040"),
+            ("param a = 3 m/s;", "E001"),
+            ("param a = 30 [°];", "E008"),
+            ("let a = x + T;", "E041"),
+            ("let a = sin(x);", "E042"),
+            ("let a = exp(x);", "E042"),
+            ("let a [m] = der(x);", "E044"),
+            ("trajectory { x in 0 .. 5 [s]; }", "E041"),
+            ("param a[3] = (1 [m], 2 [m/s], 0);", "E041"),
+            ("let a = x^m;", "E042"),
+            ("let a = (2 * n, 0, 0) [m] + r;", "E041"),
+            ("param a [kg] = 1;", "E027"),
+            ("param a: kg = 1;", "E001"),
+            ("param a = \"1 kg\";", "E001"),
+            ("param a = 1 (kg);", "E001"),
+            ("param a = 9.81 * [m/s^2];", "E001"),
+            ("param a = 9.81 [m/s**2];", "E018"),
+            ("param a = 2 [N.m];", "E018"),
+            ("param a = 20 [degC];", "E040"),
+            ("param a = 9,81 [m];", "E001"),
+            ("let a = x [km];", "E026"),
+        ],
+    ),
+    (
+        "Signs and words",
+        &[
+            ("final { y = 0; }", "E013"),
+            ("trajectory { x < 5 [m]; }", "E013"),
+            ("trajectory { x =< 5 [m]; }", "E013"),
+            ("trajectory { x != 5 [m]; }", "E013"),
+            ("trajectory { x ≤ 5 [m]; }", "E008"),
+            ("trajectory { x <= 5 [m] && y <= 5 [m]; }", "E008"),
+            ("let a == x;", "E001"),
+            ("let a := x;", "E001"),
+            ("let a = x**2;", "E001"),
+            ("let a = .5 * x;", "E006"),
+            ("let a = 1_000 * x;", "E006"),
+            ("let a = x ? y : x;", "E008"),
+            ("let a = x % 2;", "E008"),
+            ("subject to { x <= 5 [m]; }", "E001"),
+            ("subject_to(x <= 5 [m]);", "E017"),
+            ("constraints { x <= 5 [m]; }", "E001"),
+            ("minimise integral(x^2) / 1 [m^2*s];", "E001"),
+            ("parameter a = 1;", "E001"),
+            ("control c in -1 .. 1;", "E001"),
+            ("var a in 0 .. 1;", "E001"),
+            ("equation der(x) == y;", "E017"),
+            ("import std::gravity;", "E001"),
+            ("from std import gravity;", "E001"),
+            ("import numpy as np;", "E001"),
+            ("let a = np.sin(1);", "E001"),
+            ("let a = math.pi;", "E012"),
+            ("@constraint(model, x <= 5 [m]);", "E008"),
+            ("N = 20;", "E001"),
+            ("solver ipopt;", "E001"),
+            ("minimize { x; }", "E001"),
+            ("minimize T / 1 [s], 2 * m / 1 [kg];", "E001"),
+            ("trajectory { x <= 5 [m], y <= 5 [m]; }", "E001"),
+            ("trajectory { x <= 5 [m] and y <= 5 [m]; }", "E001"),
+            ("let a = x > 1 [m];", "E001"),
+            ("let a = true;", "E020"),
+            ("let a(b) = b^2;", "E001"),
+            ("let a = x", "E002"),
+            ("let a = x;  let b = a y;", "E001"),
+            ("% the mass\n    param a = 1;", "E008"),
+            ("# the mass\n    param a = 1;", "E008"),
+            ("let pi = 3.14;", "E012"),
+            ("param t = 3;", "E012"),
+            ("let sin = x;", "E022"),
+            ("let x = 2;", "E021"),
+        ],
+    ),
+    (
+        "Sums, loops and conditions",
+        &[
+            ("let a = sum(i in 1:3, r[i]);", "E001"),
+            ("let a = sum(i in 1 .. 3);", "E001"),
+            ("let a = sum(r[i], i, 1, 3);", "E025"),
+            ("let a = sum(r[i] for i in 1:3);", "E001"),
+            ("trajectory { if x <= 1 [m] { y <= 1 [m]; } }", "E001"),
+            ("trajectory { y >= 0 if x <= 1 [m]; }", "E001"),
+            ("trajectory { for i = 1:3 { r[i] >= 0; } }", "E001"),
+            ("trajectory { for i in range(3) { r[i] >= 0; } }", "E001"),
+            ("let a = if x <= 1 [m] then 1 else 2;", "E001"),
+            ("let a = if x <= 1 [m] { 1 };", "E001"),
+            ("let a = if_else(x, 1, 2);", "E024"),
+            ("let a = r[i];", "E020"),
+            ("fn f(a) = return a;", "E001"),
+            ("function f(a) = a;", "E001"),
+        ],
+    ),
+    (
+        "Dynamics, bounds and splines",
+        &[
+            ("dynamics { der(r) == v;  der(v) == u / m; }", "E068"),
+            ("dynamics { der(r) == v;  der(v) == u / m;  der(m) == -norm(u) / 3 [km/s];  der(x) == 0; }", "E068"),
+            ("dynamics { der(r) == v;  der(v) == u;  der(m) == -norm(u) / 3 [km/s]; }", "E041"),
+            ("dynamics { der(r) = v;  der(v) == u / m;  der(m) == -norm(u) / 3 [km/s]; }", "E013"),
+            ("dynamics { der(r) == v;  der(v) == u / m;  m <= 2 [kg]; }", "E068"),
+            ("state z;", "E068"),
+            ("output z [m];", "E001"),
+            ("output z: spline(5, 4);", "E001"),
+            ("output z: spline(degree = 4, intervals = 4);", "E016"),
+            ("variable z = 3;", "E001"),
+            ("variable z in [0, 1];", "E001"),
+            ("variable z in (0, 1);", "E001"),
+            ("variable z in [0, inf];", "E001"),
+            ("variable z in 0 .. inf;", "E020"),
+            ("variable z = 0 .. 1;", "E001"),
+            ("variable z >= 0;", "E001"),
+            ("trajectory { y in [-1, 1] [km]; }", "E001"),
+            ("param z in 0 .. 1;", "E001"),
+            ("state z = 0;", "E001"),
+            ("state z(start = 0);", "E001"),
+            ("state z: 0 .. 3;", "E001"),
+            ("input z: piecewise_constant;", "E001"),
+            ("duration S = 1 .. 9 [s];", "E001"),
+            ("duration S;", "E001"),
+            ("collocation gauss(3, 20);", "E001"),
+            ("const k = 2.5;  output z[1 .. k]: spline(order = 4, intervals = 2);", "E027"),
+            ("phase coast follows boost { }", "E001"),
+            ("table drag(a) = { 0: 1;  2: 3; }", "E001"),
+            ("table drag(a) = linear { 0: 1, 2: 3 }", "E001"),
+            ("guess { x = [0, 1]; }", "E001"),
+            ("guess { x = 0 .. 1; }", "E001"),
+            ("final { x == 11 [m]; }", "E057"),
+            ("param a = sqrt(-1);", "E032"),
+            ("guess { x = linspace(0, 1, 5); }", "E024"),
+        ],
+    ),
+];
+
+fn files() -> Files {
+    Files(vec![("a.ntg", "use \"b.ntg\"; const k = 1;"), ("b.ntg", "use \"a.ntg\"; const l = 1;")])
+}
+
+fn found(spec: &str) -> Vec<Diagnostic> {
+    match ntg_compiler::check_with(&Source::new("spec.ntg", spec), &files(), &[]) {
+        Ok((_, notes)) => notes,
+        Err(found) => found.into_iter().collect(),
+    }
+}
+
+/// The problem with a mistake in it.
+fn with(written: &str) -> String {
+    match written.starts_with("dynamics") {
+        true => GOOD.replace(EQUATIONS, written).replace("HERE", ""),
+        false => GOOD.replace("HERE", written),
+    }
+}
+
+/// The first error of a mistake.
+fn first(written: &str) -> Option<Diagnostic> {
+    found(&with(written)).into_iter().find(|finding| finding.severity == Severity::Error)
+}
+
+fn page() -> String {
+    let mut page = String::from(
+        "# Mistakes of newcomers\n\nWhat people write who come from CasADi, MATLAB, Modelica, JuMP, Dymos, acados or GPOPS, and what ntg says of it.\n\
+         This page is made by a test, so the words are those of the compiler.\n\
+         [coming-from.md](coming-from.md) puts whole problems side by side; [errors.md](errors.md) explains the codes.\n",
+    );
+    for (title, mistakes) in MISTAKES {
+        let _ = write!(page, "\n## {title}\n\n| written | said | help |\n|---|---|---|\n");
+        for (written, _) in *mistakes {
+            let Some(finding) = first(written) else { continue };
+            let cell = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
+            let (code, message) = (finding.code.text(), cell(&finding.message));
+            let help = finding.help.as_deref().map(cell).unwrap_or_default();
+            let _ = writeln!(page, "| `{}` | {code}: {message} | {help} |", cell(written));
+        }
+    }
+    page
+}
+
+#[test]
+fn the_problem_around_is_right() {
+    let found = found(&GOOD.replace("HERE", ""));
+    assert!(found.iter().all(|finding| finding.severity != Severity::Error), "{found:?}");
+}
+
+#[test]
+fn every_mistake_has_the_code_of_the_table_and_a_place() {
+    let mut wrong = String::new();
+    let mistakes: Vec<&(&str, &str)> = MISTAKES.iter().flat_map(|(_, mistakes)| *mistakes).collect();
+    assert!(mistakes.len() >= 150);
+    for (written, code) in mistakes {
+        let Some(finding) = first(written) else {
+            let _ = writeln!(wrong, "{written}: nothing is said");
+            continue;
+        };
+        let spec = with(written);
+        let own = if written.starts_with("dynamics") { spec.find("dynamics") } else { spec.find(written) };
+        let after = own.is_some_and(|own| finding.span.start as usize >= own) || written.starts_with("dynamics");
+        if finding.code.text() != *code || finding.help.is_none() || !after {
+            let _ = writeln!(wrong, "{written}: {} {} | {:?}", finding.code.text(), finding.message, finding.help);
+        }
+    }
+    assert!(wrong.is_empty(), "\n{wrong}");
+}
+
+/// Mistakes that are told with more than one error: of two names, and of a list that also has a sum around it.
+const SEVERAL: &[&str] = &["let a = dx/dt;", "let a = (2 * n, 0, 0) [m] + r;"];
+
+#[test]
+fn one_mistake_is_told_once() {
+    let mut several = String::new();
+    for (written, _) in MISTAKES.iter().flat_map(|(_, mistakes)| *mistakes) {
+        let found = found(&with(written));
+        let errors: Vec<&Diagnostic> = found.iter().filter(|finding| finding.severity == Severity::Error).collect();
+        if (errors.len() > 1) != SEVERAL.contains(written) {
+            let messages: Vec<&str> = errors.iter().map(|finding| finding.message.as_str()).collect();
+            let _ = writeln!(several, "{written}: {messages:?}");
+        }
+    }
+    assert!(several.is_empty(), "\n{several}");
+}
+
+#[test]
+fn the_page_says_what_the_compiler_says() {
+    let path = format!("{}/../docs/mistakes.md", env!("CARGO_MANIFEST_DIR"));
+    let page = page();
+    if std::env::var_os("NTG_MISTAKES").is_some_and(|word| word == "write") {
+        std::fs::write(&path, &page).expect("the page can be written");
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(kept == page, "docs/mistakes.md is not what the compiler says: see the head of this test");
+}
+
+#[test]
+fn libraries_in_a_circle_are_named() {
+    let found = found(&format!("use \"a.ntg\";\n{}", GOOD.replace("HERE", "")));
+    assert_eq!(found[0].code.text(), "E087");
+    assert!(found[0].message.contains("circle"), "{}", found[0].message);
+}
