@@ -97,6 +97,7 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("let a = r[end];", "E001"),
             ("let a = A[1][2];", "E001"),
             ("let a = [1; 2; 3];", "E001"),
+            ("let a = [x; r[1] 3];", "E001"),
             ("let a = dot([x; y], r);", "E001"),
             ("let a = foo + r; let b = a[1] + 2 [m]; let c = a + r;", "E020"),
             ("let a = inv(A) * r;", "E024"),

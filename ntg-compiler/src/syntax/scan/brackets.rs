@@ -161,11 +161,13 @@ impl Brackets {
         clean: &mut [u8],
         found: &mut Vec<Diagnostic>,
     ) -> bool {
+        if self.open.last().is_some_and(|frame| frame.opener != b'{') {
+            return false;
+        }
         let Some(mut cut) = self.cut.take() else { return false };
         let first = cut.semicolons[0];
         let rest = &text[first.start as usize..span.start as usize];
-        let is_inside_another = self.open.last().is_some_and(|frame| frame.opener != b'{');
-        if rest.contains(['\n', '=']) || is_inside_another || cut.openers.pop() != Some(closes(closer)) {
+        if rest.contains(['\n', '=']) || cut.openers.pop() != Some(closes(closer)) {
             return false;
         }
         for semicolon in &cut.semicolons {
