@@ -17,6 +17,21 @@ pub fn library(name: &str) -> Option<&'static str> {
     LIBRARIES.iter().find(|(own, _)| *own == name).map(|(_, text)| *text)
 }
 
+/// The library that has a name, and the name there: the same words in any order, `earth_radius` for `radius_earth`.
+pub fn holder(name: &str) -> Option<(&'static str, &'static str)> {
+    let words = |name: &'static str| name.split('_').collect::<std::collections::BTreeSet<_>>();
+    let wanted: std::collections::BTreeSet<&str> = name.split('_').collect();
+    let declared = |line: &'static str| {
+        let rest =
+            line.strip_prefix("const ").or_else(|| line.strip_prefix("fn ")).or_else(|| line.strip_prefix("table "))?;
+        rest.split(|c: char| !c.is_alphanumeric() && c != '_').next()
+    };
+    let all = || {
+        LIBRARIES.iter().flat_map(|(library, text)| text.lines().filter_map(declared).map(move |own| (*library, own)))
+    };
+    all().find(|(_, own)| *own == name).or_else(|| all().find(|(_, own)| words(own) == wanted))
+}
+
 /// The names of all libraries, sorted.
 pub fn names() -> Vec<&'static str> {
     LIBRARIES.iter().map(|(name, _)| *name).collect()

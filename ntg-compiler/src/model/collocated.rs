@@ -127,20 +127,21 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Dimension and unit of an output without a unit: those of its bounds.
-    pub(super) fn unit_of_bounds(&mut self, scope: ScopeId, name: &'a OutputName) -> (Dimension, Unit) {
-        let none = (Dimension::NONE, Unit::default());
-        let Some(bounds) = &name.bounds else { return none };
+    /// Dimension and unit of an output without a unit: those of its bounds; no dimension where these were refused.
+    pub(super) fn unit_of_bounds(&mut self, scope: ScopeId, name: &'a OutputName) -> (Option<Dimension>, Unit) {
+        let Some(bounds) = &name.bounds else { return (Some(Dimension::NONE), Unit::default()) };
+        let mut is_refused = false;
         let cx = Context::of(scope, Allow::Parameters);
         for end in bounds.upper.iter().chain(&bounds.lower) {
             let Some(shape) = self.shape(&cx, end) else { continue };
             let first = vec![Form::number(1); shape.axes().len()];
             let value = self.element(&cx, end, &first);
+            is_refused |= !value.is_sound();
             if let Some(dimension) = value.dimension.filter(|_| value.is_sound()) {
                 let unit = value.unit.map_or_else(|| units::si(&dimension), |unit| (*unit).clone());
-                return (dimension, unit);
+                return (Some(dimension), unit);
             }
         }
-        none
+        ((!is_refused).then_some(Dimension::NONE), Unit::default())
     }
 }

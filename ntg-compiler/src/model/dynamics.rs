@@ -180,13 +180,14 @@ impl<'a> Elaborator<'a> {
         at: &[Form],
     ) {
         let Some(bounds) = &name.bounds else { return };
+        let Some(dimension) = self.output_dimensions[phase][output] else { return };
         let place: Option<Vec<Form>> =
             at.iter().zip(axes).map(|(form, ends)| form.plus(1, &ends.first)?.plus(-1, &Form::number(1))).collect();
         let Some(place) = place else { return };
         let index = if axes.is_empty() { None } else { self.member(axes, &place) };
         let node = self.leaf(Leaf::Flat { phase: cx.phase_at(phase), at: At::Here, output, index, order: 0 });
         let unit = Rc::new(self.problem.phases[phase].outputs[output].unit.clone());
-        let body = Value::new(node, self.output_dimensions[phase][output], name.name.span).shown_in(Some(unit));
+        let body = Value::new(node, dimension, name.name.span).shown_in(Some(unit));
         let mut ends = [&bounds.lower, &bounds.upper].map(|_| None);
         for (end, expr) in ends.iter_mut().zip([&bounds.lower, &bounds.upper]) {
             let Some(expr) = expr else { continue };

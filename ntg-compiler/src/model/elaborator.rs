@@ -137,8 +137,12 @@ pub(super) struct Elaborator<'a> {
     pub(super) agents: Vec<AgentDeclaration<'a>>,
     /// Continuations, until all parameters are known.
     pub(super) pending: Vec<Steps>,
-    /// Dimensions of the outputs of each phase, as in `Problem::phases`.
-    pub(super) output_dimensions: Vec<Vec<Dimension>>,
+    /// Whether the shape at hand is of an expression with a name that nothing has.
+    pub(super) meets_unknown: bool,
+    /// Names that a `use` promised and that are not to be had; it was told.
+    pub(super) lost: Vec<&'a str>,
+    /// Dimensions of the outputs of each phase, as in `Problem::phases`; none where the unit was refused.
+    pub(super) output_dimensions: Vec<Vec<Option<Dimension>>>,
     /// Names of indices met so far and where they are bound.
     pub(super) index_names: HashMap<&'a str, Span>, // Looked up, never iterated.
     /// The index over a family of phases that totals use.
@@ -242,6 +246,8 @@ impl<'a> Elaborator<'a> {
             phases: Vec::new(),
             agents: Vec::new(),
             pending: Vec::new(),
+            meets_unknown: false,
+            lost: Vec::new(),
             output_dimensions: Vec::new(),
             index_names: HashMap::new(),
             total_indices: HashMap::new(),
@@ -497,7 +503,7 @@ impl<'a> Elaborator<'a> {
 
     /// Whether an error was found.
     pub(super) fn has_failed(&self) -> bool {
-        self.found.iter().any(|finding| finding.severity == crate::diagnostic::Severity::Error)
+        !self.lost.is_empty() || self.found.iter().any(|finding| finding.severity == crate::diagnostic::Severity::Error)
     }
 }
 

@@ -211,6 +211,9 @@ impl<'a> Elaborator<'a> {
             self.wrong_indices(segment, axes.len());
             return None;
         }
+        if self.is_unit_for_index(cx, segment) {
+            return None;
+        }
         let name = &segment.name.text;
         let mut at = at.iter();
         let mut place = Vec::with_capacity(axes.len());

@@ -221,6 +221,9 @@ impl<'a> Elaborator<'a> {
         if let Some(help) = self.library_help(cx.names(), name) {
             return self.refuse(finding.help(help), call.span);
         }
+        if let Some(help) = self.in_standard(name).filter(|_| HABITS.iter().all(|(habit, _)| *habit != name)) {
+            return self.refuse(finding.help(help), call.span);
+        }
         let names = visible(&self.scopes, cx.names());
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
         let habit = HABITS.iter().find(|(habit, _)| *habit == name).map(|(_, right)| *right);

@@ -211,7 +211,7 @@ impl<'a> Elaborator<'a> {
         let home = scope.phase.or_else(|| self.agents[scope.agent?].phases.first().copied())?;
         let name = segment.name.text.clone();
         let k = self.problem.phases[home].outputs.iter().position(|output| output.name == name)?;
-        let dimension = self.output_dimensions[home][k];
+        let dimension = self.output_dimensions[home][k]?;
         let axes = self.output_axes[home][k].clone();
         let index = self.array_member(cx, segment, &axes, at)?;
         Some(Guessed { name, index, dimension, cx: cx.clone(), span })

@@ -305,7 +305,14 @@ impl<'a> Elaborator<'a> {
 
     fn link(&mut self, scope: ScopeId, uses: &'a [Use], files: &[Option<usize>], scopes: &[ScopeId]) {
         for (item, file) in uses.iter().zip(files) {
-            let Some(library) = file.map(|file| scopes[file]) else { continue };
+            let Some(library) = file.map(|file| scopes[file]) else {
+                self.lost.extend(item.names.iter().map(|name| name.text.as_str()));
+                if item.names.is_empty() {
+                    let name = self.library_name(item);
+                    self.lost.extend(name);
+                }
+                continue;
+            };
             for name in &item.names {
                 self.used_name(scope, library, name);
             }
@@ -326,6 +333,7 @@ impl<'a> Elaborator<'a> {
             Some(Declared { entity, .. }) => self.declare(scope, name, Declared { entity, span: name.span }),
             None if self.scopes[library].is_broken => {}
             None => {
+                self.lost.push(&name.text);
                 let finding =
                     Diagnostic::new(Code::UnknownName, name.span, format!("the library has no `{}`", name.text));
                 let names = self.scopes[library].order.clone();
@@ -358,8 +366,12 @@ impl<'a> Elaborator<'a> {
         None
     }
 
-    /// Whether a name is one of a library that could not be read, of which enough was told.
+    /// Whether a name is one of a library that could not be had or read, of which enough was told.
     pub(super) fn is_of_broken_library(&self, scope: ScopeId, name: &str) -> bool {
+        let front = name.split("::").next().unwrap_or(name);
+        if self.lost.contains(&front) {
+            return true;
+        }
         let library = name.rsplit_once("::").and_then(|(library, _)| library_named(&self.scopes, scope, library));
         library.is_some_and(|library| self.scopes[library].is_broken)
     }
@@ -380,6 +392,9 @@ impl<'a> Elaborator<'a> {
                 });
             };
             let names = &self.scopes[known].order;
+            if let Some((library, own)) = standard::holder(inner).filter(|_| names.iter().all(|name| *name != inner)) {
+                return Some(format!("`{library}` has it: {}", taken_from(library, own)));
+            }
             return Some(match nearest(inner, names.iter().copied()) {
                 Some(near) => format!("did you mean `{library}::{near}`?"),
                 None => format!("`{library}` has {}", listed(names)),
@@ -399,6 +414,12 @@ impl<'a> Elaborator<'a> {
         holder.map(|(library, _)| format!("write `{library}::{name}`"))
     }
 
+    /// What to write for a name that a library of the language has, where the spec does not use it.
+    pub(super) fn in_standard(&self, name: &str) -> Option<String> {
+        let (library, own) = standard::holder(name)?;
+        Some(format!("`{library}` has it: {}", taken_from(library, own)))
+    }
+
     /// What a table is called in results: behind the name of its library's file.
     pub(super) fn shown_name(&self, scope: ScopeId, name: &str) -> String {
         let library = self.scopes.iter().find_map(|other| {
@@ -407,8 +428,15 @@ impl<'a> Elaborator<'a> {
             known.sort_unstable();
             known.first().map(|library| (*library).to_owned())
         });
+        let library = library.filter(|library| library != super::trial::NAME);
         library.map_or_else(|| name.to_owned(), |library| format!("{library}::{name}"))
     }
+}
+
+/// How a spec takes a name from a library of the language.
+fn taken_from(library: &str, name: &str) -> String {
+    let module = library.rsplit("::").next().unwrap_or(library);
+    format!("write `use {library};` before the problem and `{module}::{name}` here")
 }
 
 /// Names for a message.

@@ -117,7 +117,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Tells of a name that nothing has.
-    fn unknown(&mut self, cx: &Context<'a>, segment: &Segment, outwards: bool) -> Value {
+    pub(super) fn unknown(&mut self, cx: &Context<'a>, segment: &Segment, outwards: bool) -> Value {
         let (scope, text) = (cx.names(), &segment.name.text);
         let names: Vec<&str> = if outwards {
             visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
@@ -139,7 +139,7 @@ impl<'a> Elaborator<'a> {
         let elsewhere = elsewhere.or_else(|| as_derivative(&dotted(text).unwrap_or_else(|| text.clone()), &names));
         let habit =
             || HABITS.iter().find(|(wrong, _)| wrong.contains(&text.as_str())).map(|(_, help)| (*help).to_owned());
-        let elsewhere = elsewhere.or_else(habit);
+        let elsewhere = elsewhere.or_else(habit).or_else(|| self.in_standard(text));
         let finding = match (elsewhere, nearest(text, names.iter().copied())) {
             (Some(help), _) => finding.help(help),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
@@ -209,6 +209,9 @@ impl<'a> Elaborator<'a> {
                 if cx.allow < Allow::All {
                     return self.misplaced_value(What::Variable, span, &segment.name.text, dimension);
                 }
+                if dimension.is_none() {
+                    return self.poison(span); // Its unit was refused.
+                }
                 let Some(index) = self.array_member(cx, segment, &axes, at) else { return self.poison(span) };
                 let node = self.leaf(Leaf::Variable { variable, index });
                 let unit = self.problem.variables.get(variable).map(|v| Rc::new(v.unit.clone()));
@@ -274,7 +277,7 @@ impl<'a> Elaborator<'a> {
         let Some(home) = phase.or_else(agent_phase) else { return self.poison(span) };
         let Some((output, unit)) = self.output_named(home, text) else { return self.poison(span) };
         let axes = self.output_axes[home][output].clone();
-        let dimension = self.output_dimensions[home][output];
+        let Some(dimension) = self.output_dimensions[home][output] else { return self.poison(span) };
         let Some(index) = self.array_member(cx, segment, &axes, at) else { return self.poison(span) };
         let at = match point {
             Point::Path | Point::Start | Point::End => At::Here,
@@ -337,6 +340,28 @@ impl<'a> Elaborator<'a> {
         };
         let finding = Diagnostic::new(Code::WrongIndices, segment.span, message).help(help);
         self.refuse(finding, segment.span)
+    }
+
+    /// Tells of a unit where an index stands.
+    pub(super) fn is_unit_for_index(&mut self, cx: &Context<'a>, segment: &Segment) -> bool {
+        let [index] = segment.indices.as_slice() else { return false };
+        if !self.is_unit_text(segment) || names_in(&index.first).is_none_or(|names| self.are_whole(cx, &names)) {
+            return false;
+        }
+        let (name, unit) = (&segment.name.text, self.text(index.span));
+        let message = format!("`{name}` takes an index, and `[{unit}]` is a unit");
+        let help = format!("a quantity has its unit already; `let z [{unit}] = {name};` shows it in another");
+        self.report(Diagnostic::new(Code::WrongIndices, index.span, message).help(help));
+        true
+    }
+
+    /// Whether all names may stand in an index: indices, arguments and constants.
+    pub(super) fn are_whole(&self, cx: &Context<'a>, names: &[&str]) -> bool {
+        names.iter().all(|name| {
+            let declared = || look_up(&self.scopes, cx.names(), name).map(|(_, declared)| declared.entity);
+            let is_const = |entity| matches!(entity, Entity::Definition(k) if self.definitions[k].is_const);
+            cx.local(name).is_some() || self.index_in_sight(cx, name).is_some() || declared().is_some_and(is_const)
+        })
     }
 
     /// Whether what stands in the brackets behind a name is a unit.

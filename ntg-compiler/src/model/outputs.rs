@@ -24,7 +24,8 @@ pub(super) fn stand_in() -> Spline {
 struct Declared {
     output: Output,
     axes: Vec<Ends>,
-    dimension: Dimension,
+    /// None where its unit was refused.
+    dimension: Option<Dimension>,
     has_unit: bool,
 }
 
@@ -57,8 +58,11 @@ impl<'a> Elaborator<'a> {
     /// A common output gets the spline of a phase; its unit and size stay what they are.
     fn replace(&mut self, known: &mut Declared, own: Declared) {
         let name = &own.output.name;
-        if own.has_unit && own.dimension != known.dimension {
-            let (this, that) = (own.dimension.describe(), known.dimension.describe());
+        if own.has_unit
+            && let (Some(this), Some(that)) = (own.dimension, known.dimension)
+            && this != that
+        {
+            let (this, that) = (this.describe(), that.describe());
             let finding =
                 Diagnostic::new(Code::DimensionMismatch, own.output.span, format!("`{name}` is {that}, not {this}"))
                     .label(own.output.span, format!("this is {this}"))
@@ -123,7 +127,8 @@ impl<'a> Elaborator<'a> {
         let unit = name.unit.as_ref().and_then(|unit| self.unit(unit));
         let has_unit = name.unit.is_some() || name.bounds.is_some();
         let (dimension, unit) = match unit {
-            Some((quantity, shown)) => (quantity.dimension, shown),
+            Some((quantity, shown)) => (Some(quantity.dimension), shown),
+            None if name.unit.is_some() => (None, ntg_structure::Unit::default()),
             None => self.unit_of_bounds(scope, name),
         };
         let columns = match axes.as_slice() {

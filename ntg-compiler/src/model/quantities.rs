@@ -93,15 +93,14 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Tells of a unit where the size stands.
-    fn is_unit_for_size(&mut self, shape: &'a ast::Shape, name: &str, value: Span) -> bool {
+    pub(super) fn is_unit_for_size(&mut self, shape: &'a ast::Shape, (word, name): (&str, &str), value: Span) -> bool {
         let [axis] = shape.axes.as_slice() else { return false };
         let Some(names) = names_in(&axis.last).filter(|_| axis.index.is_none() && axis.first.is_none()) else {
             return false;
         };
-        let declared = |name: &str| self.scopes[PROBLEM].names.contains_key(name);
         if names.is_empty()
             || !names.iter().all(|name| units::is_symbol(name))
-            || names.iter().all(|name| declared(name))
+            || self.are_whole(&Context::of(PROBLEM, Allow::Constants), &names)
         {
             return false;
         }
@@ -109,7 +108,7 @@ impl<'a> Elaborator<'a> {
         let message = format!("the unit of `{name}` stands behind its value: these brackets hold its size");
         let finding = Diagnostic::new(Code::NotWhole, shape.span, message);
         let text = self.text(value);
-        self.report(finding.help(format!("write `param {name} = {text} {unit};`")));
+        self.report(finding.help(format!("write `{word} {name} = {text} {unit};`")));
         true
     }
 
@@ -117,7 +116,7 @@ impl<'a> Elaborator<'a> {
         let cx = Context::of(PROBLEM, Allow::Constants);
         let name = &param.name.text;
         let what = format!("the default of `{name}`");
-        if param.shape.as_ref().is_some_and(|shape| self.is_unit_for_size(shape, name, param.default.span)) {
+        if param.shape.as_ref().is_some_and(|shape| self.is_unit_for_size(shape, ("param", name), param.default.span)) {
             return;
         }
         let mut axes = param.shape.as_ref().map(|shape| (self.declared_axes(&cx, shape), shape.span));
@@ -281,6 +280,7 @@ impl<'a> Elaborator<'a> {
             let (family, bounds, joined) = self.variable_bounds(&cx, variable, &axes, &what);
             self.variable_axes.push(axes);
             let declared = variable.unit.as_ref().and_then(|unit| self.unit(unit));
+            let is_refused = variable.unit.is_some() && declared.is_none();
             let mut dimension = joined.as_ref().and_then(|value| value.dimension);
             let mut unit = joined.and_then(|value| value.unit).map(|unit| (*unit).clone());
             if let Some((quantity, shown)) = declared {
@@ -294,7 +294,7 @@ impl<'a> Elaborator<'a> {
                 unit = Some(shown);
             }
             let dimension = dimension.unwrap_or(Dimension::NONE);
-            self.variables[k].1 = Some(dimension);
+            self.variables[k].1 = (!is_refused).then_some(dimension);
             let unit = unit.unwrap_or_else(|| units::si(&dimension));
             let doc = doc_text(&item.doc);
             let (name, span) = (name.clone(), variable.name.span);

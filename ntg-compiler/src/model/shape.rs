@@ -1,7 +1,8 @@
 //! How many elements an expression has along each axis: numbers, vectors, matrices.
 //!
 //! Takes expressions, gives a [`Shape`]; no node is made, so that a vector stays a rule that gives an element for an
-//! index (`element.rs`). Names that nothing has count as numbers: whoever elaborates them tells.
+//! index (`element.rs`). A name that nothing has is told of, and counts as what
+//! is wanted; a definition that holds one has no shape.
 //! Finds: shapes that do not fit (E046), vectors where one number is needed (E047).
 
 use super::elaborator::Elaborator;

@@ -40,7 +40,11 @@ impl<'a> Elaborator<'a> {
         }
         match look_up(&self.scopes, cx.names(), name) {
             Some((_, declared)) => self.entity_shape(cx, declared.entity, segment),
-            None => Some(Shape::NUMBER),
+            None => {
+                self.unknown(cx, segment, true);
+                self.meets_unknown = true;
+                Some(Shape::Any)
+            }
         }
     }
 
@@ -131,6 +135,12 @@ impl<'a> Elaborator<'a> {
     fn axes_as_written(&mut self, cx: &Context<'a>, definition: usize) -> Option<Vec<Ends>> {
         let mut axes = Vec::new();
         let declared = self.definitions[definition].shape;
+        if let Some(shape) = declared.filter(|_| self.definitions[definition].is_const) {
+            let (name, value) = (self.definitions[definition].name, self.definitions[definition].value.span);
+            if self.is_unit_for_size(shape, ("const", &name.text), value) {
+                return None;
+            }
+        }
         let outside = self.home(cx, self.definitions[definition].scope);
         let mut sized = false;
         for axis in declared.iter().flat_map(|shape| &shape.axes) {
@@ -167,7 +177,9 @@ impl<'a> Elaborator<'a> {
         }
         let value = self.definitions[definition].value;
         self.shaping.push(definition);
-        let shape = self.shape(&inner, value);
+        let met_before = std::mem::take(&mut self.meets_unknown);
+        let shape = self.shape(&inner, value).filter(|_| !self.meets_unknown);
+        self.meets_unknown = met_before;
         self.shaping.pop();
         self.member_shapes.insert(key, shape.clone());
         shape

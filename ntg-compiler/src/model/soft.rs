@@ -177,7 +177,7 @@ impl<'a> Elaborator<'a> {
         let output = Output { name: name.to_owned(), doc, unit: unit.clone(), family, columns: None, spline, span };
         self.problem.phases[phase].outputs.push(output);
         self.output_axes[phase].push(family.iter().map(|(_, count)| Ends::to(*count)).collect());
-        self.output_dimensions[phase].push(dimension);
+        self.output_dimensions[phase].push(Some(dimension));
 
         let whole = self.phase_context(phase, Allow::All, Point::Path);
         let at = whole.phase_at(phase);

@@ -9,7 +9,7 @@ use crate::source::{Source, Span};
 use crate::syntax::ast::*;
 
 /// What the library is called in the trial.
-const NAME: &str = "library_";
+pub(super) const NAME: &str = "library_";
 
 /// The problem.
 pub(super) fn around(library: &Library) -> Source {

@@ -175,10 +175,6 @@ const HABITS: &[(&str, &str)] = &[
     ("Ω", "ohm"),
     ("Nm", "N*m"),
     ("ton", "t"),
-    ("degC", "K"),
-    ("degF", "K"),
-    ("celsius", "K"),
-    ("Celsius", "K"),
     ("kelvin", "K"),
     ("kilogram", "kg"),
     ("kilograms", "kg"),
@@ -240,6 +236,12 @@ fn unknown(text: &str, span: Span) -> Diagnostic {
     let base = text.trim_end_matches(|c: char| c.is_ascii_digit());
     if base.len() < text.len() && symbol(base).is_some() {
         return found.help(format!("a power has its sign: `{base}^{}`", &text[base.len()..]));
+    }
+    if matches!(text, "degC" | "degF" | "celsius" | "Celsius" | "fahrenheit" | "Fahrenheit") {
+        let in_kelvin =
+            if text.contains(['F', 'f']) { "(68 + 459.67) * 5 / 9 * 1 [K]` for 68" } else { "293.15 [K]` for 20" };
+        let help = format!("temperatures count from absolute zero: write `{in_kelvin} degrees; a unit has no offset");
+        return found.help(help);
     }
     let habit = HABITS.iter().find(|(wrong, _)| *wrong == text).map(|(_, right)| *right);
     match habit.or_else(|| nearest(text, SYMBOLS.iter().map(|(symbol, ..)| *symbol))) {

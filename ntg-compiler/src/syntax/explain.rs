@@ -11,6 +11,7 @@ use super::words::{ITEM_WORDS, OTHER_ITEM_WORDS, is_reserved, nearest_item_word}
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 
+mod brackets;
 mod conditions;
 mod expected;
 mod habits;
@@ -286,6 +287,9 @@ impl Here<'_> {
         }
         if this == "at" && self.expected.has(Rule::part) {
             return Some("one time has a block of its own: `at 2.5 [s] { ... }`".into());
+        }
+        if let Some(advice) = self.advice_on_units(this, before) {
+            return Some(advice);
         }
         let in_declaration = matches!(self.first_word(), Some("state" | "input" | "output" | "param" | "const"));
         if let Some(advice) = self.advice_on_ranges(this, before).or_else(|| self.advice_on_heads(this, before)) {

@@ -20,7 +20,9 @@ impl Here<'_> {
             "[" if before == "in" => self.range_from(self.index),
             "[" if has(Rule::indices) || !self.expected.has_expression() => return None,
             "[" | ".." if self.is_within("guess") => course.into(),
-            _ if before == ")" && has(Rule::dots) => self.range_from(self.opener_behind_in()?),
+            _ if matches!(before, ")" | "]") && has(Rule::dots) && self.opener_behind_in().is_some() => {
+                self.range_from(self.opener_behind_in()?)
+            }
             ".." if first == "duration" && has(Rule::semicolon) => self.with_in(),
             "=" if first == "variable" && self.rest_has("..") => self.with_in(),
             _ if first == "duration" && has(Rule::equals) && has(Rule::kw_in) => {
@@ -111,12 +113,13 @@ impl Here<'_> {
         rest.take_while(|word| !matches!(*word, "" | ";")).any(|word| word == wanted)
     }
 
-    /// The parenthesis that was closed before this place, if it stands behind `in`.
+    /// The parenthesis that was closed before this place or before the unit here, if it stands behind `in`.
     fn opener_behind_in(&self) -> Option<usize> {
         let mut depth = 0_usize;
         for at in (1..self.index).rev() {
             match self.word(at) {
                 ")" | "]" => depth += 1,
+                "[" if depth == 1 && self.word(at - 1) == ")" => depth = 0,
                 "(" | "[" if depth == 1 => return (self.word(at - 1) == "in").then_some(at),
                 "(" | "[" => depth = depth.checked_sub(1)?,
                 ";" | "{" | "}" => return None,

@@ -24,8 +24,20 @@ pub(super) struct Brackets {
     first_word: Option<Span>,
     /// Openers inside which something began that may not stand there.
     suspects: Vec<Span>,
+    /// Brackets that a `;` ended and that may be closed behind it.
+    cut: Option<Cut>,
     too_deep: bool,
     unmatched_brace: bool,
+}
+
+/// A list whose elements are parted by `;`, as in `[a; b]`, if its closing bracket follows on the line.
+struct Cut {
+    /// What was open, the innermost last.
+    openers: Vec<u8>,
+    semicolons: Vec<Span>,
+    /// How many findings there were before those about the openers.
+    found: usize,
+    is_told: bool,
 }
 
 struct Frame {
@@ -46,12 +58,15 @@ impl Brackets {
         match token.kind {
             TokenKind::Open => self.open(byte, (token.span, text), found),
             TokenKind::Close => {
-                if !self.close(byte, token.span, found) && byte != b'}' {
+                if !self.closes_cut(byte, (token.span, text), clean, found)
+                    && !self.close(byte, token.span, found)
+                    && byte != b'}'
+                {
                     clean[token.span.start as usize] = b' ';
                 }
             }
             TokenKind::Word => self.word(token.span, text),
-            TokenKind::Punctuation => self.punctuation(byte, found),
+            TokenKind::Punctuation => self.punctuation(byte, token.span, found),
             TokenKind::Number | TokenKind::String | TokenKind::Doc => {}
         }
         self.check_depth(token.span, found);
@@ -116,11 +131,7 @@ impl Brackets {
 
     /// Gives whether the bracket closes anything.
     fn close(&mut self, closer: u8, span: Span, found: &mut Vec<Diagnostic>) -> bool {
-        let opener = match closer {
-            b')' => b'(',
-            b']' => b'[',
-            _ => b'{',
-        };
+        let opener = closes(closer);
         if opener == b'{' {
             self.drop_parentheses(found);
             self.first_word = None;
@@ -139,6 +150,38 @@ impl Brackets {
             self.drop_top(found);
         }
         self.pop();
+        true
+    }
+
+    /// Whether a bracket closes a list in which a `;` stands, which is told in place of its two halves.
+    fn closes_cut(
+        &mut self,
+        closer: u8,
+        (span, text): (Span, &str),
+        clean: &mut [u8],
+        found: &mut Vec<Diagnostic>,
+    ) -> bool {
+        if self.open.last().is_some_and(|frame| frame.opener != b'{') {
+            return false;
+        }
+        let Some(mut cut) = self.cut.take() else { return false };
+        let first = cut.semicolons[0];
+        let rest = &text[first.start as usize..span.start as usize];
+        if rest.contains(['\n', '=']) || cut.openers.pop() != Some(closes(closer)) {
+            return false;
+        }
+        for semicolon in &cut.semicolons {
+            clean[semicolon.start as usize] = b',';
+        }
+        if !cut.is_told {
+            found.truncate(cut.found);
+            let finding = Diagnostic::new(Code::Unexpected, first, "`;` ends a statement, and parts no elements");
+            report(
+                found,
+                finding.help("a vector is a list, `(a, b)`, a matrix a list of its rows, `((a, b), (c, d))`"),
+            );
+        }
+        self.cut = (!cut.openers.is_empty()).then_some(Cut { is_told: true, ..cut });
         true
     }
 
@@ -175,11 +218,21 @@ impl Brackets {
         self.last.is_none_or(|last| matches!(text.as_bytes()[last.span.start as usize], b';' | b'{' | b'}'))
     }
 
-    fn punctuation(&mut self, byte: u8, found: &mut Vec<Diagnostic>) {
+    fn punctuation(&mut self, byte: u8, span: Span, found: &mut Vec<Diagnostic>) {
         let operand_before =
             self.last.is_some_and(|last| matches!(last.kind, TokenKind::Word | TokenKind::Number | TokenKind::Close));
         let nests = byte == b'^' || (byte == b'-' && !operand_before);
         if byte == b';' {
+            let open = self.open.iter().rev().map(|frame| frame.opener).take_while(|opener| *opener != b'{');
+            let mut openers: Vec<u8> = open.collect();
+            openers.reverse();
+            match &mut self.cut {
+                _ if !openers.is_empty() => {
+                    self.cut = Some(Cut { openers, semicolons: vec![span], found: found.len(), is_told: false });
+                }
+                Some(cut) => cut.semicolons.push(span),
+                None => {}
+            }
             self.drop_parentheses(found);
             self.first_word = None;
             self.depth -= std::mem::take(self.open.last_mut().map_or(&mut self.outer_ifs, |frame| &mut frame.ifs));
@@ -220,6 +273,15 @@ impl Brackets {
             let help = "give the inner parts names of their own with `let`";
             report(found, Diagnostic::new(Code::TooDeep, span, message).help(help));
         }
+    }
+}
+
+/// What a bracket closes.
+fn closes(closer: u8) -> u8 {
+    match closer {
+        b')' => b'(',
+        b']' => b'[',
+        _ => b'{',
     }
 }
 
