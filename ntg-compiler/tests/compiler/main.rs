@@ -10,6 +10,7 @@ mod data;
 mod format;
 mod libraries;
 mod mistakes;
+mod model_ambiguities;
 mod model_conditions;
 mod model_limits;
 mod model_meaning;

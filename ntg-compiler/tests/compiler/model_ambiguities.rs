@@ -1,9 +1,7 @@
 //! Texts that could be read in two ways, each beside a text that can be read in one alone: both are the same problem,
 //! the same structure and the same kernels. Places and the texts of the spec are left out.
 
-mod model_support;
-
-use model_support::{Files, program};
+use crate::model_support::{Files, program};
 use ntg_compiler::source::Source;
 
 /// Declarations of the problem around, with words of the language as names where they may be names.
