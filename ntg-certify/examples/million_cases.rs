@@ -10,20 +10,21 @@ fn main() -> std::process::ExitCode {
     let (count, seed) = (arguments.next().unwrap_or(1_000_000), arguments.next().unwrap_or(1));
     let (mut random, mut reference) = (fastrand::Rng::with_seed(seed), cases::Reference::new());
     let mut escaped = 0_u64;
-    let mut say = |found: Option<String>| {
-        if let Some(words) = found {
-            escaped += 1;
-            println!("{words}");
-        }
-    };
-    for _ in 0..count {
-        say(cases::arithmetic(&mut random));
+    for case in 1..=count {
+        let operation = cases::arithmetic(&mut random);
         // Half of the functions have one argument.
-        say(if random.bool() {
+        let function = if random.bool() {
             cases::elementary(&mut random, &mut reference)
         } else {
             cases::binary(&mut random, &mut reference)
-        });
+        };
+        for words in operation.into_iter().chain(function) {
+            escaped += 1;
+            println!("{words}");
+        }
+        if case.is_multiple_of(count.div_ceil(10)) {
+            eprintln!("{case} of {count} cases, {escaped} escaped");
+        }
     }
     let (units, name) = reference.worst;
     println!("{count} cases of operations and {count} of functions: {escaped} escaped");
