@@ -100,8 +100,11 @@ pub struct Options {
     pub tolerance: f64,
     /// Largest scaled violation of a constraint at a solution. Default 1e-8.
     pub constraint_tolerance: f64,
-    /// Most iterations of one method; of sequential quadratic programming most quadratic programs. Default 500.
+    /// Most iterations of one method. Default 500.
     pub max_iterations: usize,
+    /// Most quadratic programs of sequential quadratic programming, of which an iteration may need several. Default
+    /// unlimited.
+    pub max_subproblems: usize,
     /// Most wall-clock time, checked once an iteration. Default none.
     pub time_limit: Option<Duration>,
     /// Called once an iteration; may cancel. Default none.
@@ -127,6 +130,7 @@ impl Default for Options {
             tolerance: 1e-8,
             constraint_tolerance: 1e-8,
             max_iterations: 500,
+            max_subproblems: usize::MAX,
             time_limit: None,
             on_iteration: None,
             scaling: Scaling::Automatic,
@@ -145,6 +149,7 @@ impl fmt::Debug for Options {
             .field("tolerance", &self.tolerance)
             .field("constraint_tolerance", &self.constraint_tolerance)
             .field("max_iterations", &self.max_iterations)
+            .field("max_subproblems", &self.max_subproblems)
             .field("time_limit", &self.time_limit)
             .field("on_iteration", &self.on_iteration.as_ref().map(|_| "a function"))
             .field("scaling", &self.scaling)

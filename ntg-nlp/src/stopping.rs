@@ -21,8 +21,6 @@ pub(crate) struct Stage<'a> {
     /// The records of the iterations before.
     pub(crate) history: &'a [IterationRecord],
     pub(crate) iterations: usize,
-    /// What counts against the limit: iterations, or the quadratic programs of them, of which one may need several.
-    pub(crate) work: usize,
     pub(crate) begin: Instant,
     /// The scaled objective.
     pub(crate) objective: f64,
@@ -60,6 +58,6 @@ impl Stage<'_> {
         if options.time_limit.is_some_and(|limit| self.begin.elapsed() >= limit) {
             return Some(Status::TimeLimit);
         }
-        (self.work >= options.max_iterations).then_some(Status::IterationLimit)
+        (self.iterations >= options.max_iterations).then_some(Status::IterationLimit)
     }
 }

@@ -165,6 +165,7 @@ impl Settings {
             tolerance: self.tolerance,
             constraint_tolerance: self.constraint_tolerance,
             max_iterations: self.max_iterations,
+            max_subproblems: usize::MAX,
             time_limit: self.time_limit,
             on_iteration: self.on_iteration.clone(),
             scaling: self.scaling,

@@ -7,6 +7,8 @@ use num_rational::BigRational;
 
 /// Bits of the multi-precision reference.
 const BITS: usize = 192;
+/// Bits of a power's logarithm, whose exponent is at most 20 times 40.
+const POWER_BITS: usize = BITS + 32;
 const RM: RoundingMode = RoundingMode::ToEven;
 
 /// Numbers of all sizes that a trajectory has, with many special ones.
@@ -165,7 +167,10 @@ pub(crate) fn binary(random: &mut fastrand::Rng, reference: &mut Reference) -> O
     note(reference, "atan2", ntg_math::atan2(a, b), &angle);
     let mut found = vec![("atan2", el::atan2(x, y), angle), ("hypot", el::hypot(x, y), length)];
     if x.low() > 1e-3 && y.size() < 20.0 {
-        let power = p.pow(&q, BITS, RM, &mut reference.constants);
+        // Not by the library's own power, which never ends where the power has finitely many digits (4^0.5): it asks for
+        // more bits until it can round.
+        let cc = &mut reference.constants;
+        let power = p.ln(POWER_BITS, RM, cc).mul(&q, POWER_BITS, RM).exp(POWER_BITS, RM, cc);
         found.push(("pow", el::pow(x, y).values, power));
     }
     found

@@ -216,7 +216,7 @@ impl<N: Nlp> State<'_, N> {
         let Self { options, record, history, iterations, begin, x, .. } = self;
         let is_restoring = self.mode.restoration().is_some();
         let objective = if is_restoring { 0.0 } else { self.values[self.system.objective()] };
-        let (iterations, work) = (*iterations, *iterations);
-        Stage { options, record, history, iterations, work, begin: *begin, objective, x, is_restoring }.stops()
+        let iterations = *iterations;
+        Stage { options, record, history, iterations, begin: *begin, objective, x, is_restoring }.stops()
     }
 }

@@ -21,8 +21,9 @@ impl<N: Nlp> Run<'_, N> {
     pub(super) fn stops(&self) -> Option<Status> {
         let Self { options, record, history, iterations, qps, begin, x, .. } = self;
         let objective = self.program.objective;
-        let (iterations, work) = (*iterations, (*iterations).max(*qps));
-        Stage { options, record, history, iterations, work, begin: *begin, objective, is_restoring: false, x }.stops()
+        Stage { options, record, history, iterations: *iterations, begin: *begin, objective, is_restoring: false, x }
+            .stops()
+            .or_else(|| (*qps >= options.max_subproblems).then_some(Status::IterationLimit))
     }
 
     /// The status for an evaluation that failed last.

@@ -13,7 +13,7 @@ const ATTEMPT: usize = 500;
 const FURTHER: usize = 300;
 /// Most quadratic programs of an attempt by sequential quadratic programming, each of which costs as much as tens of
 /// iterations. A fit to the gallery from four starts: nine of the twelve solves that it rescues take fewer.
-const QUADRATIC: usize = 60;
+pub(super) const QUADRATIC: usize = 60;
 /// Most iterations of a start on coarser knots. A fit to the gallery: where it takes more, it does not help.
 const COARSE: usize = 150;
 
@@ -52,11 +52,6 @@ impl<'a> Budget<'a> {
     /// Settings of an attempt after a failed one; none where nothing is left.
     pub(super) fn further(&self) -> Option<Settings> {
         self.at_most(FURTHER)
-    }
-
-    /// Settings of an attempt by sequential quadratic programming; none where nothing is left.
-    pub(super) fn quadratic(&self) -> Option<Settings> {
-        self.at_most(QUADRATIC)
     }
 
     /// Settings of a start on coarser knots, which is solved roughly.

@@ -4,7 +4,7 @@
 //! interior point -> sizes anew -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
 //! ```
 
-use super::budget::{Budget, better};
+use super::budget::{Budget, QUADRATIC, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
 use crate::guess::{Guess, start};
@@ -44,13 +44,14 @@ impl Attempt {
 }
 
 impl Session {
-    /// Solves by the method of the settings; an automatic one makes further attempts where that fails. Iterations are those
-    /// of all attempts.
+    /// Solves by the method of the settings; an automatic one makes further attempts where that fails, unless the solution
+    /// only serves as a guess (a step of a continuation) and there seems to be none. Iterations are those of all attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
         nlp: &mut Transcription,
         task: Task<'_>,
         first: FirstPoint<'_>,
+        is_guess: bool,
         budget: &mut Budget<'_>,
     ) -> Result<Outcome, SetupError> {
         let Some(settings) = budget.attempt() else {
@@ -61,7 +62,8 @@ impl Session {
         budget.spend(outcome.iterations);
         if settings.method == Method::Auto {
             for attempt in ATTEMPTS {
-                if !attempt.follows(&outcome.status) {
+                let is_believed = is_guess && matches!(outcome.status, Status::Infeasible { .. });
+                if is_believed || !attempt.follows(&outcome.status) {
                     continue;
                 }
                 if let Some(next) = self.attempt(attempt, nlp, task, first.x, &outcome, budget)? {
@@ -115,8 +117,8 @@ impl Session {
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
             }
             Attempt::Sqp => {
-                let Some(settings) = budget.quadratic() else { return Ok(None) };
-                let options = ntg_nlp::Options { method: Method::Sqp, ..settings.solver_options() };
+                let max_subproblems = QUADRATIC;
+                let options = ntg_nlp::Options { method: Method::Sqp, max_subproblems, ..settings.solver_options() };
                 method::solve(nlp, x, &options)
             }
         };

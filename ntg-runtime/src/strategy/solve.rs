@@ -72,7 +72,7 @@ impl Session {
             }
             budget.set_settings(if is_last { settings } else { &rough });
             let first_point = FirstPoint { x: &first, from };
-            let mut outcome = self.solve_with_fallback(&mut nlp, task, first_point, &mut budget)?;
+            let mut outcome = self.solve_with_fallback(&mut nlp, task, first_point, !is_last, &mut budget)?;
             outcome.iterations = budget.spent() - spent;
             history.push(record(&nlp, step, &outcome, step_began));
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
