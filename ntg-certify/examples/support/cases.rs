@@ -9,6 +9,8 @@ use num_rational::BigRational;
 const BITS: usize = 192;
 /// Bits of a power's logarithm, whose exponent is at most 20 times 40.
 const POWER_BITS: usize = BITS + 32;
+/// Bits of a whole power, which is exact: 20 times 53.
+const WHOLE_BITS: usize = 1088;
 const RM: RoundingMode = RoundingMode::ToEven;
 
 /// Numbers of all sizes that a trajectory has, with many special ones.
@@ -146,6 +148,16 @@ pub(crate) fn elementary(random: &mut fastrand::Rng, reference: &mut Reference) 
     (!within(image(x), &value)).then(|| format!("{name}({at:e}) is not in {:?}; x = {x:?}", image(x)))
 }
 
+/// A number above 0 to a power below 20. Not by the library's own power, which never ends where the power has finitely
+/// many digits (4^0.5): it asks for more bits until it can round.
+fn power(p: &BigFloat, b: f64, c: &mut Consts) -> BigFloat {
+    if b.fract() != 0.0 {
+        return p.ln(POWER_BITS, RM, c).mul(&big(b), POWER_BITS, RM).exp(POWER_BITS, RM, c);
+    }
+    let whole = p.powi(b.abs() as usize, WHOLE_BITS, RM);
+    if b < 0.0 { big(1.0).div(&whole, WHOLE_BITS, RM) } else { whole }
+}
+
 /// Angles, hypotenuses and powers of random pairs; the description of what escaped.
 pub(crate) fn binary(random: &mut fastrand::Rng, reference: &mut Reference) -> Option<String> {
     let ((x, of_x), (y, of_y)) = (interval(random), interval(random));
@@ -167,10 +179,7 @@ pub(crate) fn binary(random: &mut fastrand::Rng, reference: &mut Reference) -> O
     note(reference, "atan2", ntg_math::atan2(a, b), &angle);
     let mut found = vec![("atan2", el::atan2(x, y), angle), ("hypot", el::hypot(x, y), length)];
     if x.low() > 1e-3 && y.size() < 20.0 {
-        // Not by the library's own power, which never ends where the power has finitely many digits (4^0.5): it asks for
-        // more bits until it can round.
-        let cc = &mut reference.constants;
-        let power = p.ln(POWER_BITS, RM, cc).mul(&q, POWER_BITS, RM).exp(POWER_BITS, RM, cc);
+        let power = power(&p, b, &mut reference.constants);
         found.push(("pow", el::pow(x, y).values, power));
     }
     found
