@@ -94,6 +94,28 @@ fn a_transfer_of_many_revolutions_is_not_crawled_through() {
     assert!(report.iterations <= 250, "{} iterations", report.iterations);
 }
 
+/// The slope of `norm(u)` is not finite at the guess, `u = 0`. From rest to rest in `T` at least energy each axis takes
+/// `12 d^2 / T^3`; here `d = 1`, `T = 4`.
+#[test]
+fn a_guess_at_which_a_norm_has_no_slope_is_left() {
+    let spec = Shipped::text(
+        "problem Push {
+            duration T = 4;
+            state r[2], v[2];
+            input u[2];
+            collocation gauss(points = 3, intervals = 20);
+            minimize integral(dot(u, u));
+            dynamics { der(r) == v;  der(v) == u; }
+            initial { r == 0;  v == 0; }
+            trajectory { norm(u) <= 1; }
+            final { r == (1, 1);  v == 0; }
+        }",
+    );
+    let report = spec.solve();
+    close(report.objective, 0.375, 1e-9);
+    assert_eq!(report.singular.len(), 1, "it is still told");
+}
+
 /// The first attempt ends acceptable; a further one solves it.
 #[test]
 fn terrain_after_an_acceptable_end() {

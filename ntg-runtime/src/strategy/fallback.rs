@@ -4,6 +4,7 @@
 //! interior point -> sizes anew -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
 //! ```
 
+use super::beside::beside;
 use super::budget::{Budget, QUADRATIC, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
@@ -44,7 +45,7 @@ impl Attempt {
 }
 
 impl Session {
-    /// Solves by the method of the settings; an automatic one makes further attempts where that fails, unless the solution
+    /// Solves by the method of the settings, from beside the first point where something is not finite there; an automatic one makes further attempts where that fails, unless the solution
     /// only serves as a guess (a step of a continuation) and there seems to be none. Iterations are those of all attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
@@ -60,13 +61,25 @@ impl Session {
         let spent = budget.spent();
         let mut outcome = self.solve_once(nlp, first, &settings);
         budget.spend(outcome.iterations);
+        let moved;
+        let mut x = first.x;
+        if let (Status::NotFinite { .. }, 0) = (&outcome.status, outcome.iterations) {
+            moved = beside(nlp, first.x);
+            nlp.set_scales(&moved, &settings)?;
+            let next = self.solve_once(nlp, FirstPoint { x: &moved, from: Start::Cold }, &settings);
+            budget.spend(next.iterations);
+            if !matches!((&next.status, next.iterations), (Status::NotFinite { .. }, 0)) {
+                outcome = next; // Else the guess itself has the reason that is told.
+                x = &moved;
+            }
+        }
         if settings.method == Method::Auto {
             for attempt in ATTEMPTS {
                 let is_believed = is_guess && matches!(outcome.status, Status::Infeasible { .. });
                 if is_believed || !attempt.follows(&outcome.status) {
                     continue;
                 }
-                if let Some(next) = self.attempt(attempt, nlp, task, first.x, &outcome, budget)? {
+                if let Some(next) = self.attempt(attempt, nlp, task, x, &outcome, budget)? {
                     outcome = better(outcome, next);
                 }
             }

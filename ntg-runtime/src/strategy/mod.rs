@@ -8,6 +8,7 @@
 //! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
 //! `coarse_start` finds starts on fewer knots, `fallback` is the sequence of attempts where a solve fails.
 
+mod beside;
 mod budget;
 mod coarse_start;
 mod continuation;
