@@ -74,8 +74,8 @@ impl<N: Nlp> State<'_, N> {
         searched
     }
 
-    /// Whether whole steps may lead anywhere: the step is Newton's own, not that of a matrix whose inertia was corrected, and the point
-    /// is no more infeasible than the first one, or than 1.
+    /// Whether whole steps may lead anywhere: the step is Newton's own, not that of a matrix whose inertia was corrected,
+    /// and the point is no more infeasible than the first one, or than 1.
     fn is_worth_watching(&self) -> bool {
         !self.is_tiny() && !self.record.is_corrected() && self.theta() <= self.filter.theta_max / LARGEST_THETA
     }

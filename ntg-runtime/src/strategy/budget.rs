@@ -12,7 +12,8 @@ const ATTEMPT: usize = 500;
 /// solve anything take fewer, and all of them have a turn within the default limit.
 const FURTHER: usize = 300;
 /// Most quadratic programs of an attempt by sequential quadratic programming, each of which costs as much as tens of
-/// iterations. A fit to the gallery from four starts: nine of the twelve solves that it rescues take fewer.
+/// iterations. A fit to the gallery from four starts: ten of the twelve solves that it rescues take fewer iterations
+/// than that.
 pub(super) const QUADRATIC: usize = 60;
 /// Most iterations of a start on coarser knots. A fit to the gallery: where it takes more, it does not help.
 const COARSE: usize = 150;

@@ -45,8 +45,9 @@ impl Attempt {
 }
 
 impl Session {
-    /// Solves by the method of the settings, from beside the first point where something is not finite there; an automatic one makes further attempts where that fails, unless the solution
-    /// only serves as a guess (a step of a continuation) and there seems to be none. Iterations are those of all attempts.
+    /// Solves by the method of the settings, from beside the first point where something is not finite there. An
+    /// automatic method makes further attempts where that fails, unless the solution only serves as a guess (a step of
+    /// a continuation) and there seems to be none. Iterations are those of all attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
         nlp: &mut Transcription,
