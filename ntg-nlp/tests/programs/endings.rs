@@ -136,6 +136,13 @@ fn limits_of_time_and_iterations_hold(method: Method) {
     assert_eq!((found.status, found.iterations, found.history.len()), (Status::IterationLimit, 2, 3));
 }
 
+#[test]
+fn a_limit_of_quadratic_programs_holds() {
+    let few = Options { max_subproblems: 3, ..options(Method::Sqp) };
+    let found = solve(&rosenbrock(), &[-1.2, 1.0], &few);
+    assert_eq!((found.status, found.qps), (Status::IterationLimit, 3));
+}
+
 fn the_same_program_gives_the_same_bits(method: Method) {
     let run = || solved_by(method, &rosenbrock(), &[-1.2, 1.0]);
     let (a, b) = (run(), run());
