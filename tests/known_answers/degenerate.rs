@@ -59,6 +59,34 @@ fn a_zone_that_is_far_away_changes_nothing() {
     assert!(report.iterations <= 40, "{} iterations", report.iterations);
 }
 
+/// A straight line through the middle of a disc is a saddle of the violation, which nothing leaves that keeps the symmetry.
+/// Shortest way: two tangents and a third of the half circle, 2 sqrt(3) + pi / 3.
+#[test]
+fn a_guess_through_the_middle_of_a_disc_leads_round_it() {
+    let shortest = 2.0 * 3.0_f64.sqrt() + std::f64::consts::FRAC_PI_3;
+    for intervals in [10, 20, 40] {
+        let spec = Shipped::text(&format!(
+            "problem RoundTheDisc {{
+                duration T in 1 .. 20;
+                output x, y: spline(order = 4, intervals = {intervals}, smoothness = 2);
+                minimize T;
+                initial {{ x == -2;  y == 0; }}
+                trajectory {{ der(x)^2 + der(y)^2 <= 1;  x^2 + y^2 >= 1; }}
+                final {{ x == 2;  y == 0; }}
+                guess {{ x = -2 + 4 * tau;  y = 0;  T = 5; }}
+            }}"
+        ));
+        close(spec.solve().objective, shortest, 1e-3);
+    }
+}
+
+/// A car that moves sideways, with a guess that goes straight there. Optimum: found from three perturbed guesses, by IPOPT
+/// from two of them.
+#[test]
+fn a_car_parks_sideways_from_a_straight_guess() {
+    close(Shipped::spec("gallery/unicycle_parking").solve().objective, 9.466_932_5, 1e-6);
+}
+
 /// `x == 150 [m] * sin(pi)` has a bound of 1.8e-14 m, which rounding alone misses by a third.
 #[test]
 fn a_bound_that_is_what_rounding_left_of_0_is_0() {

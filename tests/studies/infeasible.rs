@@ -6,12 +6,13 @@ use ntg::runtime::explain::{Conflict, Explanation, Near};
 use ntg::runtime::transcribe::{SetupError, Why};
 
 use crate::support::Shipped;
+use std::time::Duration;
 
-/// The conflict behind a problem without solution. The interior-point method alone ends sooner, so that
-/// most tests ask for it.
+/// The conflict behind a problem without solution, with time enough on any machine. The interior-point method alone ends
+/// sooner, so that most tests ask for it.
 #[track_caller]
 fn conflict(problem: &Shipped, method: Method) -> Conflict {
-    let settings = Settings { method, ..Settings::default() };
+    let settings = Settings { method, time_limit: Some(Duration::from_secs(600)), ..Settings::default() };
     let report = solve(problem.problem(), &settings).unwrap_or_else(|error| panic!("{error}"));
     assert!(!report.is_solved(), "{report}");
     let found = report.explain(problem.problem(), &settings).unwrap_or_else(|error| panic!("{error}"));
@@ -26,6 +27,28 @@ fn names(found: &Conflict) -> Vec<&str> {
     let mut names: Vec<&str> = found.parts.iter().map(|part| part.name.as_str()).collect();
     names.sort_unstable();
     names
+}
+
+/// The fifth derivative on 60 intervals is 60^5 times what the coefficients are, and its square is beyond the digits of the
+/// condensed matrix. The problem has a solution, and all points to which the method comes back meet all constraints.
+#[test]
+fn what_no_method_solves_is_not_called_infeasible_at_a_point_that_meets_everything() {
+    let spec = Shipped::text(
+        "problem CrackleLimit {
+            duration T in 1 .. 1000 [s];
+            output x [km]: spline(order = 6, intervals = 60, smoothness = 5);
+            collocation gauss(points = 1);
+            minimize T;
+            initial { x == 0;  der(x) == 0;  der(x, 2) == 0;  der(x, 3) == 0;  der(x, 4) == 0; }
+            trajectory { der(x, 5) in -1 .. 1 [m/s^5]; }
+            final { x == 1 [km];  der(x) == 0;  der(x, 2) == 0;  der(x, 3) == 0;  der(x, 4) == 0; }
+            guess { x = 1 [km] * tau;  T = 60 [s]; }
+        }",
+    );
+    let report = solve(spec.problem(), &Settings::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(!matches!(report.status, Status::Infeasible { .. }), "{report}");
+    // Bang-bang: T = (6144 x / limit)^(1/5).
+    assert!(report.violation.points > 1e-6 || report.objective > 6_144_000.0_f64.powf(0.2), "{report}");
 }
 
 #[test]

@@ -68,7 +68,9 @@ impl<N: Nlp> State<'_, N> {
         match status {
             Status::Infeasible { .. } => {
                 let rows = self.violations();
-                self.outcome(Status::Infeasible { rows })
+                // The nearest point may hold all rows where the last one did not.
+                let is_feasible = rows.is_empty();
+                self.outcome(if is_feasible { Status::StepTooSmall } else { Status::Infeasible { rows } })
             }
             status => self.outcome(status),
         }

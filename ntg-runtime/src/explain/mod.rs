@@ -50,7 +50,7 @@ const FRUITLESS: usize = 3;
 const ITERATIONS: usize = 100;
 /// The tolerance of the search: a minimum to that many digits says which constraints matter.
 const TOLERANCE: f64 = 1e-7;
-/// The search for a smaller conflict ends after that long.
+/// The search for a smaller conflict ends after that long, where the settings have no time limit.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Why a solve ended without a solution, as far as constraints are the reason.
@@ -148,8 +148,8 @@ impl Report {
     /// A solve that has ended for another reason than its constraints is no witness against them: where they can hold
     /// together near the guess there is no conflict then, whatever is found near the last point.
     ///
-    /// The search takes at most ten seconds, or what the solve has left of `Settings::time_limit` where that is shorter,
-    /// and `Settings::on_iteration` may cancel it.
+    /// The search takes at most what the solve has left of `Settings::time_limit`, or ten seconds where there is none, and
+    /// `Settings::on_iteration` may cancel it.
     ///
     /// # Errors
     /// [`Error`] if the problem cannot be set up.
@@ -164,7 +164,7 @@ impl Report {
             return Ok(None);
         }
         let spent = Duration::try_from_secs_f64(self.seconds).unwrap_or_default();
-        let left = settings.time_limit.map_or(PATIENCE, |limit| limit.saturating_sub(spent).min(PATIENCE));
+        let left = settings.time_limit.map_or(PATIENCE, |limit| limit.saturating_sub(spent));
         if left.is_zero() {
             return Ok(Some(Explanation::Unknown));
         }

@@ -72,8 +72,13 @@ impl<'a> Budget<'a> {
 /// order of 1000. A solution whose objective is higher than that is another, worse minimum.
 const UNCERTAIN: f64 = 1e-3;
 
+/// Where another attempt, which ran to its limit, violates less than this fraction, an end as infeasible says nothing about
+/// the problem. A choice.
+const MUCH_LESS: f64 = 0.5;
+
 /// The better of two outcomes of one program: a solution, an acceptable point, an end that no attempt can change, one that
-/// is known to be infeasible around its point, else less violation. Of equal ones the first.
+/// is known to be infeasible around its point unless the other one violates much less, else less violation. Of equal ones
+/// the first.
 pub(super) fn better(first: Outcome, second: Outcome) -> Outcome {
     let violation = |outcome: &Outcome| match outcome.x.iter().all(|x| x.is_finite()) {
         true => outcome.residuals.scaled.primal,
@@ -88,8 +93,65 @@ pub(super) fn better(first: Outcome, second: Outcome) -> Outcome {
     };
     let is_better = match (rank(&second), rank(&first)) {
         (0, 1) => second.objective <= first.objective + UNCERTAIN * first.objective.abs(),
+        (3, 4) => violation(&first) >= MUCH_LESS * violation(&second),
+        (4, 3) => violation(&second) < MUCH_LESS * violation(&first),
         (4, 4) => violation(&second) < violation(&first),
         (second, first) => second < first,
     };
     if is_better { second } else { first }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ntg_nlp::residuals::{Residual, Residuals};
+
+    fn outcome(status: Status, objective: f64, violation: f64) -> Outcome {
+        let residual = Residual { primal: violation, ..Residual::default() };
+        Outcome {
+            status,
+            x: vec![0.0],
+            row_multipliers: vec![],
+            bound_multipliers: vec![0.0],
+            row_factors: vec![],
+            objective,
+            residuals: Residuals { scaled: residual, unscaled: residual },
+            iterations: 1,
+            qps: 0,
+            history: vec![],
+            seconds: 0.0,
+        }
+    }
+
+    /// Which of two ends is the better one: 1 or 2.
+    fn better_of(first: (Status, f64, f64), second: (Status, f64, f64)) -> i32 {
+        let of = |(status, _, violation): (Status, f64, f64), objective| outcome(status, objective, violation);
+        let (one, two) = (first.1, second.1);
+        let found = better(of(first, one), of(second, two)).objective;
+        if found == one { 1 } else { 2 }
+    }
+
+    const INFEASIBLE: Status = Status::Infeasible { rows: vec![] };
+
+    #[test]
+    fn a_solution_replaces_an_acceptable_point_unless_it_is_a_worse_minimum() {
+        let acceptable = (Status::Acceptable, 10.0, 1e-7);
+        assert_eq!(better_of(acceptable.clone(), (Status::Solved, 9.0, 0.0)), 2);
+        assert_eq!(better_of(acceptable.clone(), (Status::Solved, 10.009, 0.0)), 2);
+        assert_eq!(better_of(acceptable.clone(), (Status::Solved, 10.02, 0.0)), 1);
+        assert_eq!(better_of((Status::Acceptable, -10.0, 1e-7), (Status::Solved, -9.98, 0.0)), 1);
+        assert_eq!(better_of(acceptable, (Status::Acceptable, 9.0, 0.0)), 1);
+    }
+
+    #[test]
+    fn what_violates_much_less_tells_that_infeasible_was_said_too_soon() {
+        let stuck = (INFEASIBLE, 1.0, 0.4);
+        assert_eq!(better_of(stuck.clone(), (Status::IterationLimit, 2.0, 0.1)), 2);
+        assert_eq!(better_of(stuck.clone(), (Status::IterationLimit, 2.0, 0.3)), 1);
+        assert_eq!(better_of((Status::IterationLimit, 2.0, 0.1), stuck.clone()), 1);
+        assert_eq!(better_of((Status::IterationLimit, 2.0, 0.3), stuck.clone()), 2);
+        assert_eq!(better_of(stuck.clone(), (INFEASIBLE, 2.0, 0.3)), 1);
+        assert_eq!(better_of(stuck.clone(), (Status::Solved, 2.0, 0.0)), 2);
+        assert_eq!(better_of(stuck, (Status::IterationLimit, 2.0, f64::NAN)), 1);
+    }
 }

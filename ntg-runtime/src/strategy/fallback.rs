@@ -1,10 +1,11 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
 //!
 //! ```text
-//! interior point -> sizes anew -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
+//! interior point -> sizes anew -> from beside the guess -> restoring by squares -> augmented Lagrangian -> from fewer knots
+//!                -> sequential quadratic programming
 //! ```
 
-use super::beside::beside;
+use super::beside::beside_infeasible;
 use super::budget::{Budget, QUADRATIC, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
@@ -14,8 +15,14 @@ use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Outcome, Start, Status, method};
 
 /// All of them, in their order.
-const ATTEMPTS: [Attempt; 5] =
-    [Attempt::SizesAnew, Attempt::Squares, Attempt::AugmentedLagrangian, Attempt::FewerKnots, Attempt::Sqp];
+const ATTEMPTS: [Attempt; 6] = [
+    Attempt::SizesAnew,
+    Attempt::Beside,
+    Attempt::Squares,
+    Attempt::AugmentedLagrangian,
+    Attempt::FewerKnots,
+    Attempt::Sqp,
+];
 
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +30,9 @@ enum Attempt {
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
     /// what it guesses.
     SizesAnew,
+    /// From beside the first point: near a symmetric guess violations may have a local minimum, or a saddle that nothing
+    /// leaves.
+    Beside,
     /// From the first point, with shifts of the diagonal, and with restorations that reduce the squares of violations.
     Squares,
     /// From the first point, by the augmented Lagrangian.
@@ -35,11 +45,11 @@ enum Attempt {
 
 impl Attempt {
     /// Whether it follows an outcome of this status: any that is not final. After an acceptable point only what has been
-    /// seen to solve the problem then.
-    fn follows(self, status: &Status) -> bool {
+    /// seen to solve the problem then. From beside the guess only where an attempt has ended as infeasible.
+    fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
         match status {
             Status::Acceptable => matches!(self, Self::SizesAnew | Self::Squares),
-            _ => !status.is_final(),
+            _ => !status.is_final() && (seems_infeasible || self != Self::Beside),
         }
     }
 }
@@ -60,27 +70,18 @@ impl Session {
             return Ok(Outcome::failed(nlp, first.x, Status::IterationLimit));
         };
         let spent = budget.spent();
-        let mut outcome = self.solve_once(nlp, first, &settings);
+        let (mut outcome, moved) = self.begin(nlp, first, &settings)?;
         budget.spend(outcome.iterations);
-        let moved;
-        let mut x = first.x;
-        if let (Status::NotFinite { .. }, 0) = (&outcome.status, outcome.iterations) {
-            moved = beside(nlp, first.x);
-            nlp.set_scales(&moved, &settings)?;
-            let next = self.solve_once(nlp, FirstPoint { x: &moved, from: Start::Cold }, &settings);
-            budget.spend(next.iterations);
-            if !matches!((&next.status, next.iterations), (Status::NotFinite { .. }, 0)) {
-                outcome = next; // Else the guess itself has the reason that is told.
-                x = &moved;
-            }
-        }
+        let x = moved.as_deref().unwrap_or(first.x);
         if settings.method == Method::Auto {
+            let mut seems_infeasible = is_infeasible(&outcome);
             for attempt in ATTEMPTS {
-                let is_believed = is_guess && matches!(outcome.status, Status::Infeasible { .. });
-                if is_believed || !attempt.follows(&outcome.status) {
+                let is_believed = is_guess && is_infeasible(&outcome);
+                if is_believed || !attempt.follows(&outcome.status, seems_infeasible) {
                     continue;
                 }
                 if let Some(next) = self.attempt(attempt, nlp, task, x, &outcome, budget)? {
+                    seems_infeasible |= is_infeasible(&next);
                     outcome = better(outcome, next);
                 }
             }
@@ -109,6 +110,10 @@ impl Session {
                 let next = self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings);
                 nlp.set_scales(x, &settings)?;
                 next
+            }
+            Attempt::Beside => {
+                let x = beside_infeasible(nlp, x);
+                self.solve_once(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings)
             }
             Attempt::Squares => {
                 let inertia_correction = InertiaCorrection::ByShift;
@@ -139,4 +144,8 @@ impl Session {
         budget.spend(next.iterations);
         Ok(Some(next))
     }
+}
+
+fn is_infeasible(outcome: &Outcome) -> bool {
+    matches!(outcome.status, Status::Infeasible { .. })
 }

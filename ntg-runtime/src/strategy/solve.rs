@@ -130,7 +130,7 @@ impl Session {
             let rest = Settings { max_iterations: left, ..settings.after(began.elapsed()) };
             let (x, _) = self.first_point(&nlp, None)?;
             nlp.set_scales(&x, settings)?;
-            let second = self.solve_once(&nlp, FirstPoint { x: &x, from: Start::Cold }, &rest);
+            let (second, _) = self.begin(&mut nlp, FirstPoint { x: &x, from: Start::Cold }, &rest)?;
             let iterations = spent + second.iterations;
             outcome = Outcome { iterations, ..better(outcome, second) };
         }
