@@ -2,7 +2,7 @@
 //! (docs/maths.md, equation 11.4 and section 11.7).
 
 use super::state::State;
-use super::step::LEAST_PROXIMAL;
+use super::step::{LEAST_PROXIMAL, LEFT};
 use crate::contract::Nlp;
 use crate::kkt::Curvature;
 
@@ -31,7 +31,7 @@ pub(super) struct Estimate {
 }
 
 /// The largest absolute value.
-fn largest(of: &[f64]) -> f64 {
+pub(super) fn largest(of: &[f64]) -> f64 {
     of.iter().fold(0.0_f64, |most, y| most.max(y.abs()))
 }
 
@@ -39,7 +39,6 @@ impl<N: Nlp> State<'_, N> {
     /// The method of multipliers for the equalities, equation (11.4): the residual that the proximal term leaves
     /// is removed with the same factors.
     pub(super) fn refine_equalities(&mut self) {
-        let n = self.x.len() - 1;
         self.step.left = 0.0;
         if self.slacks.equalities.is_empty() {
             return;
@@ -51,18 +50,30 @@ impl<N: Nlp> State<'_, N> {
             let left = self.update_multiplier_steps();
             self.step.left = if left <= ROUNDING { 0.0 } else { left / size };
             if round == REFINEMENTS || left <= REFINED * size || left > 0.5 * before || left <= ROUNDING {
-                return;
+                break;
             }
             before = left;
-            self.split_border();
-            self.system.transposed_product_of_equalities(&self.step.right, &mut self.step.correction_x);
-            self.system.solve(&mut self.step.correction_x[..n], &mut self.step.border);
-            self.step.correction_x[n] = 0.0;
-            self.system.product_of_equalities(&self.step.correction_x, &mut self.step.correction_jacobian_x);
+            self.solve_for_correction();
             let step = &mut self.step;
             step.x.iter_mut().zip(&step.correction_x).for_each(|(x, more)| *x += more);
             step.jacobian_x.iter_mut().zip(&step.correction_jacobian_x).for_each(|(change, more)| *change += more);
         }
+        let is_stalled = self.step.left > LEFT && self.proximal <= LEAST_PROXIMAL;
+        if is_stalled && self.mode.relaxed().is_none() {
+            let left = self.reduce_by_conjugate_residuals((REFINED * size).max(ROUNDING), LEFT * size);
+            self.step.left = left.map_or(self.step.left, |left| if left <= ROUNDING { 0.0 } else { left / size });
+        }
+    }
+
+    /// The correction of the variables that the weights `step.right` of the equalities make, with the present factors, and
+    /// the change of the equalities along it.
+    pub(super) fn solve_for_correction(&mut self) {
+        let n = self.x.len() - 1;
+        self.split_border();
+        self.system.transposed_product_of_equalities(&self.step.right, &mut self.step.correction_x);
+        self.system.solve(&mut self.step.correction_x[..n], &mut self.step.border);
+        self.step.correction_x[n] = 0.0;
+        self.system.product_of_equalities(&self.step.correction_x, &mut self.step.correction_jacobian_x);
     }
 
     /// Updates the steps of the equalities' multipliers from the residuals that are left, writes the right-hand side of

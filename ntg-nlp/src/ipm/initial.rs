@@ -1,6 +1,7 @@
 //! The first iterate (docs/maths.md, sections 11.4, 11.7 and 11.8; line 1 of Algorithm 11).
 
 use super::best::Point;
+use super::conjugate_residuals::ConjugateResiduals;
 use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
 use super::inertia::Corrections;
@@ -77,6 +78,7 @@ impl<'a, N: Nlp> State<'a, N> {
             before_step: Point::new(&x, &slacks),
             watchdog: Watchdog::new(Point::new(&x, &slacks)),
             saved_step: step.clone(),
+            conjugate_residuals: ConjugateResiduals::new(n + 1, slacks.equalities.len()),
             mode: Mode::Filter,
             restorations: 0,
             short_steps: 0,

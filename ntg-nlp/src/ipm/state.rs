@@ -1,6 +1,7 @@
 //! The state of a solve: the iterate, its function values, derivatives and residuals (docs/maths.md, section 11).
 
 use super::best::Point;
+use super::conjugate_residuals::ConjugateResiduals;
 use super::equalities::Estimate;
 use super::filter::Filter;
 use super::inertia::Corrections;
@@ -68,6 +69,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) step: Step,
     /// The step before a second-order correction, to which a failed correction returns.
     pub(super) saved_step: Step,
+    /// Memory for the equalities where their refinement stalls.
+    pub(super) conjugate_residuals: ConjugateResiduals,
     pub(super) trial: Trial,
     pub(super) record: IterationRecord,
     pub(super) history: Vec<IterationRecord>,

@@ -25,7 +25,7 @@ pub(super) const LEAST_PROXIMAL: f64 = 1e-10;
 /// refinement leaves more than this fraction of the equalities' residuals. Fits, as above.
 const PROXIMAL_RISE: f64 = 10.0;
 const PROXIMAL_FALL: f64 = 100.0;
-const LEFT: f64 = 1e-4;
+pub(super) const LEFT: f64 = 1e-4;
 /// The weight of a function without bounds: none, but a number that may divide.
 const WEIGHTLESS: f64 = 1e-30;
 /// A step, and what is needed to compute it.

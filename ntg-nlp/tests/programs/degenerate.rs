@@ -16,6 +16,7 @@ of_all_methods! {
     circles_that_touch
     equalities_that_say_the_same
     equalities_of_which_one_is_a_combination
+    equalities_that_say_nearly_the_same
     inequalities_that_say_the_same_at_a_vertex
     complementarity_with_a_strong_solution
     complementarity_with_a_choice
@@ -151,6 +152,20 @@ fn equalities_of_which_one_is_a_combination(method: Method) {
     // Along the circle x = cos t, y = sin t, z = 2 - y.
     let [x, y, z] = [found.x[0], found.x[1], found.x[2]];
     assert!((-(x - 2.0) * y - z * x).abs() < 1e-6, "{:?}", found.x);
+}
+
+/// Of each pair of rows the difference is a thousandth to a millionth of either: what it says is 1e-6 to 1e-12 of the
+/// squares of the rows, far below any term that keeps the matrix regular.
+fn equalities_that_say_nearly_the_same(method: Method) {
+    const DIFFERENCES: [f64; 4] = [1e-3, 1e-4, 1e-5, 1e-6];
+    let rows: Vec<(f64, f64)> = DIFFERENCES.iter().flat_map(|d| [(1.0, 1.0), (1.0 + d, 1.0 + d)]).collect();
+    let p = dense(&[FREE; 8], &rows, |x| {
+        let squares = x.iter().skip(1).fold(x[0].powi(2), |sum, x| sum + x.powi(2));
+        let pairs = x.chunks(2).zip(DIFFERENCES).flat_map(|(pair, d)| [pair[0], pair[0] + pair[1] * d]);
+        std::iter::once(squares).chain(pairs).collect()
+    });
+    let found = solved(method, &p, &[0.0; 8], &[1.0; 8], 1e-5);
+    assert!(found.iterations <= 20, "{} iterations", found.iterations);
 }
 
 fn inequalities_that_say_the_same_at_a_vertex(method: Method) {
