@@ -37,6 +37,8 @@ pub(super) struct System {
     pub(super) inputs: Vec<usize>,
     /// How many components the state has.
     pub(super) size: usize,
+    /// The subjects that are the equations.
+    pub(super) subjects: Vec<usize>,
     /// Functions that are to be equal to numbers, and the flats that each needs.
     equations: Vec<(usize, Interval, Vec<usize>)>,
     roles: BTreeMap<usize, Role>,
@@ -50,10 +52,13 @@ pub(super) struct Values<T> {
     pub(super) tau: T,
 }
 
-/// The equalities along a phase that could be equations of motion: functions and the numbers that they equal.
-fn equalities(machine: &Machine<'_>, phase: usize) -> Result<Vec<(usize, Interval)>, String> {
+/// An equality: which subject it is, its function, and the number that this equals.
+type Equality = (usize, usize, Interval);
+
+/// The equalities along a phase that could be equations of motion.
+fn equalities(machine: &Machine<'_>, phase: usize) -> Result<Vec<Equality>, String> {
     let mut found = vec![];
-    for subject in &machine.statement.subjects {
+    for (number, subject) in machine.statement.subjects.iter().enumerate() {
         let (Kind::Constraint(_), Quantity::Path(function, own, cells)) = (subject.kind, &subject.quantity) else {
             continue;
         };
@@ -72,7 +77,7 @@ fn equalities(machine: &Machine<'_>, phase: usize) -> Result<Vec<(usize, Interva
         if !value.total {
             return Err(format!("the sides of `{}` have no bounds", subject.name));
         }
-        found.push((*function, value.c[0]));
+        found.push((number, *function, value.c[0]));
     }
     Ok(found)
 }
@@ -82,8 +87,8 @@ impl System {
     pub(super) fn of(machine: &Machine<'_>, phase: usize) -> Result<Option<Self>, String> {
         let statement = machine.statement;
         let all = equalities(machine, phase)?;
-        let needs: Vec<Vec<usize>> = all.iter().map(|(function, _)| machine.needs(*function)).collect();
-        if let Some(integral) = all.iter().find_map(|(function, _)| unbounded_integral(machine, *function)) {
+        let needs: Vec<Vec<usize>> = all.iter().map(|(_, function, _)| machine.needs(*function)).collect();
+        if let Some(integral) = all.iter().find_map(|(_, function, _)| unbounded_integral(machine, *function)) {
             return Err(format!("they depend on integral {integral}, which has no bounds"));
         }
         let mut orders: BTreeMap<usize, usize> = BTreeMap::new();
@@ -112,15 +117,16 @@ impl System {
             .filter(|spline| orders[spline] == 0)
             .collect();
         let algebraic = if given.len() == others.len() { given } else { BTreeSet::new() };
-        let chosen = dynamic.iter().chain(others.iter().filter(|_| !algebraic.is_empty()));
-        let equations = chosen.map(|e| (all[*e].0, all[*e].1, needs[*e].clone())).collect();
+        let chosen: Vec<usize> = if algebraic.is_empty() { dynamic } else { [dynamic, others].concat() };
+        let equations = chosen.iter().map(|e| (all[*e].1, all[*e].2, needs[*e].clone())).collect();
+        let subjects = chosen.iter().map(|e| all[*e].0).collect();
         let splines = states.into_iter().chain(algebraic).map(|spline| (spline, orders[&spline])).collect();
-        Ok(Some(Self::with(statement, equations, splines)))
+        Ok(Some(Self::with(statement, (subjects, equations), splines)))
     }
 
     fn with(
         statement: &Statement,
-        equations: Vec<(usize, Interval, Vec<usize>)>,
+        (subjects, equations): (Vec<usize>, Vec<(usize, Interval, Vec<usize>)>),
         splines: Vec<(usize, usize)>,
     ) -> Self {
         let (mut unknowns, mut size): (Vec<Unknown>, usize) = (vec![], 0);
@@ -141,7 +147,7 @@ impl System {
             }
             roles.entry(*flat).or_insert(role);
         }
-        Self { unknowns, inputs, size, equations, roles }
+        Self { unknowns, inputs, size, subjects, equations, roles }
     }
 
     /// For each component the unknown and the derivative that it is.
