@@ -39,8 +39,7 @@ pub(super) struct System {
     pub(super) size: usize,
     /// The subjects that are the equations.
     pub(super) subjects: Vec<usize>,
-    /// Functions that are to be equal to numbers, and the flats that each needs.
-    equations: Vec<(usize, Interval, Vec<usize>)>,
+    equations: Vec<Equation>,
     roles: BTreeMap<usize, Role>,
 }
 
@@ -51,6 +50,9 @@ pub(super) struct Values<T> {
     pub(super) inputs: Vec<T>,
     pub(super) tau: T,
 }
+
+/// A function that is to be equal to a number, and the flats that it needs.
+type Equation = (usize, Interval, Vec<usize>);
 
 /// An equality: which subject it is, its function, and the number that this equals.
 type Equality = (usize, usize, Interval);
@@ -126,7 +128,7 @@ impl System {
 
     fn with(
         statement: &Statement,
-        (subjects, equations): (Vec<usize>, Vec<(usize, Interval, Vec<usize>)>),
+        (subjects, equations): (Vec<usize>, Vec<Equation>),
         splines: Vec<(usize, usize)>,
     ) -> Self {
         let (mut unknowns, mut size): (Vec<Unknown>, usize) = (vec![], 0);
@@ -170,9 +172,7 @@ impl System {
     /// By how much each equation is missed.
     pub(super) fn residuals(&self, machine: &Machine<'_>, values: &Values<Jet>) -> Vec<Jet> {
         let here = self.here(machine, values);
-        let one = |(function, bound, _): &(usize, Interval, Vec<usize>)| {
-            machine.evaluate(*function, &here) - Jet::constant(*bound)
-        };
+        let one = |(function, bound, _): &Equation| machine.evaluate(*function, &here) - Jet::constant(*bound);
         self.equations.iter().map(one).collect()
     }
 
