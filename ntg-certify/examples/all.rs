@@ -31,7 +31,7 @@ fn main() {
             }
         };
         let statement = ntg_certify::statement(&compiled.program, &report.solution, &text).expect("a solution");
-        let certificate = ntg_certify::certify(statement, &Options::default());
+        let mut certificate = ntg_certify::certify(statement, &Options::default());
         let count = |test: fn(&Verdict) -> bool| certificate.findings.iter().filter(|f| test(&f.verdict)).count();
         let boxes: usize = certificate.findings.iter().flat_map(|f| &f.covers).map(Vec::len).sum();
         println!(
@@ -45,6 +45,11 @@ fn main() {
             count(|v| matches!(v, Verdict::Undecided(_))),
             count(|v| matches!(v, Verdict::Within(_))),
         );
+        if std::env::var("TUBE").is_ok() {
+            let tube = ntg_certify::tube(&certificate, &report.solution);
+            print!("{tube}");
+            certificate.tubes = tube.evidence;
+        }
         let text = ntg_certify::write::text(&certificate);
         let began = std::time::Instant::now();
         let checked = ntg_check::verify(&text);
@@ -52,9 +57,6 @@ fn main() {
         if let Ok(folder) = std::env::var("CERTIFICATES") {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             std::fs::write(std::path::Path::new(&folder).join(format!("{name}.cert")), &text).expect("a folder");
-        }
-        if std::env::var("TUBE").is_ok() {
-            print!("{}", ntg_certify::tube(&certificate, &report.solution));
         }
         if std::env::var("GUARANTEE").is_ok() {
             let task = ntg_certify::guarantee::Task { program: &compiled.program, problem: &problem, spec: &text };
@@ -70,7 +72,7 @@ fn main() {
                         found.rounds.len(),
                         all / seconds,
                         found.cost(),
-                        checked.map(|c| c.proved),
+                        checked.map(|checked| checked.get("proved").copied().unwrap_or(0)),
                     );
                     if found.ending != ntg_certify::guarantee::Ending::Proved {
                         println!("  {:?}\n  {:?}", found.rounds, found.changes);

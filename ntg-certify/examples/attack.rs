@@ -1,7 +1,9 @@
-//! 1000 planted violations of 1e-9, 1000 false certificates, and how time grows with intervals.
+//! 1000 planted violations of 1e-9, 1000 false certificates, the same of tubes, and how time grows with intervals.
 //!
 //! `cargo run --release -p ntg-certify --example attack [COUNT]`
 
+#[path = "support/pendulum.rs"]
+mod pendulum;
 #[path = "support/planted.rs"]
 mod planted;
 
@@ -32,6 +34,7 @@ fn main() {
         }
     }
     println!("{count} false certificates with sound digests {tried:?}: {accepted} accepted");
+    tubes(count);
     for intervals in [16, 64, 256, 1024] {
         let planted = Planted::new(&mut fastrand::Rng::with_seed(4), intervals);
         let began = Instant::now();
@@ -46,4 +49,35 @@ fn main() {
             began.elapsed().as_secs_f64(),
         );
     }
+}
+
+/// False claims about the tube of a pendulum, and scratches in what proves it.
+fn tubes(count: usize) {
+    let (sound, mut random) = (pendulum::pendulum(), fastrand::Rng::with_seed(12));
+    let began = Instant::now();
+    let text = write::text(&sound);
+    let checked = ntg_check::verify(&text);
+    println!(
+        "the tube of a pendulum: {} bytes, checked in {:.3} s: {checked:?}",
+        text.len(),
+        began.elapsed().as_secs_f64()
+    );
+    let accepts = |of: &ntg_certify::Certificate| usize::from(ntg_check::verify_claims(&write::body(of)).is_ok());
+    let violated: usize = (0..count).map(|_| accepts(&pendulum::violated(&mut random, &sound, 1e-9))).sum();
+    println!("{count} tubes that are missed by 1e-9: {violated} accepted");
+    let (mut tried, mut accepted, mut true_ones): (BTreeMap<&str, usize>, usize, usize) = (BTreeMap::new(), 0, 0);
+    while tried.values().sum::<usize>() < count {
+        let (spoilt, how) = pendulum::spoilt(&mut random, &sound);
+        if pendulum::missed(&spoilt) > 1e-10 {
+            accepted += accepts(&spoilt);
+            *tried.entry(how).or_insert(0) += 1;
+        } else {
+            true_ones += 1;
+        }
+    }
+    println!(
+        "{count} tubes of something else {tried:?}: {accepted} accepted; {true_ones} that happened to be true are left out"
+    );
+    let scratched = (0..count).filter(|_| ntg_check::verify_claims(&pendulum::scratched(&mut random, &sound)).is_ok());
+    println!("{count} scratches in the proof, with the same true claims: {} accepted", scratched.count());
 }

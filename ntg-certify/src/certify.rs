@@ -4,6 +4,7 @@ use crate::evaluate::Machine;
 use crate::interval::Interval;
 use crate::prove::{Goal, Leaf, Options, Required, Search, Witness, integral, search};
 use crate::statement::{Kind, Over, Quantity, Statement, Subject, Summand};
+use crate::tube::Evidence;
 
 /// What is known of the required bounds of a subject.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +53,8 @@ pub struct Certificate {
     pub integrals: Vec<(Interval, Vec<Vec<Leaf>>)>,
     /// One for each subject.
     pub findings: Vec<Finding>,
+    /// What proves tubes, where they were asked for.
+    pub tubes: Vec<Evidence>,
     /// Wall-clock seconds.
     pub seconds: f64,
 }
@@ -80,7 +83,7 @@ pub fn constraints(statement: Statement, options: &Options) -> Certificate {
     let findings = each.collect();
     let seconds = began.elapsed().as_secs_f64();
     drop(machine);
-    Certificate { statement, integrals, findings, seconds }
+    Certificate { statement, integrals, findings, tubes: vec![], seconds }
 }
 
 impl Finding {
@@ -231,7 +234,7 @@ fn residual(values: Interval, bound: Option<Interval>, unit: f64) -> f64 {
 const ROUNDINGS: f64 = 1e-15;
 
 /// Widened by some roundings: an arithmetic of more digits finds its enclosure inside.
-fn outward(values: Interval) -> Interval {
+pub(crate) fn outward(values: Interval) -> Interval {
     let slack = ROUNDINGS * values.size();
     Interval::new(values.low() - slack - f64::MIN_POSITIVE, values.high() + slack + f64::MIN_POSITIVE)
 }

@@ -133,7 +133,7 @@ pub(crate) fn cell(statement: &Statement, flat: Flat, cell: usize) -> Piece {
 }
 
 /// The nodes that one result needs, with operands renumbered; the result is the last.
-fn line(graph: &Graph, row: usize) -> Vec<Node> {
+pub(crate) fn line(graph: &Graph, row: usize) -> Vec<Node> {
     let root = graph.rows[row];
     let mut needed = vec![false; root + 1];
     needed[root] = true;

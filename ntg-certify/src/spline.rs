@@ -103,6 +103,11 @@ impl Piece {
         Self { coefficients }
     }
 
+    /// The middles of the coefficients.
+    pub(crate) fn middles(&self) -> impl Iterator<Item = f64> {
+        self.coefficients.iter().map(|c| c.middle())
+    }
+
     /// About the value at a part of the box.
     pub(crate) fn near(&self, part: f64) -> f64 {
         let mut row: Vec<f64> = self.coefficients.iter().map(|c| c.middle()).collect();

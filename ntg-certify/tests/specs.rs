@@ -72,7 +72,7 @@ fn bounds_enclose_what_the_runtime_computes_and_the_checker_agrees() {
         }
         let checked = ntg_check::verify(&write::text(&certificate));
         let refuted = certificate.findings.iter().filter(|f| matches!(f.verdict, Verdict::Refuted(..))).count();
-        assert_eq!(checked.map(|checked| checked.refuted), Ok(refuted), "{spec}");
+        assert_eq!(checked.map(|checked| checked.get("refuted").copied().unwrap_or(0)), Ok(refuted), "{spec}");
     }
 }
 
@@ -91,7 +91,7 @@ fn what_fails_between_the_points_is_mended_at_little_cost() {
             assert!(own.between.as_ref().is_none_or(|worst| worst.violation == 0.0), "{spec}: {}", own.name);
         }
         let checked = ntg_check::verify(&write::text(&found.certificate)).expect("a sound certificate");
-        assert_eq!((checked.refuted, checked.undecided), (0, 0), "{spec}");
+        assert!(!checked.contains_key("refuted") && !checked.contains_key("undecided"), "{spec}: {checked:?}");
     }
 }
 

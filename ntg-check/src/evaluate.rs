@@ -2,17 +2,14 @@
 
 use crate::interval::Interval;
 use crate::jet::{Jet, binomial};
-use crate::read::{Axis, Certificate, Function, Input, Node, Table};
+use crate::read::{Axis, Certificate, Flat, Input, Node, Table};
 use crate::real::Real;
 
 /// A polynomial by its Bernstein coefficients on a box.
 pub(crate) type Piece = Vec<Interval>;
 
-/// Jets of the flats at one place, and of scaled time.
-pub(crate) struct Here<'a> {
-    pub(crate) flats: &'a dyn Fn(usize) -> Jet,
-    pub(crate) tau: Jet,
-}
+/// Jets of the flats at one place, scaled time among them.
+pub(crate) type Here<'a> = dyn Fn(Flat) -> Jet + 'a;
 
 fn difference(a: Real, b: Real) -> Interval {
     Interval::point(a) - Interval::point(b)
@@ -20,7 +17,7 @@ fn difference(a: Real, b: Real) -> Interval {
 
 /// Derivative `d` of a spline between two neighbouring cuts: differences of coefficients, then de Boor's scheme with
 /// the ends of the cell as arguments.
-pub(crate) fn piece(certificate: &Certificate, (spline, d): (usize, usize), cell: usize) -> Result<Piece, String> {
+pub(crate) fn piece(certificate: &Certificate, (spline, d): Flat, cell: usize) -> Result<Piece, String> {
     let spline = &certificate.splines[spline];
     let cuts = &certificate.phases[spline.phase];
     let (low, high, k) = (cuts[cell], cuts[cell + 1], spline.order);
@@ -81,116 +78,98 @@ pub(crate) fn jets(piece: &Piece) -> (Jet, Jet) {
     (Jet::of(&middle), Jet::of(&all))
 }
 
-/// A function at one place; `integrals` are those that are known so far.
-pub(crate) fn evaluate(certificate: &Certificate, function: &Function, integrals: &[Interval], here: &Here<'_>) -> Jet {
-    let nodes = &certificate.graphs[function.graph].nodes[..=function.root];
-    let mut needed = vec![false; nodes.len()];
-    needed[function.root] = true;
-    for k in (0..nodes.len()).rev().filter(|k| *k <= function.root) {
-        if needed[k] {
-            operands(&nodes[k]).into_iter().for_each(|operand| needed[operand] = true);
+/// The flats that functions need at the time of evaluation.
+pub(crate) fn needs(certificate: &Certificate, functions: &[usize]) -> Vec<Flat> {
+    let (mut found, mut open) = (vec![], functions.to_vec());
+    while let Some(function) = open.pop() {
+        for input in &certificate.functions[function].1 {
+            match input {
+                Input::Flat(flat, None) if !found.contains(flat) => found.push(*flat),
+                Input::Join(_, members) => open.extend(members),
+                _ => {}
+            }
         }
     }
-    let nothing = Jet::rough((Interval::ENTIRE, false));
-    let mut values = vec![nothing; nodes.len()];
-    for (k, node) in nodes.iter().enumerate().filter(|(k, _)| needed[*k]) {
-        values[k] = match node {
-            Node::Constant(value) => Jet::constant(*value),
-            Node::Input(number) => match function.inputs.get(*number) {
-                Some(given) => input(certificate, given, integrals, here),
-                None => nothing,
-            },
-            Node::Named(name, a, None) => one(name, &values[*a]),
-            Node::Named(name, a, Some(b)) if name == "mul" && a == b => values[*a].square(),
-            Node::Named(name, a, Some(b)) => two(name, &values[*a], &values[*b]),
-            Node::Power(a, n) => values[*a].power(*n),
-            Node::Select(c, a, b) => values[*c].select(&values[*a], &values[*b]),
-            Node::Table(table, orders, args) => {
-                let args: Vec<Jet> = args.iter().map(|a| values[*a]).collect();
-                look_up(&certificate.tables[*table], orders, &args).unwrap_or(nothing)
-            }
-        };
-    }
-    values[function.root]
+    found
 }
 
-fn operands(node: &Node) -> Vec<usize> {
-    match node {
-        Node::Constant(_) | Node::Input(_) => vec![],
-        Node::Named(_, a, b) => [*a].into_iter().chain(*b).collect(),
-        Node::Power(a, _) => vec![*a],
-        Node::Select(c, a, b) => vec![*c, *a, *b],
-        Node::Table(_, _, args) => args.clone(),
+/// A function at one place; `integrals` are those that are known so far.
+pub(crate) fn evaluate(certificate: &Certificate, function: usize, integrals: &[Interval], here: &Here<'_>) -> Jet {
+    let (graph, inputs) = &certificate.functions[function];
+    let nodes = &certificate.graphs[*graph];
+    let mut values: Vec<Jet> = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        values.push(match node {
+            Node::Constant(value) => Jet::constant(*value),
+            Node::Input(number) => match inputs.get(*number) {
+                Some(given) => input(certificate, given, integrals, here),
+                None => Jet::NOTHING,
+            },
+            Node::Named(name, args) => operation(name, &args.iter().map(|a| values[*a]).collect::<Vec<Jet>>()),
+            Node::Power(a, n) => values[*a].power(*n),
+            Node::Table(table, orders, args) => {
+                let args: Vec<Jet> = args.iter().map(|a| values[*a]).collect();
+                look_up(&certificate.tables[*table], orders, &args).unwrap_or(Jet::NOTHING)
+            }
+        });
     }
+    values.last().copied().unwrap_or(Jet::NOTHING)
 }
 
 fn input(certificate: &Certificate, input: &Input, integrals: &[Interval], here: &Here<'_>) -> Jet {
     match input {
-        Input::Flat(flat, None) => (here.flats)(*flat),
+        Input::Flat(flat, None) => here(*flat),
         Input::Flat(flat, Some(place)) => end_of(certificate, *flat, *place),
         Input::Value(value) => Jet::constant(*value),
-        Input::Tau => here.tau,
         Input::Integral(number) => Jet::constant(integrals.get(*number).copied().unwrap_or(Interval::ENTIRE)),
         Input::Join(how, members) => {
-            let member = |f: &usize| evaluate(certificate, &certificate.functions[*f], integrals, here);
-            let joined = members.iter().map(member).reduce(|a, b| match how {
-                '+' => a + b,
-                '*' => a * b,
-                '<' => -(-a).max(&-b),
-                _ => a.max(&b),
-            });
-            joined.unwrap_or(match how {
-                '+' => Jet::constant(Interval::ZERO),
-                '*' => Jet::constant(Interval::whole(1)),
-                _ => Jet::rough((Interval::ENTIRE, false)),
-            })
+            let member = |f: &usize| evaluate(certificate, *f, integrals, here);
+            members.iter().map(member).reduce(|a, b| operation(how, &[a, b])).unwrap_or(Jet::NOTHING)
         }
     }
 }
 
 /// A flat where a cell of its phase begins, or where it ends.
-pub(crate) fn end_of(certificate: &Certificate, flat: usize, (cell, last): (usize, bool)) -> Jet {
-    piece(certificate, certificate.flats[flat], cell).map_or(Jet::rough((Interval::ENTIRE, false)), |piece| {
-        Jet::constant(if last { piece[piece.len() - 1] } else { piece[0] })
-    })
+fn end_of(certificate: &Certificate, flat: Flat, (cell, last): (usize, bool)) -> Jet {
+    let piece = piece(certificate, flat, cell).unwrap_or(vec![Interval::ENTIRE]);
+    Jet::constant(if last { piece[piece.len() - 1] } else { piece[0] })
 }
 
-fn one(name: &str, x: &Jet) -> Jet {
+/// A named operation; nothing is known of one with another name or number of arguments.
+fn operation(name: &str, args: &[Jet]) -> Jet {
     let one = Jet::constant(Interval::whole(1));
     let half = Jet::constant(Interval::whole(1).scaled(-1));
-    match name {
-        "neg" => -*x,
-        "sqrt" => x.sqrt(),
-        "exp" => x.exp(),
-        "log" => x.log(),
-        "sin" => x.sine_and_cosine().0,
-        "cos" => x.sine_and_cosine().1,
-        "tan" => x.sine_and_cosine().0.over(&x.sine_and_cosine().1),
-        "asin" => x.asin_and_acos().0,
-        "acos" => x.asin_and_acos().1,
-        "atan" => x.atan(),
-        "sinh" => (x.exp() - (-*x).exp()) * half,
-        "cosh" => (x.exp() + (-*x).exp()) * half,
-        "tanh" => one - (one + one).over(&(one + (*x + *x).exp())),
-        "abs" => x.max(&-*x),
-        "sign" => step(x.c[0], x.total, [-1, 0, 1]),
-        "logistic" => one.over(&(one + (-*x).exp())),
-        _ => (one + x.exp()).log(), // The only one left is `softplus`.
-    }
-}
-
-fn two(name: &str, a: &Jet, b: &Jet) -> Jet {
-    match name {
-        "add" => *a + *b,
-        "sub" => *a - *b,
-        "mul" => *a * *b,
-        "div" => a.over(b),
-        "pow" => (*b * a.log()).exp(),
-        "atan2" => a.atan2(b),
-        "hypot" => (a.square() + b.square()).sqrt(),
-        "min" => -(-*a).max(&-*b),
-        "max" => a.max(b),
-        _ => step(b.c[0] - a.c[0], a.total && b.total, [0, 1, 1]), // The only one left is `less_eq`.
+    match (name, args) {
+        ("neg", [x]) => -*x,
+        ("square", [x]) => x.power(2),
+        ("sqrt", [x]) => x.sqrt(),
+        ("exp", [x]) => x.exp(),
+        ("log", [x]) => x.log(),
+        ("sin", [x]) => x.sine_and_cosine().0,
+        ("cos", [x]) => x.sine_and_cosine().1,
+        ("tan", [x]) => x.sine_and_cosine().0.over(&x.sine_and_cosine().1),
+        ("asin", [x]) => x.atan2(&((one - *x) * (one + *x)).sqrt()),
+        ("acos", [x]) => ((one - *x) * (one + *x)).sqrt().atan2(x),
+        ("atan", [x]) => x.atan(),
+        ("sinh", [x]) => (x.exp() - (-*x).exp()) * half,
+        ("cosh", [x]) => (x.exp() + (-*x).exp()) * half,
+        ("tanh", [x]) => one - (one + one).over(&(one + (*x + *x).exp())),
+        ("abs", [x]) => x.max(&-*x),
+        ("sign", [x]) => step(x.c[0], x.total, [-1, 0, 1]),
+        ("logistic", [x]) => one.over(&(one + (-*x).exp())),
+        ("softplus", [x]) => (one + x.exp()).log(),
+        ("add", [a, b]) => *a + *b,
+        ("sub", [a, b]) => *a - *b,
+        ("mul", [a, b]) => *a * *b,
+        ("div", [a, b]) => a.over(b),
+        ("pow", [a, b]) => (*b * a.log()).exp(),
+        ("atan2", [a, b]) => a.atan2(b),
+        ("hypot", [a, b]) => (a.power(2) + b.power(2)).sqrt(),
+        ("min", [a, b]) => -(-*a).max(&-*b),
+        ("max", [a, b]) => a.max(b),
+        ("less_eq", [a, b]) => step(b.c[0] - a.c[0], a.total && b.total, [0, 1, 1]),
+        ("select", [condition, a, b]) => condition.select(a, b),
+        _ => Jet::NOTHING,
     }
 }
 
@@ -211,21 +190,7 @@ type Place = (usize, Jet, Option<Jet>, bool);
 fn look_up(table: &Table, orders: &[usize], args: &[Jet]) -> Option<Jet> {
     let total = args.iter().all(|arg| arg.total);
     let places = table.axes.iter().zip(args).map(|(axis, x)| places(axis, x)).collect::<Option<Vec<_>>>()?;
-    let count = places.iter().fold(1, |product: usize, found| product.saturating_mul(found.len()));
-    if count == 0 || count > 512 {
-        return None;
-    }
-    let mut joined: Option<Jet> = None;
-    for mut number in 0..count {
-        let mut here: Vec<Place> = vec![];
-        for found in &places {
-            here.push(found[number % found.len()]);
-            number /= found.len();
-        }
-        let value = contract(table, orders, &here, (0, 0))?;
-        joined = Some(joined.map_or(value, |known| Jet::rough((known.c[0].hull(value.c[0]), total))));
-    }
-    joined.map(|jet| Jet { total, ..jet })
+    contract(table, orders, &places, (0, 0)).map(|jet| Jet { total, ..jet })
 }
 
 fn part(x: &Jet, low: Option<Real>, high: Option<Real>) -> Option<Jet> {
@@ -237,25 +202,24 @@ fn part(x: &Jet, low: Option<Real>, high: Option<Real>) -> Option<Jet> {
 /// Every cell that the argument may touch.
 fn places(axis: &Axis, x: &Jet) -> Option<Vec<Place>> {
     let mut found = vec![];
-    x.c[0].ends()?;
+    x.c[0].ends?;
     match axis.symmetry.as_str() {
         "plain" => cells(axis, x, false, &mut found),
         "even" => {
             for (x, mirrored) in [(*x, false), (-*x, true)] {
-                part(&x, Some(Real::ZERO), None).into_iter().for_each(|x| cells(axis, &x, mirrored, &mut found));
+                part(&x, Some(Real::ZERO), None).iter().for_each(|x| cells(axis, x, mirrored, &mut found));
             }
         }
         _ => {
             let period = difference(axis.high, axis.low);
-            let (low, high) = (x.c[0] - Interval::point(axis.low)).over(period).ends()?;
+            let (low, high) = (x.c[0] - Interval::point(axis.low)).over(period).ends?;
             let (first, last) = (low.floor()?, high.floor()?);
-            for turn in first..=last.min(first + 4) {
-                let moved = *x - Jet::constant(period * Interval::whole(turn));
-                let inside = part(&moved, Some(axis.low), Some(axis.high));
-                inside.into_iter().for_each(|x| cells(axis, &x, false, &mut found));
-            }
             if last > first + 3 {
                 return None;
+            }
+            for turn in first..=last {
+                let moved = *x - Jet::constant(period * Interval::whole(turn));
+                part(&moved, Some(axis.low), Some(axis.high)).iter().for_each(|x| cells(axis, x, false, &mut found));
             }
         }
     }
@@ -285,28 +249,33 @@ fn cells(axis: &Axis, x: &Jet, mirrored: bool, found: &mut Vec<Place>) {
     }
 }
 
-fn contract(table: &Table, orders: &[usize], places: &[Place], (axis, first): (usize, usize)) -> Option<Jet> {
-    let Some((cell, u, beyond, mirrored)) = places.get(axis) else {
+/// The table from an axis on, at all places that its arguments may be at.
+fn contract(table: &Table, orders: &[usize], places: &[Vec<Place>], (axis, first): (usize, usize)) -> Option<Jet> {
+    let Some(own) = places.get(axis) else {
         return table.coefficients.get(first).map(|c| Jet::constant(Interval::point(*c)));
     };
-    let (parts, d) = (&table.axes[axis], orders[axis]);
+    let (parts, d, mut joined) = (&table.axes[axis], orders[axis], None::<Jet>);
     let stride: usize = table.axes[axis + 1..].iter().map(|inner| inner.coefficients).product();
-    let start = first + cell * parts.step * stride;
-    let inner = (0..parts.order).map(|j| contract(table, orders, places, (axis + 1, start + j * stride)));
-    let inner = inner.collect::<Option<Vec<_>>>()?;
-    let weights = parts.weights.get(cell * parts.order * parts.order..(cell + 1) * parts.order * parts.order)?;
-    let row = |weights: &[Real]| {
-        let terms = weights.iter().zip(&inner).map(|(w, c)| Jet::constant(Interval::point(*w)) * *c);
-        terms.fold(Jet::constant(Interval::ZERO), |sum, term| sum + term)
-    };
-    let bernstein: Vec<Jet> = weights.chunks_exact(parts.order).map(row).collect();
-    let width = Interval::point(parts.cells[*cell].1);
-    let value = match (beyond, table.linear, d) {
-        (None, ..) | (Some(_), false, 0) | (Some(_), true, 1) => polynomial(&bernstein, u, d, width),
-        (Some(beyond), true, 0) => polynomial(&bernstein, u, 0, width) + *beyond * polynomial(&bernstein, u, 1, width),
-        _ => Jet::constant(Interval::ZERO),
-    };
-    Some(if *mirrored && d % 2 == 1 { -value } else { value })
+    for (cell, u, beyond, mirrored) in own {
+        let start = first + cell * parts.step * stride;
+        let inner = (0..parts.order).map(|j| contract(table, orders, places, (axis + 1, start + j * stride)));
+        let inner = inner.collect::<Option<Vec<_>>>()?;
+        let row = |weights: &[Real]| {
+            let terms = weights.iter().zip(&inner).map(|(w, c)| Jet::constant(Interval::point(*w)) * *c);
+            terms.fold(Jet::constant(Interval::ZERO), |sum, term| sum + term)
+        };
+        let weights = parts.weights.chunks_exact(parts.order).skip(cell * parts.order).take(parts.order);
+        let bernstein: Vec<Jet> = weights.map(row).collect();
+        let at = |d: usize| polynomial(&bernstein, u, d, Interval::point(parts.cells[*cell].1));
+        let value = match (beyond, table.linear, d) {
+            (None, ..) | (Some(_), false, 0) | (Some(_), true, 1) => at(d),
+            (Some(beyond), true, 0) => at(0) + *beyond * at(1),
+            _ => Jet::constant(Interval::ZERO),
+        };
+        let value = if *mirrored && d % 2 == 1 { -value } else { value };
+        joined = Some(joined.map_or(value, |known| Jet::rough((known.c[0].hull(value.c[0]), known.total))));
+    }
+    joined
 }
 
 /// Derivative `d` of a polynomial by its Bernstein coefficients, at `u` in a cell of this width.

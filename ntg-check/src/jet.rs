@@ -1,7 +1,7 @@
 //! Taylor coefficients of a function of time on a box: `f^(k) r^k / k!` with the box's radius `r`, at its middle or at
 //! all of its times, enclosed. From both, what the function can be on the box.
 
-use crate::interval::{Image, Interval};
+use crate::interval::{Image, Interval, pi};
 
 /// The order of the remainder: even, so that its power is not negative.
 const ORDER: usize = 6;
@@ -57,11 +57,12 @@ pub(crate) fn binomial(n: usize, k: usize) -> Interval {
 }
 
 impl Jet {
+    /// Of which nothing is known, not even whether there is a value.
+    pub(crate) const NOTHING: Self = Self { c: [Interval::ENTIRE; COUNT], total: false };
+
     /// What does not change.
     pub(crate) fn constant(value: Interval) -> Self {
-        let mut c = [Interval::ZERO; COUNT];
-        c[0] = value;
-        Self { c, total: true }
+        Self::of(&[value])
     }
 
     /// What is known by its values alone.
@@ -73,17 +74,13 @@ impl Jet {
 
     /// From the jet's own coefficients.
     pub(crate) fn of(given: &[Interval]) -> Self {
-        let mut jet = Self::constant(Interval::ZERO);
-        jet.c.iter_mut().zip(given).for_each(|(c, given)| *c = *given);
-        jet
+        let mut c = [Interval::ZERO; COUNT];
+        c.iter_mut().zip(given).for_each(|(c, given)| *c = *given);
+        Self { c, total: true }
     }
 
     fn one() -> Self {
         Self::constant(Interval::whole(1))
-    }
-
-    fn is_constant(&self) -> bool {
-        self.c[1..].iter().all(|c| *c == Interval::ZERO)
     }
 
     /// Coefficient `k` of a function whose derivative by `self` is `slope`: `sum j u_j g_(k-j) / k`.
@@ -97,15 +94,6 @@ impl Jet {
         let mut c = [values; COUNT];
         (1..COUNT).for_each(|k| c[k] = self.chain(&slope.c, k));
         Self { c, total: self.total && total }
-    }
-
-    /// The product of equals.
-    pub(crate) fn square(&self) -> Self {
-        let coefficient = |k: usize| {
-            let pairs = (0..k.div_ceil(2)).fold(Interval::ZERO, |sum, i| sum + self.c[i] * self.c[k - i]);
-            pairs.scaled(1) + if k.is_multiple_of(2) { self.c[k / 2].square() } else { Interval::ZERO }
-        };
-        Self { c: std::array::from_fn(coefficient), total: self.total }
     }
 
     /// The quotient.
@@ -163,34 +151,22 @@ impl Jet {
 
     /// The inverse tangent.
     pub(crate) fn atan(&self) -> Self {
-        self.through((self.c[0].atan(), true), &Self::one().over(&(Self::one() + self.square())))
+        self.through((self.c[0].atan(), true), &Self::one().over(&(Self::one() + self.power(2))))
     }
 
-    /// The inverse sine and the inverse cosine.
-    pub(crate) fn asin_and_acos(&self) -> (Self, Self) {
-        let slope = Self::one().over(&((Self::one() - *self) * (Self::one() + *self)).sqrt());
-        let (sine, cosine) = self.c[0].asin_and_acos();
-        (self.through(sine, &slope), self.through(cosine, &-slope))
-    }
-
-    /// The angle of the point with ordinate `self` and abscissa `x`.
+    /// The angle of the point with ordinate `self` and abscissa `x`: of two zeros it is some angle.
     pub(crate) fn atan2(&self, x: &Self) -> Self {
-        let (y0, x0, total) = (self.c[0], x.c[0], self.total && x.total);
-        // Two zeros have the angle 0.
-        let both = y0.has_zero() && x0.has_zero();
-        let values = if y0 == Interval::ZERO && x0 == Interval::ZERO { Interval::ZERO } else { x0.atan2(y0) };
-        if self.is_constant() && x.is_constant() {
-            return Self { total, ..Self::constant(values) };
+        let (left, right) = (Self::constant(-pi()), Self::constant(pi()));
+        let quarter = Self::constant(pi().scaled(-1));
+        match (self.c[0], x.c[0]) {
+            (_, abscissa) if abscissa.is_positive() => self.over(x).atan(),
+            (ordinate, _) if ordinate.is_positive() => quarter - x.over(self).atan(),
+            (ordinate, _) if (-ordinate).is_positive() => -quarter - x.over(self).atan(),
+            (ordinate, abscissa) if (-abscissa).is_positive() && ordinate.is_not_negative() => {
+                self.over(x).atan() + right
+            }
+            _ => Self::rough((left.c[0].hull(right.c[0]), self.total && x.total)),
         }
-        let behind = !x0.is_positive() && !y0.is_positive() && !(-y0).is_positive();
-        if both || (behind && !((-x0).is_positive() && y0.is_not_negative())) {
-            return Self::rough((values, total));
-        }
-        let square = self.square() + x.square();
-        let (p, q) = (x.over(&square), self.over(&square));
-        let mut c = [values; COUNT];
-        (1..COUNT).for_each(|k| c[k] = self.chain(&p.c, k) - x.chain(&q.c, k));
-        Self { c, total }
     }
 
     /// `self` where it is certainly not below `other`, `other` where that is certain; else their values.
@@ -202,7 +178,7 @@ impl Jet {
         if (other.c[0] - self.c[0]).is_not_negative() {
             return Self { total, ..*other };
         }
-        let values = match (self.c[0].ends(), other.c[0].ends()) {
+        let values = match (self.c[0].ends, other.c[0].ends) {
             (Some((a, b)), Some((c, d))) => Interval::new(a.max(c), b.max(d)),
             _ => Interval::ENTIRE,
         };
@@ -249,5 +225,41 @@ impl std::ops::Mul for Jet {
     fn mul(self, other: Self) -> Self {
         let product = |k: usize| (0..=k).fold(Interval::ZERO, |sum, i| sum + self.c[i] * other.c[k - i]);
         Self { c: std::array::from_fn(product), total: self.total && other.total }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::Real;
+
+    #[test]
+    fn angles_are_those_of_their_quadrants() {
+        let point = |n: i64| Jet::constant(Interval::whole(n));
+        let eighth = pi().scaled(-2);
+        for (y, x, eighths) in [(1, 1, 1), (1, 0, 2), (1, -1, 3), (0, -1, 4), (-1, -1, -3), (-1, 0, -2), (-1, 1, -1)] {
+            let found = point(y).atan2(&point(x)).c[0];
+            let expected = eighth * Interval::whole(eighths);
+            let slack = Interval::point(Real::dyadic(1, -56)).hull(Interval::point(Real::dyadic(-1, -56)));
+            assert!((expected + slack).encloses(found) && (found + slack).encloses(expected), "{y} {x}: {found:?}");
+        }
+        // Around the cut anything is possible.
+        let wide = Interval::whole(-1).hull(Interval::whole(1));
+        let found = Jet::constant(wide).atan2(&point(-1)).c[0];
+        assert!(found.encloses(pi()) && found.encloses(-pi()));
+    }
+
+    #[test]
+    fn the_derivative_of_an_angle_is_that_of_the_inverse_tangent() {
+        // At x = 1, y = t the angle is t - t^3 / 3 + ...; at x = -t, y = 1 it is a quarter more.
+        let t = Jet::of(&[Interval::ZERO, Interval::whole(1)]);
+        let one = Jet::constant(Interval::whole(1));
+        for (found, shift) in [(t.atan2(&one), Interval::ZERO), (one.atan2(&-t), pi().scaled(-1))] {
+            let third = Interval::whole(-1).over(Interval::whole(3));
+            for (k, expected) in [shift, Interval::whole(1), Interval::ZERO, third].into_iter().enumerate() {
+                let slack = Interval::point(Real::dyadic(1, -56)).hull(Interval::point(Real::dyadic(-1, -56)));
+                assert!((expected + slack).encloses(found.c[k]) && (found.c[k] + slack).encloses(expected), "{k}");
+            }
+        }
     }
 }

@@ -8,16 +8,18 @@
 //! ```no_run
 //! let text = std::fs::read_to_string("mission.cert")?;
 //! let checked = ntg_check::verify(&text)?;
-//! println!("{} constraints hold at all times", checked.proved);
+//! println!("{} constraints hold at all times", checked["proved"]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod boxes;
 mod check;
 mod evaluate;
 mod interval;
 mod jet;
 mod read;
 mod real;
+mod tube;
 
 pub use check::Checked;
 

@@ -9,41 +9,31 @@ pub(crate) enum Node {
     Constant(Interval),
     /// An input of the function.
     Input(usize),
-    /// A named operation on one or two nodes.
-    Named(String, usize, Option<usize>),
+    /// A named operation on nodes.
+    Named(String, Vec<usize>),
     /// A whole power.
     Power(usize, i32),
-    /// The second where the first is not 0, else the third.
-    Select(usize, usize, usize),
     /// A derivative of a table.
     Table(usize, Vec<usize>, Vec<usize>),
 }
 
+/// Which derivative of which spline.
+pub(crate) type Flat = (usize, usize);
+
+/// Scaled time, where it stands for a flat.
+pub(crate) const TAU: Flat = (usize::MAX, 0);
+
 /// What an input of a function is.
 pub(crate) enum Input {
-    /// A derivative of a spline at the time of evaluation, or at the first (`false`) or last point of a cell.
-    Flat(usize, Option<(usize, bool)>),
+    /// A derivative of a spline, or scaled time, at the time of evaluation, or at the first (`false`) or last point of a
+    /// cell.
+    Flat(Flat, Option<(usize, bool)>),
     /// A number.
     Value(Interval),
-    /// Scaled time.
-    Tau,
-    /// Functions joined: by `+`, `*`, `<` (the smallest) or `>`.
-    Join(char, Vec<usize>),
-    /// An integral.
+    /// Functions joined by an operation.
+    Join(String, Vec<usize>),
+    /// The value of a claim about a sum.
     Integral(usize),
-}
-
-/// A function: the nodes up to its result, and its inputs.
-pub(crate) struct Function {
-    pub(crate) graph: usize,
-    pub(crate) root: usize,
-    pub(crate) inputs: Vec<Input>,
-}
-
-/// Operations, and which of them are results.
-pub(crate) struct Graph {
-    pub(crate) nodes: Vec<Node>,
-    pub(crate) rows: Vec<usize>,
 }
 
 /// A spline of a phase.
@@ -73,32 +63,56 @@ pub(crate) struct Table {
     pub(crate) coefficients: Vec<Real>,
 }
 
-/// Where a summand is taken: over a phase, at its start, at its end, nowhere.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Over {
-    Phase(usize),
-    End(usize, bool),
-    Nowhere,
-}
-
-/// A function at all times of some cells of a phase, or a sum.
+/// A function at all times of some cells of a phase, or a sum of functions: integrals over phases, and numbers.
 pub(crate) enum Quantity {
     Path(usize, usize, (usize, usize)),
-    Sum(Vec<(usize, Over)>),
+    Sum(Vec<(usize, Option<usize>)>),
 }
 
 /// What is claimed of a subject.
 pub(crate) struct Claim {
-    pub(crate) name: String,
     pub(crate) quantity: Quantity,
     pub(crate) bounds: (Option<usize>, Option<usize>),
     pub(crate) verdict: String,
-    /// Of an equality: how far its sides differ at most.
-    pub(crate) residual: Option<Real>,
     pub(crate) values: Interval,
-    /// Cell, halvings and part of the box in whose middle the values are those of the interval.
-    pub(crate) witness: Option<(usize, u32, u64, Interval)>,
+    /// Cell, halvings and part of the box in whose middle a bound is missed.
+    pub(crate) witness: Option<(usize, u32, u64)>,
     pub(crate) covers: Vec<Vec<String>>,
+}
+
+/// Equations of motion of a phase, and how far from its splines what satisfies them is at most.
+pub(crate) struct Tube {
+    pub(crate) phase: usize,
+    /// The claims whose quantities are to be what their bounds say.
+    pub(crate) equations: Vec<usize>,
+    pub(crate) cover: Vec<String>,
+    /// The highest derivatives of the splines that the equations determine.
+    pub(crate) highest: Vec<Flat>,
+    pub(crate) components: Vec<Component>,
+    /// One for each box of the cover.
+    pub(crate) steps: Vec<Step>,
+}
+
+/// A component of the state: what the equations determine, or a derivative of it below the highest.
+pub(crate) struct Component {
+    pub(crate) flat: Flat,
+    /// The component of all tubes with whose difference at the end it begins.
+    pub(crate) begin: Option<usize>,
+    /// How far it is from its spline: at all times, and at the end.
+    pub(crate) bounds: [Interval; 2],
+}
+
+/// What is said of a box of time (docs/maths.md, section 15.7).
+pub(crate) struct Step {
+    /// Where the components of the reference begin.
+    pub(crate) start: Vec<Interval>,
+    /// Bernstein coefficients of its highest derivatives, those of the first unknown first.
+    pub(crate) highest: Vec<Interval>,
+    /// What the differences from the reference do not leave: those of its components, and of its highest derivatives.
+    pub(crate) inside: Vec<Interval>,
+    pub(crate) slack: Vec<Interval>,
+    /// Directions along which the differences at the end are bounded, row by row.
+    pub(crate) directions: Vec<Interval>,
 }
 
 /// Everything that a certificate says.
@@ -106,128 +120,123 @@ pub(crate) struct Claim {
 pub(crate) struct Certificate {
     pub(crate) numbers: Vec<Interval>,
     pub(crate) phases: Vec<Vec<Real>>,
+    pub(crate) durations: Vec<Interval>,
     pub(crate) splines: Vec<Spline>,
-    pub(crate) flats: Vec<(usize, usize)>,
+    pub(crate) flats: Vec<Flat>,
     pub(crate) tables: Vec<Table>,
-    pub(crate) graphs: Vec<Graph>,
-    pub(crate) functions: Vec<Function>,
-    pub(crate) integrals: Vec<Claim>,
+    pub(crate) graphs: Vec<Vec<Node>>,
+    /// Graphs, whose last nodes are the results, and inputs.
+    pub(crate) functions: Vec<(usize, Vec<Input>)>,
     pub(crate) claims: Vec<Claim>,
+    pub(crate) tubes: Vec<Tube>,
 }
 
-type Read<T> = Result<T, String>;
+/// What was read or proved, or words about what is wrong.
+pub(crate) type Sound<T> = Result<T, String>;
 
 /// The words of a line.
 struct Words<'a>(std::str::SplitAsciiWhitespace<'a>);
 
-impl Words<'_> {
-    fn next(&mut self) -> Read<&str> {
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Sound<&'a str> {
         self.0.next().ok_or_else(|| "a word is missing".to_owned())
     }
 
-    fn number<T: std::str::FromStr>(&mut self) -> Read<T> {
+    fn number<T: std::str::FromStr>(&mut self) -> Sound<T> {
         let word = self.next()?;
         word.parse().map_err(|_| format!("`{word}` is no number"))
     }
 
     /// A reference to one of `count` things.
-    fn below(&mut self, count: usize) -> Read<usize> {
+    fn below(&mut self, count: usize) -> Sound<usize> {
         let index = self.number()?;
         if index < count { Ok(index) } else { Err(format!("there is no number {index} of {count}")) }
     }
 
-    /// A list of references to `count` things.
-    fn list(&mut self, count: usize) -> Read<Vec<usize>> {
-        let length: usize = self.number()?;
-        (0..length.min(MOST)).map(|_| self.below(count)).collect()
+    /// The same, or `-` for none.
+    fn optional(&mut self, count: usize) -> Sound<Option<usize>> {
+        if self.0.clone().next() == Some("-") { self.next().map(|_| None) } else { self.below(count).map(Some) }
     }
 
-    fn real(&mut self) -> Read<Real> {
+    fn many<T>(&mut self, mut each: impl FnMut(&mut Self) -> Sound<T>) -> Sound<Vec<T>> {
+        let length: usize = self.number()?;
+        (0..length.min(MOST)).map(|_| each(self)).collect()
+    }
+
+    /// A list of references to `count` things.
+    fn list(&mut self, count: usize) -> Sound<Vec<usize>> {
+        self.many(|words| words.below(count))
+    }
+
+    fn real(&mut self) -> Sound<Real> {
         real(self.next()?)
     }
 
-    fn reals(&mut self, most: usize) -> Read<Vec<Real>> {
-        let count = self.number()?;
-        if count > most { Err("too many numbers".to_owned()) } else { (0..count).map(|_| self.real()).collect() }
+    fn reals(&mut self) -> Sound<Vec<Real>> {
+        self.many(Self::real)
+    }
+
+    fn points(&mut self) -> Sound<Vec<Interval>> {
+        self.many(|words| words.real().map(Interval::point))
     }
 
     /// Two ends; `-inf` and `inf` for no bounds.
-    fn interval(&mut self) -> Read<Interval> {
-        let (low, high) = (self.next()?.to_owned(), self.next()?.to_owned());
+    fn interval(&mut self) -> Sound<Interval> {
+        let (low, high) = (self.next()?, self.next()?);
         if low == "-inf" && high == "inf" {
             return Ok(Interval::ENTIRE);
         }
-        let (low, high) = (real(&low)?, real(&high)?);
+        let (low, high) = (real(low)?, real(high)?);
         if low <= high { Ok(Interval::new(low, high)) } else { Err("the ends of an interval cross".to_owned()) }
     }
 
-    fn rest(&mut self) -> String {
-        self.0.by_ref().collect::<Vec<_>>().join(" ")
-    }
-
-    fn end(&mut self) -> Read<()> {
+    fn end(&mut self) -> Sound<()> {
         self.0.next().map_or(Ok(()), |word| Err(format!("`{word}` is one word too many")))
     }
 }
 
-/// A hexadecimal floating-point number, such as `-0x1.8p+1`: exact.
-pub(crate) fn real(word: &str) -> Read<Real> {
-    let wrong = || format!("`{word}` is no hexadecimal number");
-    let (sign, size) = word.strip_prefix('-').map_or((1, word), |size| (-1, size));
-    let (digits, exponent) = size.strip_prefix("0x").and_then(|s| s.split_once('p')).ok_or_else(wrong)?;
-    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-    if whole.len() != 1 || fraction.len() > 13 || exponent.len() > 5 {
-        return Err(wrong());
-    }
-    let mantissa = i64::from_str_radix(&format!("{whole}{fraction}"), 16).map_err(|_| wrong())?;
-    let exponent: i32 = exponent.parse().map_err(|_| wrong())?;
-    Ok(Real::dyadic(sign * mantissa, exponent - 4 * fraction.len() as i32))
+/// `MpE` for the number M 2^E.
+fn real(word: &str) -> Sound<Real> {
+    let parts = word.split_once('p').and_then(|(m, e)| Some((m.parse().ok()?, e.parse::<i16>().ok()?)));
+    let sound = parts.filter(|(m, _): &(i64, i16)| m.unsigned_abs() >> 62 == 0);
+    sound.map(|(m, e)| Real::dyadic(m, e.into())).ok_or_else(|| format!("`{word}` is no number"))
 }
 
 /// Most numbers in one list: a guard against a file that asks for all memory.
 const MOST: usize = 1 << 24;
 
 /// Reads all lines but the digest.
-pub(crate) fn read(text: &str) -> Read<Certificate> {
+pub(crate) fn read(text: &str) -> Sound<Certificate> {
     let mut out = Certificate::default();
     let mut lines = text.lines().enumerate();
-    if lines.next().is_none_or(|(_, line)| line != "ntg-certificate 1") {
-        return Err("this is no certificate of version 1".to_owned());
+    if lines.next().is_none_or(|(_, line)| line != "ntg-certificate 2") {
+        return Err("this is no certificate of version 2".to_owned());
     }
     for (number, line) in lines.filter(|(_, line)| !line.starts_with("| ")) {
+        // What follows is a name, for people.
+        let line = line.split(" # ").next().unwrap_or(line);
         let mut words = Words(line.split_ascii_whitespace());
         statement(&mut out, &mut words).map_err(|error| format!("line {}: {error}", number + 1))?;
-    }
-    if let Some(claim) = out.integrals.iter().chain(&out.claims).find(|claim| claim.verdict.is_empty()) {
-        return Err(format!("nothing is claimed of `{}`", claim.name));
     }
     Ok(out)
 }
 
-fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
+fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Sound<()> {
     match words.next()? {
-        "problem" => drop(words.rest()),
-        "number" => {
-            out.numbers.push(Interval::point(words.real()?));
-            words.rest();
-        }
+        "number" => out.numbers.push(Interval::point(words.real()?)),
         "phase" => {
             words.below(out.numbers.len())?;
-            words.below(out.numbers.len())?;
-            out.phases.push(words.reals(MOST)?);
-            words.rest();
+            out.durations.push(out.numbers[words.below(out.numbers.len())?]);
+            out.phases.push(words.reals()?);
         }
-        "spline" => {
-            let (phase, order) = (words.below(out.phases.len())?, words.number()?);
-            let (knots, coefficients) = (words.reals(MOST)?, words.reals(MOST)?);
-            words.rest();
-            out.splines.push(Spline { phase, order, knots, coefficients });
-        }
+        "spline" => out.splines.push(Spline {
+            phase: words.below(out.phases.len())?,
+            order: words.number()?,
+            knots: words.reals()?,
+            coefficients: words.reals()?,
+        }),
         "flat" => out.flats.push((words.below(out.splines.len())?, words.number()?)),
-        "table" => {
-            out.tables.push(Table { linear: words.next()? == "linear", axes: vec![], coefficients: vec![] });
-            words.rest();
-        }
+        "table" => out.tables.push(Table { linear: words.next()? == "linear", axes: vec![], coefficients: vec![] }),
         "axis" => {
             let axis = Axis {
                 symmetry: words.next()?.to_owned(),
@@ -236,145 +245,113 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Read<()> {
                 order: words.number()?,
                 step: words.number()?,
                 coefficients: words.number()?,
-                cells: words.reals(MOST)?.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect(),
-                weights: words.reals(MOST)?,
+                cells: words.reals()?.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect(),
+                weights: words.reals()?,
             };
             out.tables.last_mut().ok_or("an axis without a table")?.axes.push(axis);
         }
-        "coefficients" => out.tables.last_mut().ok_or("no table")?.coefficients = words.reals(MOST)?,
-        "graph" => out.graphs.push(Graph { nodes: vec![], rows: vec![] }),
-        "rows" => {
-            let graph = out.graphs.last_mut().ok_or("no graph")?;
-            graph.rows = words.list(graph.nodes.len())?;
-        }
+        "coefficients" => out.tables.last_mut().ok_or("no table")?.coefficients = words.reals()?,
+        "graph" => out.graphs.push(vec![]),
         "function" => {
             let graph = words.below(out.graphs.len())?;
-            let root = out.graphs[graph].rows[words.below(out.graphs[graph].rows.len())?];
-            let count: usize = words.number()?;
-            let inputs = (0..count.min(MOST)).map(|_| input(out, words)).collect::<Read<Vec<_>>>()?;
-            out.functions.push(Function { graph, root, inputs });
+            out.functions.push((graph, words.many(|words| input(out, words))?));
         }
-        "integral" => {
-            let quantity = sum(out, words)?;
-            out.integrals.push(claim(format!("integral {}", out.integrals.len()), quantity, (None, None)));
-        }
-        "subject" => {
-            words.next()?;
-            let functions = out.functions.len();
-            let bound = |words: &mut Words<'_>| match words.next()? {
-                "-" => Ok(None),
-                word => word.parse().ok().filter(|f| *f < functions).map(Some).ok_or("no such bound".to_owned()),
-            };
-            let bounds = (bound(words)?, bound(words)?);
-            let quantity = match words.next()? {
-                word @ ("path" | "part") => {
-                    let is_part = word == "part";
-                    let (function, phase) = (words.below(out.functions.len())?, words.below(out.phases.len())?);
-                    let all = out.phases[phase].len().saturating_sub(1);
-                    let cells = if is_part { (words.below(all)?, words.below(all + 1)?) } else { (0, all) };
-                    Quantity::Path(function, phase, cells)
-                }
-                _ => sum(out, words)?,
-            };
-            out.claims.push(claim(words.rest(), quantity, bounds));
-        }
-        "claim" => {
-            let own = last(out)?;
-            own.verdict = words.next()?.to_owned();
-            own.residual = if own.verdict == "within" { Some(words.real()?) } else { None };
-            own.values = words.interval()?;
-        }
+        "claim" => out.claims.push(Claim {
+            verdict: words.next()?.to_owned(),
+            values: words.interval()?,
+            bounds: (words.optional(out.functions.len())?, words.optional(out.functions.len())?),
+            quantity: quantity(out, words)?,
+            witness: None,
+            covers: vec![],
+        }),
         "witness" => {
-            last(out)?.witness = Some((words.number()?, words.number()?, words.number()?, words.interval()?));
+            let own = out.claims.last_mut().ok_or("a witness of nothing")?;
+            own.witness = Some((words.number()?, words.number()?, words.number()?));
         }
-        "cover" => last(out)?.covers.push(words.0.by_ref().map(str::to_owned).collect()),
+        "cover" => {
+            let own = out.claims.last_mut().ok_or("a cover of nothing")?;
+            own.covers.push(words.0.by_ref().map(str::to_owned).collect());
+        }
+        "tube" => out.tubes.push(Tube {
+            phase: words.below(out.phases.len())?,
+            equations: words.list(out.claims.len())?,
+            cover: words.0.by_ref().map(str::to_owned).collect(),
+            highest: vec![],
+            components: vec![],
+            steps: vec![],
+        }),
+        "unknown" => {
+            let spline = words.below(out.splines.len())?;
+            tube(out)?.highest.push((spline, 0));
+        }
+        "component" => {
+            let begin = words.optional(usize::MAX)?;
+            let (own, bounds) = (tube(out)?, [words.interval()?, words.interval()?]);
+            let highest = own.highest.last_mut().ok_or("a component of nothing")?;
+            own.components.push(Component { flat: *highest, begin, bounds });
+            highest.1 += 1;
+        }
+        "box" => {
+            let (start, highest) = (words.points()?, words.points()?);
+            let mut radii = || words.points().map(|all| all.into_iter().map(|x| x.hull(-x)).collect());
+            let (inside, slack) = (radii()?, radii()?);
+            let directions = words.points()?;
+            tube(out)?.steps.push(Step { start, highest, inside, slack, directions });
+        }
         word => {
             let graph = out.graphs.last_mut().ok_or_else(|| format!("`{word}` is unknown"))?;
-            let node = node(word.to_owned().as_str(), words, (graph.nodes.len(), out.tables.as_slice()))?;
-            graph.nodes.push(node);
+            graph.push(node(word, words, (graph.len(), out.tables.as_slice()))?);
         }
     }
     words.end()
 }
 
-/// The first or the last cell between the cuts of a phase.
-pub(crate) fn end_cell(cuts: &[Real], last: bool) -> usize {
-    if last { cuts.len().saturating_sub(2) } else { 0 }
+/// The tube that a line belongs to.
+fn tube(out: &mut Certificate) -> Sound<&mut Tube> {
+    out.tubes.last_mut().ok_or("no tube".to_owned())
 }
 
-fn claim(name: String, quantity: Quantity, bounds: (Option<usize>, Option<usize>)) -> Claim {
-    let (verdict, values, covers) = (String::new(), Interval::ENTIRE, vec![]);
-    Claim { name, quantity, bounds, verdict, residual: None, values, witness: None, covers }
+fn quantity(out: &Certificate, words: &mut Words<'_>) -> Sound<Quantity> {
+    let (functions, phases) = (out.functions.len(), out.phases.len());
+    if words.next()? == "path" {
+        let (function, phase) = (words.below(functions)?, words.below(phases)?);
+        let ends = out.phases[phase].len();
+        return Ok(Quantity::Path(function, phase, (words.below(ends)?, words.below(ends)?)));
+    }
+    words.many(|words| Ok((words.below(functions)?, words.optional(phases)?))).map(Quantity::Sum)
 }
 
-/// The subject or the integral that a line belongs to.
-fn last(out: &mut Certificate) -> Read<&mut Claim> {
-    let Certificate { integrals, claims, .. } = out;
-    claims.last_mut().or(integrals.last_mut()).ok_or("a claim about nothing".to_owned())
-}
-
-fn sum(out: &Certificate, words: &mut Words<'_>) -> Read<Quantity> {
-    let count: usize = words.number()?;
-    let summand = |_| {
-        let function = words.below(out.functions.len())?;
-        let over = match words.next()? {
-            "nowhere" => Over::Nowhere,
-            "over" => Over::Phase(words.below(out.phases.len())?),
-            "start" => Over::End(words.below(out.phases.len())?, false),
-            "end" => Over::End(words.below(out.phases.len())?, true),
-            word => return Err(format!("`{word}` is no place")),
-        };
-        Ok((function, over))
-    };
-    Ok(Quantity::Sum((0..count.min(MOST)).map(summand).collect::<Read<_>>()?))
-}
-
-fn input(out: &Certificate, words: &mut Words<'_>) -> Read<Input> {
+fn input(out: &Certificate, words: &mut Words<'_>) -> Sound<Input> {
     Ok(match words.next()? {
-        "flat" => Input::Flat(words.below(out.flats.len())?, None),
-        word @ ("start" | "end" | "inside") => {
-            let (is_inside, last) = (word == "inside", word == "end");
-            let flat = words.below(out.flats.len())?;
-            let cuts = &out.phases[out.splines[out.flats[flat].0].phase];
-            let cell = if is_inside { words.below(cuts.len().saturating_sub(1))? } else { end_cell(cuts, last) };
-            Input::Flat(flat, Some((cell, last)))
+        "flat" => Input::Flat(out.flats[words.below(out.flats.len())?], None),
+        end @ ("first" | "last") => {
+            let flat = out.flats[words.below(out.flats.len())?];
+            let cells = out.phases[out.splines[flat.0].phase].len().saturating_sub(1);
+            Input::Flat(flat, Some((words.below(cells)?, end == "last")))
         }
         "number" => Input::Value(out.numbers[words.below(out.numbers.len())?]),
         "value" => Input::Value(Interval::point(words.real()?)),
-        "tau" => Input::Tau,
+        "tau" => Input::Flat(TAU, None),
         "integral" => Input::Integral(words.number()?),
-        join @ ("sum" | "product" | "min" | "max") => {
-            let how = match join {
-                "sum" => '+',
-                "product" => '*',
-                "min" => '<',
-                _ => '>',
-            };
-            Input::Join(how, words.list(out.functions.len())?)
-        }
+        join @ ("add" | "mul" | "min" | "max") => Input::Join(join.to_owned(), words.list(out.functions.len())?),
         word => return Err(format!("`{word}` is no input")),
     })
 }
 
-fn node(word: &str, words: &mut Words<'_>, (before, tables): (usize, &[Table])) -> Read<Node> {
-    const ONE: [&str; 17] = [
-        "neg", "sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "abs",
-        "sign", "logistic", "softplus",
-    ];
-    const TWO: [&str; 10] = ["add", "sub", "mul", "div", "pow", "atan2", "hypot", "min", "max", "less_eq"];
+fn node(word: &str, words: &mut Words<'_>, (before, tables): (usize, &[Table])) -> Sound<Node> {
     Ok(match word {
         "const" => Node::Constant(Interval::point(words.real()?)),
         "input" => Node::Input(words.number()?),
         "powi" => Node::Power(words.below(before)?, words.number()?),
-        "select" => Node::Select(words.below(before)?, words.below(before)?, words.below(before)?),
         "lookup" => {
             let table = words.below(tables.len())?;
             let count = tables[table].axes.len();
-            let orders = (0..count).map(|_| words.number()).collect::<Read<_>>()?;
-            Node::Table(table, orders, (0..count).map(|_| words.below(before)).collect::<Read<_>>()?)
+            let orders = (0..count).map(|_| words.number()).collect::<Sound<_>>()?;
+            Node::Table(table, orders, (0..count).map(|_| words.below(before)).collect::<Sound<_>>()?)
         }
-        _ if ONE.contains(&word) => Node::Named(word.to_owned(), words.below(before)?, None),
-        _ if TWO.contains(&word) => Node::Named(word.to_owned(), words.below(before)?, Some(words.below(before)?)),
-        _ => return Err(format!("`{word}` is unknown")),
+        _ => {
+            let operands = words.0.by_ref().map(|operand| operand.parse().ok().filter(|k| *k < before));
+            Node::Named(word.to_owned(), operands.collect::<Option<_>>().ok_or(format!("`{word}` is no operation"))?)
+        }
     })
 }

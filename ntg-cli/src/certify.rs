@@ -95,13 +95,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
             files::print(&format!("{document:#}"));
         }
     }
+    let is_followed = tube.as_ref().is_none_or(Tube::is_whole);
     if let Some(path) = &arguments.output {
-        if let Some(tube) = &tube {
-            found.certificate.statement.spec.push_str(&remarks(tube));
+        if let Some(tube) = tube {
+            found.certificate.statement.spec.push_str(&remarks(&tube));
+            found.certificate.tubes = tube.evidence;
         }
         save(path, arguments.force, &found.certificate)?;
     }
-    let is_followed = tube.as_ref().is_none_or(Tube::is_whole);
     Ok(match found.report.is_solved() && summary.is_proved() && is_followed {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,
@@ -109,11 +110,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     })
 }
 
-/// What a certificate says of a tube: remarks for people below the spec, which `ntg-check` does not read.
+/// What a certificate says of a tube to people, below the spec.
 fn remarks(tube: &Tube) -> String {
     let words = tube.to_string();
     let lines = words.lines().map(|line| format!("// {line}\n"));
-    format!("\n// Computed by ntg certify, and not proved by ntg-check:\n{}", lines.collect::<String>())
+    format!(
+        "\n// What ntg certify found; the lines `component` have what ntg-check proves:\n{}",
+        lines.collect::<String>()
+    )
 }
 
 /// A tube for programs.

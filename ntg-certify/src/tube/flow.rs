@@ -2,7 +2,7 @@
 //!
 //! Differences are in the scales of their components, so that they can be compared with each other.
 
-use super::matrix::{Matrix, basis, inverse_of_basis, solve_enclosed};
+use super::matrix::{Matrix, basis, eliminate, inverse_of_basis};
 use super::reference::{Given, Reference, Rule, collocate};
 use super::system::{System, Values};
 use crate::evaluate::Machine;
@@ -52,6 +52,22 @@ pub(super) struct Step {
     pub(super) over: Vec<Interval>,
     pub(super) at_end: Vec<Interval>,
     pub(super) front: Front,
+    pub(super) proof: Proof,
+}
+
+/// What proves a box again, in SI units: numbers that stand for themselves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// Where the components of the reference begin.
+    pub start: Vec<f64>,
+    /// Bernstein coefficients of its highest derivatives, those of the first unknown first.
+    pub highest: Vec<f64>,
+    /// The most that components of the true state differ from it.
+    pub inside: Vec<f64>,
+    /// The most that its highest derivatives differ.
+    pub slack: Vec<f64>,
+    /// Directions along which differences at the end are bounded, row by row.
+    pub directions: Vec<f64>,
 }
 
 /// Why a box has no enclosure.
@@ -92,6 +108,9 @@ const MOST_RATE: f64 = 0.5;
 const TRIALS: usize = 12;
 const WIDER: f64 = 0.2;
 
+/// What part of a box of differences is left empty, so that another arithmetic finds that it is not left.
+const EMPTY: f64 = 1e-3;
+
 /// Differences as large as the state itself are no enclosure.
 const MOST_DIFFERENCE: f64 = 10.0;
 
@@ -108,16 +127,15 @@ impl Turned {
         Matrix::of_numbers(&self.directions).apply(&self.extents)
     }
 
-    /// All `transition x + shift`, for x inside (docs/maths.md, equation 15.13).
-    fn moved(&self, transition: &Matrix, shift: &[Interval]) -> Option<Self> {
-        let image = transition.times(&Matrix::of_numbers(&self.directions));
+    /// All `image x + shift`, for x in the extents (docs/maths.md, equation 15.13).
+    fn moved(&self, image: &Matrix, shift: &[Interval]) -> Option<Self> {
         let mut long = image.middle();
         for row in &mut long {
             row.iter_mut().zip(&self.extents).for_each(|(entry, extent)| *entry *= extent.size());
         }
         let directions = basis(&long);
         let back = inverse_of_basis(&directions)?;
-        let (turned, shift) = (back.times(&image).apply(&self.extents), back.apply(shift));
+        let (turned, shift) = (back.times(image).apply(&self.extents), back.apply(shift));
         Some(Self { directions, extents: turned.iter().zip(shift).map(|(a, b)| *a + b).collect() })
     }
 }
@@ -154,6 +172,13 @@ impl Window {
     }
 }
 
+/// Boxes of differences, by the most of each, and where those of the components are found to be.
+struct Sets {
+    inside: Vec<f64>,
+    slack: Vec<f64>,
+    reached: Vec<Interval>,
+}
+
 /// The differential inequality of differences on a box: their derivative by scaled time is in `rates e + drift`.
 struct Rates {
     rates: Matrix,
@@ -176,33 +201,43 @@ impl Flow<'_> {
         let reference = collocate(self.machine, self.system, &self.rule, &given).ok_or(Trouble::NoReference)?;
         let residuals = self.residuals(window, &reference)?;
         let begin = from.differences.hull();
-        let (found, inside) = self.picard(window, &reference, (&residuals, &begin))?;
+        let (found, sets) = self.picard(window, &reference, (&residuals, &begin))?;
         let drift = found.drift.iter().fold(0.0, |most: f64, x| most.max(x.size()));
         if drift > RESIDUAL && !is_shortest {
             return Err(Trouble::Coarse);
         }
-        let (whole, end) = transitions(&found.rates, window.length).ok_or(Trouble::Wide)?;
-        let pushed: Vec<Interval> = whole.apply(&found.drift).iter().map(|x| *x * window.length).collect();
+        let (image, pushed) = transition(&found, (&from.differences.directions, &sets.inside), window.length);
         // The reference ends at a double; the rest is a difference.
         let ends: Vec<Interval> = reference.components.iter().map(Piece::last).collect();
         let start: Vec<f64> = ends.iter().map(|x| x.middle()).collect();
         let jump = self.scaled(ends.iter().zip(&start).map(|(x, at)| *x - Interval::point(*at)));
         let shift: Vec<Interval> = pushed.iter().zip(&jump).map(|(a, b)| *a + *b).collect();
-        let differences = from.differences.moved(&end, &shift).ok_or(Trouble::Wide)?;
-        let during = Interval::new(0.0, window.length.high());
-        let drifts = whole.apply(&found.drift);
-        let over = whole.apply(&begin).into_iter().zip(drifts).map(|(a, b)| a + b * during);
-        let over: Vec<Interval> = over.zip(inside).map(|(a, b)| a.meet(b)).collect();
+        let differences = from.differences.moved(&image, &shift).ok_or(Trouble::Wide)?;
+        let proof = self.proof(&reference, from, (&sets, &differences));
         let at_end = differences.hull();
         if at_end.iter().any(|x| x.size().is_nan() || x.size() > MOST_DIFFERENCE) {
             return Err(Trouble::Wide);
         }
         let from_splines = reference.components.iter().zip(&window.components).enumerate();
-        let over = from_splines.map(|(c, (own, spline))| apart(own, spline) + over[c] * self.scales.0[c]).collect();
+        let over =
+            from_splines.map(|(c, (own, spline))| apart(own, spline) + sets.reached[c] * self.scales.0[c]).collect();
         let last =
             |(c, spline): (usize, &Piece)| Interval::point(start[c]) - spline.last() + at_end[c] * self.scales.0[c];
         let at_end = window.components.iter().enumerate().map(last).collect();
-        Ok(Step { over, at_end, front: Front { start, differences } })
+        Ok(Step { over, at_end, front: Front { start, differences }, proof })
+    }
+
+    /// What proves the box again.
+    fn proof(&self, reference: &Reference, from: &Front, (sets, end): (&Sets, &Turned)) -> Proof {
+        let si = |sizes: &[f64], scales: &[f64]| sizes.iter().zip(scales).map(|(size, scale)| size * scale).collect();
+        let rows = end.directions.iter().zip(&self.scales.0);
+        Proof {
+            start: from.start.clone(),
+            highest: reference.highest.iter().flat_map(Piece::middles).collect(),
+            inside: si(&sets.inside, &self.scales.0),
+            slack: si(&sets.slack, &self.scales.1),
+            directions: rows.flat_map(|(row, scale)| row.iter().map(move |x| x * scale)).collect(),
+        }
     }
 
     /// Components in their scales.
@@ -231,26 +266,31 @@ impl Flow<'_> {
         window: &Window,
         reference: &Reference,
         (residuals, begin): (&[Interval], &[Interval]),
-    ) -> Result<(Rates, Vec<Interval>), Trouble> {
+    ) -> Result<(Rates, Sets), Trouble> {
         let during = Interval::new(0.0, window.length.high());
-        let mut inside: Vec<Interval> = begin.iter().map(|x| wider(*x)).collect();
-        let mut highest = vec![Interval::ZERO; self.system.unknowns.len()];
+        let mut inside: Vec<f64> = begin.iter().map(|x| wider(x.size())).collect();
+        let mut slack = vec![0.0; self.system.unknowns.len()];
         for _ in 0..TRIALS {
-            let found = self.rates(window, reference, (residuals, &inside, &highest))?;
+            let around = [&inside, &slack].map(|sizes| sizes.iter().map(|x| Interval::new(-x, *x)).collect::<Vec<_>>());
+            let found = self.rates(window, reference, (residuals, &around[0], &around[1]))?;
             if found.rates.norm() * window.length.high() > MOST_RATE {
                 return Err(Trouble::Wide);
             }
-            let slopes = found.rates.apply(&inside);
+            let slopes = found.rates.apply(&around[0]);
             let reached: Vec<Interval> =
                 (0..begin.len()).map(|c| begin[c] + (slopes[c] + found.drift[c]) * during).collect();
-            let stays = inside.iter().zip(&reached).all(|(all, x)| all.encloses(*x));
-            let known = highest.iter().zip(&found.highest).all(|(all, x)| all.low() < x.low() && x.high() < all.high());
-            if stays && known {
-                return Ok((found, reached));
+            let leaves = |most: f64, x: &Interval| x.size() > most * (1.0 - EMPTY);
+            let mut is_left = false;
+            for (sizes, found) in [(&mut inside, &reached), (&mut slack, &found.highest)] {
+                // A box that is not left stays as it is: a wider one would push the others out again.
+                for (most, x) in sizes.iter_mut().zip(found).filter(|(most, x)| leaves(**most, x)) {
+                    (*most, is_left) = (wider(x.size()), true);
+                }
             }
-            inside = inside.iter().zip(&reached).map(|(a, b)| wider(a.hull(*b))).collect();
-            highest = highest.iter().zip(&found.highest).map(|(a, b)| wider(a.hull(*b))).collect();
-            if inside.iter().chain(&highest).any(|x| x.size().is_nan() || x.size() > MOST_DIFFERENCE) {
+            if !is_left {
+                return Ok((found, Sets { inside, slack, reached }));
+            }
+            if inside.iter().chain(&slack).any(|x| x.is_nan() || *x > MOST_DIFFERENCE) {
                 return Err(Trouble::Wide);
             }
         }
@@ -281,7 +321,7 @@ impl Flow<'_> {
             (0..size).for_each(|c| *rights.at_mut(row, c) = -by_x.at(row, c));
             *rights.at_mut(row, size) = -*residual;
         }
-        let solved = solve_enclosed(&by_w, &rights).ok_or(Trouble::Singular)?;
+        let solved = eliminate(&by_w, &rights).ok_or(Trouble::Singular)?;
         let (mut rates, mut drift) = (Matrix::zero(size, size), vec![Interval::ZERO; size]);
         let ratio = |above: f64, own: f64| Interval::point(above).over(Interval::point(own));
         for (u, unknown) in self.system.unknowns.iter().enumerate() {
@@ -302,10 +342,9 @@ impl Flow<'_> {
     }
 }
 
-/// What is around an interval, a part of its size farther out on both sides.
-fn wider(x: Interval) -> Interval {
-    let by = WIDER * x.width() + 1e-15 * x.size() + f64::MIN_POSITIVE;
-    Interval::new(x.low() - by, x.high() + by)
+/// A size, a part larger.
+fn wider(size: f64) -> f64 {
+    (1.0 + WIDER) * size + f64::EPSILON * f64::EPSILON
 }
 
 /// The difference of two polynomials on the same box.
@@ -314,57 +353,67 @@ fn apart(a: &Piece, b: &Piece) -> Interval {
     (over_a - over_b).range(&(a - b))
 }
 
-/// The transition matrices to all times of a box, and to its end (docs/maths.md, equation 15.12).
-fn transitions(rates: &Matrix, length: Interval) -> Option<(Matrix, Matrix)> {
-    const TERMS: usize = 12;
-    let scaled = rates.clone().map(|x| x * length);
-    let norm = scaled.norm();
-    if norm.is_nan() || norm > 1.0 {
-        return None;
+/// Where the flow moves directions to over a box, and by how much it moves what does not differ (docs/maths.md, equation
+/// 15.12): the series of the transition, whose rest is bounded by all differences inside.
+fn transition(found: &Rates, (directions, inside): (&[Vec<f64>], &[f64]), length: Interval) -> (Matrix, Vec<Interval>) {
+    /// How many powers of the rates are taken; the next one bounds the rest. As in `ntg-check`.
+    const POWERS: usize = 8;
+    let mut image = Matrix::of_numbers(directions);
+    let mut term = image.clone();
+    let mut rest: Vec<Interval> = inside.iter().map(|most| Interval::new(-most, *most)).collect();
+    let (mut pushed, mut push) = (vec![Interval::ZERO; inside.len()], vec![Interval::ZERO; inside.len()]);
+    for k in 1..=POWERS + 1 {
+        let by = length.over(Interval::point(k as f64));
+        let drift: &[Interval] = if k == 1 { &found.drift } else { &[] };
+        let next = |x: &[Interval]| -> Vec<Interval> { found.rates.apply(x).into_iter().map(|x| x * by).collect() };
+        (push, rest) = (next(&push), next(&rest));
+        for (c, own) in drift.iter().enumerate() {
+            push[c] = push[c] + *own * by;
+            rest[c] = rest[c] + *own * by;
+        }
+        if k <= POWERS {
+            term = found.rates.times(&term).map(|x| x * by);
+            image = image.plus(&term);
+            pushed.iter_mut().zip(&push).for_each(|(sum, x)| *sum = *sum + *x);
+        }
     }
-    let size = rates.rows();
-    let (mut end, mut whole) = (Matrix::identity(size), Matrix::identity(size));
-    let (mut power, mut rest) = (Matrix::identity(size), Interval::ONE);
-    for k in 1..=TERMS {
-        power = scaled.times(&power).map(|x| x.over(Interval::point(k as f64)));
-        rest = (rest * Interval::point(norm)).over(Interval::point(k as f64));
-        end = end.plus(&power);
-        whole = whole.plus(&power.clone().map(|x| x.hull(Interval::ZERO)));
-    }
-    // What follows is less than a geometric series with the ratio norm / (TERMS + 1), at most a half.
-    let slack = (rest * Interval::point(norm)).over(Interval::point(TERMS as f64 / 2.0)).high();
-    let slack = |x: Interval| x + Interval::new(-slack, slack);
-    Some((whole.map(slack), end.map(slack)))
+    (image, pushed.iter().zip(rest).map(|(a, b)| *a + b).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn unit() -> Vec<Vec<f64>> {
+        vec![vec![1.0, 0.0], vec![0.0, 1.0]]
+    }
+
+    fn turning(rate: f64, drift: f64) -> Rates {
+        let rates = Matrix::of_numbers(&[vec![0.0, rate], vec![-rate, 0.0]]);
+        Rates { rates, drift: vec![Interval::point(drift), Interval::ZERO], highest: vec![] }
+    }
+
     #[test]
     fn the_transition_of_a_turn_is_a_turn() {
-        let rates = Matrix::of_numbers(&[vec![0.0, 1.0], vec![-1.0, 0.0]]);
-        let (whole, end) = transitions(&rates, Interval::point(0.5)).expect("a short box");
+        let (turn, pushed) = transition(&turning(1.0, 0.5), (&unit(), &[0.5, 0.5]), Interval::point(0.5));
         for (at, expected) in [((0, 0), 0.5_f64.cos()), ((0, 1), 0.5_f64.sin()), ((1, 0), -0.5_f64.sin())] {
-            let found = end.at(at.0, at.1);
-            assert!(found.contains(expected) && found.width() < 1e-12, "{at:?}: {found:?}");
+            let found = turn.at(at.0, at.1);
+            assert!((found.middle() - expected).abs() < 1e-8, "{at:?}: {found:?}");
         }
-        for i in 0..=10 {
-            let t = 0.05 * f64::from(i);
-            assert!(whole.at(0, 0).contains(t.cos()) && whole.at(0, 1).contains(t.sin()));
+        // All differences are below a half, and the rest is a part of that.
+        for (found, expected) in pushed.iter().zip([0.5 * 0.5_f64.sin(), 0.5 * (0.5_f64.cos() - 1.0)]) {
+            assert!(found.contains(expected) && found.width() < 1e-8, "{found:?} {expected}");
         }
-        assert!(transitions(&rates, Interval::point(1.5)).is_none());
     }
 
     #[test]
     fn turned_boxes_do_not_grow_by_turning() {
         // A hundred turns by a hundredth of a circle: a box along the axes would have grown by exp(8 pi / 2).
-        let angle = std::f64::consts::TAU / 100.0;
-        let rates = Matrix::of_numbers(&[vec![0.0, angle], vec![-angle, 0.0]]);
-        let (_, turn) = transitions(&rates, Interval::ONE).expect("a short box");
+        let turn = turning(std::f64::consts::TAU / 100.0, 0.0);
         let mut set = Turned::upright(vec![Interval::new(-1.0, 1.0), Interval::new(-0.01, 0.01)]);
         for _ in 0..100 {
-            set = set.moved(&turn, &[Interval::ZERO; 2]).expect("a turn");
+            let (image, pushed) = transition(&turn, (&set.directions, &[1.1, 1.1]), Interval::ONE);
+            set = set.moved(&image, &pushed).expect("a turn");
         }
         let hull = set.hull();
         assert!(hull[0].contains(1.0) && hull[0].contains(-1.0) && hull[0].size() < 1.2, "{hull:?}");

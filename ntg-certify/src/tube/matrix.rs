@@ -118,7 +118,7 @@ pub(super) fn inverse(matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
 }
 
 /// All solutions of `a x = b` for all matrices and right-hand sides inside, column by column; none where it is not
-/// proved that every matrix inside is regular (docs/maths.md, equation 15.10).
+/// proved that every matrix inside is regular (docs/maths.md, equation 15.14).
 pub(super) fn solve_enclosed(a: &Matrix, b: &Matrix) -> Option<Matrix> {
     let size = a.rows();
     let by = Matrix::of_numbers(&inverse(a.middle())?);
@@ -143,6 +143,27 @@ pub(super) fn solve_enclosed(a: &Matrix, b: &Matrix) -> Option<Matrix> {
         (0..size).for_each(|i| *out.at_mut(i, j) = x[i]);
     }
     Some(out)
+}
+
+/// The same by elimination in intervals: sharper where the matrices are nearly triangular, as those of equations that are
+/// all but solved for what they determine (docs/maths.md, equation 15.10). As in `ntg-check`.
+pub(super) fn eliminate(a: &Matrix, b: &Matrix) -> Option<Matrix> {
+    let size = a.rows();
+    let mut rows: Vec<Vec<Interval>> = (0..size).map(|i| [a.row(i), b.row(i)].concat()).collect();
+    for k in 0..size {
+        let least = |row: &[Interval]| row[k].abs().low();
+        let regular = (k..size).filter(|i| least(&rows[*i]) > 0.0);
+        let pivot = regular.max_by(|i, j| least(&rows[*i]).total_cmp(&least(&rows[*j])))?;
+        rows.swap(k, pivot);
+        let own: Vec<Interval> = rows[k].iter().map(|x| x.over(rows[k][k])).collect();
+        for row in &mut rows {
+            let factor = row[k];
+            (k + 1..own.len()).for_each(|j| row[j] = row[j] - factor * own[j]);
+        }
+        rows[k] = own;
+    }
+    let entries = rows.iter().flat_map(|row| &row[size..]).copied().collect();
+    Some(Matrix { columns: b.columns, entries })
 }
 
 /// An orthogonal basis whose first directions are those of the first columns, in numbers; the columns are taken in
@@ -199,11 +220,12 @@ mod tests {
             let right: Vec<Vec<f64>> = (0..4).map(|_| vec![rng.f64() - 0.5]).collect();
             let wide = Matrix::of_numbers(&numbers).map(|x| x + Interval::new(-0.05, 0.05));
             let found = solve_enclosed(&wide, &Matrix::of_numbers(&right)).expect("regular matrices");
+            let other = eliminate(&wide, &Matrix::of_numbers(&right)).expect("regular matrices");
             for _ in 0..20 {
                 let inside: Vec<Vec<f64>> =
                     numbers.iter().map(|row| row.iter().map(|x| x + 0.1 * rng.f64() - 0.05).collect()).collect();
                 let x = solve(inside, right.clone()).expect("a solution");
-                (0..4).for_each(|i| assert!(found.at(i, 0).contains(x[i][0])));
+                (0..4).for_each(|i| assert!(found.at(i, 0).contains(x[i][0]) && other.at(i, 0).contains(x[i][0])));
             }
         }
     }
@@ -212,8 +234,10 @@ mod tests {
     fn a_singular_matrix_inside_is_noticed() {
         let a = Matrix::of_numbers(&[vec![1.0, 2.0], vec![2.0, 4.0]]);
         assert_eq!(solve_enclosed(&a, &Matrix::identity(2)), None);
+        assert_eq!(eliminate(&a, &Matrix::identity(2)), None);
         let wide = Matrix::identity(2).map(|x| x + Interval::new(-1.0, 1.0));
         assert_eq!(solve_enclosed(&wide, &Matrix::identity(2)), None);
+        assert_eq!(eliminate(&wide, &Matrix::identity(2)), None);
     }
 
     #[test]

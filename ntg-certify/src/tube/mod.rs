@@ -5,8 +5,9 @@
 //! enclosed phase by phase: a reference that nearly satisfies the equations is computed, and what is between it and the
 //! true state is bounded box by box of time. A later phase begins with what its predecessor ends with.
 //!
-//! A tube is computed here and is no part of what `ntg-check` proves.
+//! What was found comes with what proves it again: `ntg-check` needs to find nothing.
 
+mod evidence;
 mod flow;
 mod matrix;
 mod reference;
@@ -24,6 +25,8 @@ use crate::interval::Interval;
 use crate::spline::Piece;
 use crate::statement::Flat;
 use crate::summary::Band;
+pub use evidence::{Component, Evidence, Unknown};
+pub use flow::Proof;
 use flow::{Flow, Front, Step, Trouble, Turned, Window};
 use reference::Rule;
 use system::System;
@@ -78,6 +81,8 @@ pub struct Tube {
     pub boxes: usize,
     /// Wall-clock seconds.
     pub seconds: f64,
+    /// For every phase whose tube reaches its end, what proves it again.
+    pub evidence: Vec<Evidence>,
 }
 
 impl Tube {
@@ -97,8 +102,15 @@ impl Stretch {
     }
 }
 
-/// The differences of a phase's state at its end, in SI units of mission time: output, derivative, difference.
-type Handed = Vec<(String, usize, Interval)>;
+/// The difference of a component of a phase's state at its end, in SI units of mission time.
+#[derive(Clone, Debug)]
+struct Handed {
+    output: String,
+    derivative: usize,
+    by: Interval,
+    /// Its number among the components of all tubes that reach their ends.
+    number: usize,
+}
 
 /// Boxes of time in order, with what is known of each.
 type Steps = Vec<(Window, Step)>;
@@ -109,18 +121,19 @@ pub fn tube(certificate: &Certificate, solution: &Solution) -> Tube {
     let mut machine = Machine::new(&certificate.statement);
     machine.integrals = certificate.integrals.iter().map(|(value, _)| *value).collect();
     let before = predecessors(solution);
-    let (mut handed, mut phases, mut boxes): (Vec<Option<Handed>>, Vec<Stretch>, usize) = (vec![], vec![], 0);
+    let (mut handed, mut phases, mut boxes): (Vec<Option<Vec<Handed>>>, Vec<Stretch>, usize) = (vec![], vec![], 0);
+    let mut evidence: Vec<Evidence> = vec![];
     for (phase, before) in before.iter().enumerate() {
         let of = Phase { machine: &machine, certificate, solution, phase };
         // What follows a phase without a tube has no state to begin with.
         let begin = before.map_or(Some(vec![]), |before| handed.get(before).cloned().flatten());
-        let (stretch, ends, own) = of.stretch(begin);
+        let (stretch, ends, own) = of.stretch(begin, &mut evidence);
         boxes += own;
         handed.push(ends);
         phases.push(stretch);
     }
     let independent = solution.structure().independent.clone();
-    Tube { phases, independent, boxes, seconds: began.elapsed().as_secs_f64() }
+    Tube { phases, independent, boxes, seconds: began.elapsed().as_secs_f64(), evidence }
 }
 
 /// The phase that each one follows, by number. An agent's phases are numbered one after the other.
@@ -155,8 +168,12 @@ const MOST_HALVINGS: u32 = 10;
 const LEAST_SIZE: f64 = 1e-3;
 
 impl Phase<'_> {
-    /// The tube, and what it hands to the next phase.
-    fn stretch(&self, begin: Option<Handed>) -> (Stretch, Option<Handed>, usize) {
+    /// The tube, what it hands to the next phase, and its boxes; with evidence where it reaches the end.
+    fn stretch(
+        &self,
+        begin: Option<Vec<Handed>>,
+        evidence: &mut Vec<Evidence>,
+    ) -> (Stretch, Option<Vec<Handed>>, usize) {
         let name = self.machine.statement.phases[self.phase].name.clone();
         let none = |words: String| Stretch { phase: name.clone(), states: vec![], ending: Ending::None(words) };
         let system = match System::of(self.machine, self.phase) {
@@ -173,7 +190,12 @@ impl Phase<'_> {
         let states = self.states(&system, &steps, trouble.is_none());
         let boxes = steps.len();
         let (ending, ends) = match trouble {
-            None => (Ending::Whole, steps.last().map(|(_, step)| self.handed(&system, step))),
+            None => {
+                let known = evidence.iter().map(|own| own.components.len()).sum();
+                let handed = steps.last().map(|(_, step)| self.handed(&system, step, known));
+                evidence.push(self.evidence(&system, steps, &begin));
+                (Ending::Whole, handed)
+            }
             Some((window, trouble)) => {
                 let part = window.part as f64 * 0.5_f64.powi(window.halvings as i32);
                 (Ending::At(self.shown(window.cell, part), trouble.words().to_owned()), None)
@@ -183,7 +205,7 @@ impl Phase<'_> {
     }
 
     /// Steps from box to box, halving where one fails, to the end or to a box that cannot be halved any more.
-    fn follow(&self, flow: &Flow<'_>, begin: &Handed) -> (Steps, Option<(Window, Trouble)>) {
+    fn follow(&self, flow: &Flow<'_>, begin: &[Handed]) -> (Steps, Option<(Window, Trouble)>) {
         let phase = &self.machine.statement.phases[self.phase];
         let mut steps: Steps = vec![];
         let mut front = None;
@@ -226,13 +248,12 @@ impl Phase<'_> {
     }
 
     /// Where the phase begins: where its splines begin, and what is handed to it.
-    fn front(&self, flow: &Flow<'_>, first: &Window, begin: &Handed) -> Front {
+    fn front(&self, flow: &Flow<'_>, first: &Window, begin: &[Handed]) -> Front {
         let mut start = vec![];
         let mut differences = vec![];
         for ((unknown, k), spline) in flow.system.components().zip(&first.components) {
-            let handed =
-                begin.iter().find(|(name, derivative, _)| *derivative == k && *name == self.own_name(unknown.spline));
-            let more = handed.map_or(Interval::ZERO, |(_, _, by)| *by * self.seconds(k));
+            let handed = self.handed_to((unknown.spline, k), begin);
+            let more = handed.map_or(Interval::ZERO, |handed| handed.by * self.seconds(k));
             let exact = spline.first() + more;
             start.push(exact.middle());
             differences.push(exact - Interval::point(exact.middle()));
@@ -240,9 +261,18 @@ impl Phase<'_> {
         Front { start, differences: Turned::upright(flow.scaled(differences.into_iter())) }
     }
 
-    fn handed(&self, system: &System, step: &Step) -> Handed {
-        let each = system.components().zip(&step.at_end);
-        each.map(|((unknown, k), by)| (self.own_name(unknown.spline), k, by.over(self.seconds(k)))).collect()
+    /// What a component begins with.
+    fn handed_to<'h>(&self, (spline, derivative): (usize, usize), begin: &'h [Handed]) -> Option<&'h Handed> {
+        begin.iter().find(|handed| handed.derivative == derivative && handed.output == self.own_name(spline))
+    }
+
+    fn handed(&self, system: &System, step: &Step, known: usize) -> Vec<Handed> {
+        let each = system.components().zip(&step.at_end).enumerate();
+        each.map(|(c, ((unknown, derivative), by))| {
+            let by = by.over(self.seconds(derivative));
+            Handed { output: self.own_name(unknown.spline), derivative, by, number: known + c }
+        })
+        .collect()
     }
 
     /// A power of the phase's duration: derivatives are by scaled time.

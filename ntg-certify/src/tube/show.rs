@@ -7,11 +7,7 @@ use super::{Ending, State, Tube};
 impl State {
     /// `x`, `der(x)`, `der(x, 2)`.
     pub fn label(&self) -> String {
-        match self.derivative {
-            0 => self.name.clone(),
-            1 => format!("der({})", self.name),
-            k => format!("der({}, {k})", self.name),
-        }
+        label(&self.name, self.derivative)
     }
 
     /// `km`, `km/s`, `1/s^2`.
@@ -60,6 +56,15 @@ impl fmt::Display for Tube {
             writeln!(f, "  where there is no tube, no more is certified than the residuals of the equations")?;
         }
         Ok(())
+    }
+}
+
+/// A derivative of an output.
+pub(super) fn label(name: &str, derivative: usize) -> String {
+    match derivative {
+        0 => name.to_owned(),
+        1 => format!("der({name})"),
+        k => format!("der({name}, {k})"),
     }
 }
 

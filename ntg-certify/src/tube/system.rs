@@ -37,8 +37,9 @@ pub(super) struct System {
     pub(super) inputs: Vec<usize>,
     /// How many components the state has.
     pub(super) size: usize,
-    /// Functions that are to be equal to numbers, and the flats that each needs.
-    equations: Vec<(usize, Interval, Vec<usize>)>,
+    /// The subjects that are the equations.
+    pub(super) subjects: Vec<usize>,
+    equations: Vec<Equation>,
     roles: BTreeMap<usize, Role>,
 }
 
@@ -50,10 +51,16 @@ pub(super) struct Values<T> {
     pub(super) tau: T,
 }
 
-/// The equalities along a phase that could be equations of motion: functions and the numbers that they equal.
-fn equalities(machine: &Machine<'_>, phase: usize) -> Result<Vec<(usize, Interval)>, String> {
+/// A function that is to be equal to a number, and the flats that it needs.
+type Equation = (usize, Interval, Vec<usize>);
+
+/// An equality: which subject it is, its function, and the number that this equals.
+type Equality = (usize, usize, Interval);
+
+/// The equalities along a phase that could be equations of motion.
+fn equalities(machine: &Machine<'_>, phase: usize) -> Result<Vec<Equality>, String> {
     let mut found = vec![];
-    for subject in &machine.statement.subjects {
+    for (number, subject) in machine.statement.subjects.iter().enumerate() {
         let (Kind::Constraint(_), Quantity::Path(function, own, cells)) = (subject.kind, &subject.quantity) else {
             continue;
         };
@@ -72,7 +79,7 @@ fn equalities(machine: &Machine<'_>, phase: usize) -> Result<Vec<(usize, Interva
         if !value.total {
             return Err(format!("the sides of `{}` have no bounds", subject.name));
         }
-        found.push((*function, value.c[0]));
+        found.push((number, *function, value.c[0]));
     }
     Ok(found)
 }
@@ -82,8 +89,8 @@ impl System {
     pub(super) fn of(machine: &Machine<'_>, phase: usize) -> Result<Option<Self>, String> {
         let statement = machine.statement;
         let all = equalities(machine, phase)?;
-        let needs: Vec<Vec<usize>> = all.iter().map(|(function, _)| machine.needs(*function)).collect();
-        if let Some(integral) = all.iter().find_map(|(function, _)| unbounded_integral(machine, *function)) {
+        let needs: Vec<Vec<usize>> = all.iter().map(|(_, function, _)| machine.needs(*function)).collect();
+        if let Some(integral) = all.iter().find_map(|(_, function, _)| unbounded_integral(machine, *function)) {
             return Err(format!("they depend on integral {integral}, which has no bounds"));
         }
         let mut orders: BTreeMap<usize, usize> = BTreeMap::new();
@@ -112,15 +119,16 @@ impl System {
             .filter(|spline| orders[spline] == 0)
             .collect();
         let algebraic = if given.len() == others.len() { given } else { BTreeSet::new() };
-        let chosen = dynamic.iter().chain(others.iter().filter(|_| !algebraic.is_empty()));
-        let equations = chosen.map(|e| (all[*e].0, all[*e].1, needs[*e].clone())).collect();
+        let chosen: Vec<usize> = if algebraic.is_empty() { dynamic } else { [dynamic, others].concat() };
+        let equations = chosen.iter().map(|e| (all[*e].1, all[*e].2, needs[*e].clone())).collect();
+        let subjects = chosen.iter().map(|e| all[*e].0).collect();
         let splines = states.into_iter().chain(algebraic).map(|spline| (spline, orders[&spline])).collect();
-        Ok(Some(Self::with(statement, equations, splines)))
+        Ok(Some(Self::with(statement, (subjects, equations), splines)))
     }
 
     fn with(
         statement: &Statement,
-        equations: Vec<(usize, Interval, Vec<usize>)>,
+        (subjects, equations): (Vec<usize>, Vec<Equation>),
         splines: Vec<(usize, usize)>,
     ) -> Self {
         let (mut unknowns, mut size): (Vec<Unknown>, usize) = (vec![], 0);
@@ -141,7 +149,7 @@ impl System {
             }
             roles.entry(*flat).or_insert(role);
         }
-        Self { unknowns, inputs, size, equations, roles }
+        Self { unknowns, inputs, size, subjects, equations, roles }
     }
 
     /// For each component the unknown and the derivative that it is.
@@ -164,9 +172,7 @@ impl System {
     /// By how much each equation is missed.
     pub(super) fn residuals(&self, machine: &Machine<'_>, values: &Values<Jet>) -> Vec<Jet> {
         let here = self.here(machine, values);
-        let one = |(function, bound, _): &(usize, Interval, Vec<usize>)| {
-            machine.evaluate(*function, &here) - Jet::constant(*bound)
-        };
+        let one = |(function, bound, _): &Equation| machine.evaluate(*function, &here) - Jet::constant(*bound);
         self.equations.iter().map(one).collect()
     }
 
