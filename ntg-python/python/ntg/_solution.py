@@ -448,7 +448,8 @@ class Solution:
             self._page = self.html()
         return (
             f'<iframe srcdoc="{html.escape(self._page, quote=True)}" title="report of {html.escape(self.problem.name)}" '
-            'style="width: 100%; height: 720px; border: 1px solid #8884; border-radius: 4px" loading="lazy"></iframe>'
+            'style="width: 100%; height: 720px; border: 1px solid #8884; border-radius: 4px; box-sizing: border-box" '
+            'loading="lazy"></iframe>'
         )
 
 
