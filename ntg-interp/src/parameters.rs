@@ -1,5 +1,7 @@
 //! Parameters set by name, in the units that a person uses.
 
+use ntg_structure::Parameter;
+
 use crate::Interpreted;
 
 /// Why a parameter could not be set.
@@ -9,8 +11,8 @@ pub enum SetError {
     Unknown(String, Vec<String>),
     /// An array got the wrong number of values: name, wanted, got.
     Count(String, usize, usize),
-    /// An index outside the array, or an index for a parameter that is no array: name, index.
-    Index(String, i64),
+    /// An index outside the array, or an index for a parameter that is no array: name, index, members.
+    Index(String, i64, Option<usize>),
     /// A value that is not finite.
     NotFinite(String),
 }
@@ -24,8 +26,17 @@ impl std::fmt::Display for SetError {
             Self::Unknown(name, known) => {
                 write!(f, "there is no parameter `{name}`; the parameters are: `{}`", known.join("`, `"))
             }
-            Self::Count(name, wanted, got) => write!(f, "`{name}` holds {wanted} values, but {got} are given"),
-            Self::Index(name, index) => write!(f, "`{name}[{index}]` does not exist"),
+            Self::Count(name, wanted, got) => {
+                let (values, are) =
+                    (if *wanted == 1 { "value" } else { "values" }, if *got == 1 { "is" } else { "are" });
+                write!(f, "`{name}` holds {wanted} {values}, but {got} {are} given")
+            }
+            Self::Index(name, index, Some(members)) => {
+                write!(f, "there is no `{name}[{index}]`; the members are `{name}[1]` to `{name}[{members}]`")
+            }
+            Self::Index(name, index, None) => {
+                write!(f, "there is no `{name}[{index}]`: `{name}` is one number, not an array")
+            }
             Self::NotFinite(name) => write!(f, "`{name}` must be a finite number"),
         }
     }
@@ -52,11 +63,10 @@ impl Interpreted {
         let declared = &self.structure.parameters[parameter];
         let factor = declared.unit.factor;
         let member = match index {
-            None if declared.value.len() == 1 => Some(0),
+            None if declared.value.len() == 1 => 0,
             None => return Err(SetError::Count(name.to_owned(), declared.value.len(), 1)),
-            Some(index) => usize::try_from(index - 1).ok().filter(|k| declared.array && *k < declared.value.len()),
+            Some(index) => member(declared, index)?,
         };
-        let member = member.ok_or_else(|| SetError::Index(name.to_owned(), index.unwrap_or(1)))?;
         Ok(Place { parameter, member, factor })
     }
 
@@ -100,11 +110,8 @@ impl Interpreted {
         if !value.is_finite() {
             return Err(SetError::NotFinite(name.to_owned()));
         }
-        let member = usize::try_from(index - 1).ok().filter(|_| parameter.array);
-        match member.and_then(|k| parameter.value.get_mut(k)) {
-            Some(place) => *place = value,
-            None => return Err(SetError::Index(name.to_owned(), index)),
-        }
+        let member = member(parameter, index)?;
+        parameter.value[member] = value;
         Ok(())
     }
 
@@ -114,5 +121,36 @@ impl Interpreted {
             .iter()
             .position(|p| p.name == name)
             .ok_or_else(|| SetError::Unknown(name.to_owned(), parameters.iter().map(|p| p.name.clone()).collect()))
+    }
+}
+
+/// Which number of an array an index from 1 is.
+fn member(parameter: &Parameter, index: i64) -> Result<usize, SetError> {
+    let members = parameter.array.then_some(parameter.value.len());
+    let member = usize::try_from(index).ok().and_then(|index| index.checked_sub(1));
+    let member = member.filter(|member| members.is_some_and(|members| *member < members));
+    member.ok_or_else(|| SetError::Index(parameter.name.clone(), index, members))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_index_that_is_none_is_told_what_there_is() {
+        let of = |array: bool| Parameter {
+            name: "a".into(),
+            doc: String::new(),
+            unit: ntg_structure::Unit::default(),
+            array,
+            value: vec![1.0, 2.0],
+        };
+        assert_eq!([1, 2].map(|index| member(&of(true), index)), [Ok(0), Ok(1)]);
+        for index in [i64::MIN, -1, 0, 3, i64::MAX] {
+            let words = member(&of(true), index).map_err(|error| error.to_string());
+            assert_eq!(words, Err(format!("there is no `a[{index}]`; the members are `a[1]` to `a[2]`")));
+            let words = member(&of(false), index).map_err(|error| error.to_string());
+            assert_eq!(words, Err(format!("there is no `a[{index}]`: `a` is one number, not an array")));
+        }
     }
 }

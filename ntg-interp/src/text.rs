@@ -53,6 +53,9 @@ pub fn target(target: &str) -> Result<(&str, Option<i64>), String> {
 /// # Errors
 /// In words: what cannot be read, units that do not fit.
 pub fn quantity(text: &str, unit: &Unit) -> Result<Vec<f64>, String> {
+    if text.trim().is_empty() {
+        return Err("no value is given".to_owned());
+    }
     let source = Source::new("the command line", bracketed(text));
     ntg_compiler::model::given(&source, unit).map_err(|found| {
         if found.iter().any(|finding| finding.code == Code::UnknownName) {

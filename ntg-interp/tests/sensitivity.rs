@@ -118,12 +118,16 @@ fn pushing(report: &Report) -> Vec<bool> {
     multipliers.iter().map(|y| y.abs() > IDLE * largest).collect()
 }
 
-/// The parameters by which derivatives and differences do not agree, with the worst quantity.
+/// The parameters by which derivatives and differences do not agree, with the worst quantity. Nothing is compared where
+/// constraints are said to be only just active, and the objective alone where other solutions are said to be as good.
 fn disagreements(problem: Interpreted) -> Vec<String> {
     let mut solver = Solver::new(problem, &settings());
     let report = solver.solve().unwrap_or_else(|error| panic!("{error}"));
     assert!(report.is_solved(), "{report}");
     let sensitivity = report.sensitivity(&solver.problem).unwrap_or_else(|error| panic!("{error}"));
+    if !sensitivity.weak().is_empty() {
+        return vec![];
+    }
     let span = (report.solution.start(), report.solution.end());
     let times = [0.31, 0.77].map(|part| span.0 + part * (span.1 - span.0));
     let numbers = everything(&solver.problem, &report, Some(&sensitivity), &times);
@@ -165,6 +169,7 @@ fn disagreements(problem: Interpreted) -> Vec<String> {
                 errors[i] = errors[i].min(if error == 0.0 { 0.0 } else { error / size });
             }
         }
+        errors.truncate(if sensitivity.is_strict() { errors.len() } else { 1 });
         let worst = (0..errors.len()).max_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap_or(0);
         if compared && (errors[worst].is_nan() || errors[worst] > MOST) {
             let own = numbers[worst].slopes.get(k);
@@ -174,48 +179,51 @@ fn disagreements(problem: Interpreted) -> Vec<String> {
     found
 }
 
+/// Specs at whose solutions active constraints contradict each other as soon as they move: there are no derivatives.
+const REFUSED: [&str; 2] = ["powered_descent_6dof", "racing"];
+
+/// The shipped specs by name, whatever there is.
+fn shipped_names() -> Vec<String> {
+    let files = std::fs::read_dir(folder()).expect("the specs").map(|entry| entry.expect("an entry").path());
+    let specs = files.filter(|path| path.extension().is_some_and(|ending| ending == "ntg"));
+    let mut names: Vec<String> = specs.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    names
+}
+
 #[track_caller]
-fn assert_differentiated(names: &[&str]) {
+fn assert_differentiated(is_wanted: impl Fn(&str) -> bool) {
     let mut found = vec![];
+    let is_compared = |name: &str| is_wanted(name) && !REFUSED.contains(&name);
+    let names: Vec<String> = shipped_names().into_iter().filter(|name| is_compared(name)).collect();
+    assert!(names.len() > 3, "{names:?}");
     for name in names {
-        found.extend(disagreements(shipped(name)).into_iter().map(|words| format!("{name}: {words}")));
+        found.extend(disagreements(shipped(&name)).into_iter().map(|words| format!("{name}: {words}")));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
+fn is_flight(name: &str) -> bool {
+    name.starts_with("low_observable")
+}
+
+fn is_of_several(name: &str) -> bool {
+    name.starts_with("multi_vehicle") || matches!(name, "strike_and_look" | "swarm" | "radar_net")
+}
+
 #[test]
 fn derivatives_of_the_flights_are_those_of_differences() {
-    assert_differentiated(&[
-        "low_observable",
-        "low_observable_cosine",
-        "low_observable_gauss",
-        "low_observable_phases",
-        "low_observable_phases_cosine",
-    ]);
+    assert_differentiated(is_flight);
 }
 
 #[test]
 fn derivatives_of_several_vehicles_are_those_of_differences() {
-    assert_differentiated(&[
-        "multi_vehicle",
-        "multi_vehicle_look_after_strike",
-        "multi_vehicle_separated",
-        "multi_vehicle_simultaneous",
-        "strike_and_look",
-    ]);
+    assert_differentiated(is_of_several);
 }
 
 #[test]
 fn derivatives_of_all_other_specs_are_those_of_differences() {
-    assert_differentiated(&[
-        "gates",
-        "halo_orbit",
-        "kinematic_car",
-        "kinematic_car_gauss",
-        "launch",
-        "missile_boost_coast",
-        "missile_intercept",
-    ]);
+    assert_differentiated(|name| !is_flight(name) && !is_of_several(name));
 }
 
 /// From rest to rest with the least effort: x = d (3 tau^2 - 2 tau^3), with cost 12 d^2 / T^3.

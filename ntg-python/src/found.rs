@@ -23,7 +23,7 @@ use crate::watch::Watch;
 #[pyclass(frozen, module = "ntg._ntg")]
 pub(crate) struct Found {
     spec: Arc<Spec>,
-    problem: Arc<Interpreted>,
+    pub(crate) problem: Arc<Interpreted>,
     pub(crate) report: Report,
     iterations: Vec<Progress>,
 }

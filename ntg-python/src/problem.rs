@@ -11,8 +11,10 @@ use ntg_interp::Interpreted;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::solve_from;
+use ntg_runtime::structure::Structure;
+use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors;
 use crate::found::Found;
@@ -94,11 +96,29 @@ pub(crate) fn constants(text: String) -> Vec<String> {
     model::constants(&Source::new("spec", text))
 }
 
+/// The guess that a solution is. It may be one of another problem, but not one without any output of this problem.
+pub(crate) fn start(py: Python<'_>, problem: &Interpreted, found: &Found) -> PyResult<Guess> {
+    let (own, other) = (problem.structure(), found.problem.structure());
+    let names = |structure: &Structure| -> Vec<String> {
+        let outputs = structure.phases.iter().flat_map(|phase| &phase.outputs);
+        outputs.map(|output| output.name.clone()).collect()
+    };
+    let known = names(&other);
+    if !names(&own).iter().any(|name| known.contains(name)) {
+        let words = format!("the guess is a solution of `{}`, which has no output of `{}`", other.name, own.name);
+        return Err(errors::plain(py, "ParameterError", &words));
+    }
+    Ok(Guess::from(&found.report.solution))
+}
+
 /// Sets parameters: numbers and sequences in declared units, or text with a unit.
 pub(crate) fn assign(problem: &mut Interpreted, parameters: &Bound<'_, PyDict>) -> PyResult<()> {
     let py = parameters.py();
     for (name, value) in parameters {
-        let name: String = name.extract()?;
+        let Ok(name) = name.extract::<String>() else {
+            let words = format!("the names of parameters are texts, not {}", kind(&name));
+            return Err(PyTypeError::new_err(words));
+        };
         set(problem, &name, &value)
             .map_err(|message| errors::plain(py, "ParameterError", &format!("parameter `{name}`: {message}")))?;
     }
@@ -109,15 +129,23 @@ fn set(problem: &mut Interpreted, name: &str, value: &Bound<'_, PyAny>) -> Resul
     if let Ok(text) = value.extract::<String>() {
         return problem.assign(name, &text);
     }
-    let numbers = match value.extract::<f64>() {
-        Ok(number) => vec![number],
-        Err(_) => {
+    let numbers = match number(value)? {
+        Some(number) => vec![number],
+        None => {
             let parts: Vec<Bound<'_, PyAny>> = value.extract().map_err(|_| wrong(value))?;
+            let of = |(index, part): (usize, &Bound<'_, PyAny>)| {
+                let found = number(part).and_then(|found| found.ok_or_else(|| wrong(part)));
+                found.map_err(|words| format!("member {index}: {words}"))
+            };
             if parts.iter().any(|part| part.extract::<String>().is_ok()) {
-                let parts: Vec<String> = parts.iter().map(ToString::to_string).collect();
+                let text = |(index, part): (usize, &Bound<'_, PyAny>)| match part.extract::<String>() {
+                    Ok(text) => Ok(text),
+                    Err(_) => of((index, part)).map(|number| number.to_string()),
+                };
+                let parts = (1..).zip(&parts).map(text).collect::<Result<Vec<_>, _>>()?;
                 return members(problem, name, &parts);
             }
-            parts.iter().map(|part| part.extract()).collect::<Result<_, _>>().map_err(|_| wrong(value))?
+            (1..).zip(&parts).map(of).collect::<Result<_, _>>()?
         }
     };
     // Names that are none, counts and bounds are found by the same code as those of text.
@@ -144,9 +172,25 @@ fn members(problem: &mut Interpreted, name: &str, parts: &[String]) -> Result<()
     (1..).zip(parts).try_for_each(|(index, part)| problem.assign(&format!("{name}[{index}]"), part))
 }
 
+/// A number; none for what is something else.
+fn number(value: &Bound<'_, PyAny>) -> Result<Option<f64>, String> {
+    if value.is_instance_of::<PyBytes>() {
+        return Err(format!("{}; bytes are decoded first", wrong(value)));
+    }
+    match value.extract::<f64>() {
+        Ok(number) => Ok(Some(number)),
+        Err(error) if error.is_instance_of::<PyOverflowError>(value.py()) => Err("the number is too large".to_owned()),
+        Err(_) => Ok(None),
+    }
+}
+
+/// What a value is, in one word.
+fn kind(value: &Bound<'_, PyAny>) -> String {
+    value.get_type().name().map_or_else(|_| "this".to_owned(), |name| name.to_string())
+}
+
 fn wrong(value: &Bound<'_, PyAny>) -> String {
-    let kind = value.get_type().name().map_or_else(|_| "this".to_owned(), |name| name.to_string());
-    format!("{kind} is neither a number, a text such as \"240 m/s\", nor a sequence of them")
+    format!("{} is neither a number, a text such as \"240 m/s\", nor a sequence of them", kind(value))
 }
 
 #[pymethods]
@@ -235,8 +279,8 @@ impl Compiled {
         let mut settings = settings.settings(py)?;
         let watch = Watch::new(callback);
         watch.over(&mut settings);
-        let guess = guess.map_or_else(Guess::new, |found| Guess::from(&found.get().report.solution));
         let problem = &*self.problem;
+        let guess = guess.map(|found| start(py, problem, found.get())).transpose()?.unwrap_or_default();
         let solved = py.detach(|| solve_from(problem, &guess, &settings));
         let iterations = watch.end()?;
         let report = solved.map_err(|error| errors::of(py, &error, &self.spec.source))?;

@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 
 use crate::errors;
 use crate::found::Found;
-use crate::problem::{Spec, assign};
+use crate::problem::{Spec, assign, start};
 use crate::watch::Watch;
 
 /// A kept solver. One thread uses it at a time.
@@ -59,7 +59,7 @@ impl KeptSolver {
         assign(&mut problem, parameters)?;
         solver.problem = problem;
         let from = match guess {
-            Some(found) => From::Solution(Guess::from(&found.get().report.solution)),
+            Some(found) => From::Solution(start(py, &solver.problem, found.get())?),
             None if again => From::Last,
             None => From::Spec,
         };

@@ -1,8 +1,12 @@
 """What tests share: the specs of the repository, and small ones."""
 
+import os
 from pathlib import Path
 
 import pytest
+
+# Ray reads it when it is imported: a loaded machine takes longer than the usual half minute.
+os.environ.setdefault("RAY_raylet_start_wait_time_s", "180")
 
 import ntg
 

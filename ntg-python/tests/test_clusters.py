@@ -63,11 +63,10 @@ def test_ray_with_a_worker_killed_on_the_way(study):
     from ntg import _batches
 
     problem, table, whole = study
-    os.environ.setdefault("RAY_raylet_start_wait_time_s", "180")
     ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
     try:
         assert_same(whole, ntg.ray.solve_many(problem, table, values=VALUES, block=8, batch=64))
-        task, batches, back = _batches.cut(problem, table, dict(values=VALUES, block=8, batch=16))
+        task, batches, back = _batches.cut(problem, table, dict(values=VALUES, block=8, batch=16), lambda: 2)
         solved, victim = [], None
         for batch in ntg.ray.map_batches(task, batches, workers=2):
             solved.append(batch)

@@ -55,7 +55,7 @@ def test_parameters_take_numbers_and_texts_with_units(move):
         ("1 s", "length|m"),
         ("fast", "write a number"),
         (float("nan"), "finite"),
-        ([1, 2], "holds 1 values, but 2 are given"),
+        ([1, 2], "holds 1 value, but 2 are given"),
         (None, "NoneType is neither a number"),
         (object(), "object is neither a number"),
     ]:

@@ -11,6 +11,9 @@ use crate::journal::{Journal, Of};
 use crate::shard::Shard;
 use crate::study::{Results, Row, Study};
 
+/// Rows at a time at most. Threads beyond the cores only wait for each other, and so many cores no machine has.
+const MOST_JOBS: usize = 1024;
+
 /// Who wants to know how far it is, and may stop it.
 pub trait Watcher: Sync {
     /// So many rows are finished.
@@ -120,6 +123,7 @@ struct Work<'a, S> {
 impl<S: Solve> Work<'_, S> {
     /// Solves all blocks on threads of its own; rows go to `send`.
     fn on_cores(&self, jobs: usize, send: Sender<Row>) -> Result<(), String> {
+        let jobs = jobs.min(self.study.sets.len()).min(MOST_JOBS);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().map_err(|error| error.to_string())?;
         // One block at a time, first blocks first: solves differ in length.
         pool.install(|| {
@@ -259,6 +263,35 @@ mod tests {
     fn bits(results: &Results) -> Vec<(usize, String, Vec<u64>)> {
         let rows = results.rows.iter();
         rows.map(|row| (row.row, row.status.clone(), row.numbers.iter().map(|n| n.to_bits()).collect())).collect()
+    }
+
+    #[test]
+    fn no_more_threads_are_begun_than_there_are_rows() {
+        /// Says how many threads its pool has.
+        struct Threads(Vec<String>);
+
+        impl Solve for Threads {
+            type Start = ();
+            fn first(&self, row: usize, set: &[f64]) -> Option<(Row, Option<()>)> {
+                Some((self.next(row, set, None)?, Some(())))
+            }
+            fn next(&self, row: usize, set: &[f64], _: Option<&()>) -> Option<Row> {
+                let numbers = vec![rayon::current_num_threads() as f64];
+                Some(Row { row, set: set.to_vec(), status: "solved".into(), binding: String::new(), numbers })
+            }
+            fn names(&self) -> Option<&[String]> {
+                Some(&self.0)
+            }
+        }
+
+        let threads = Threads(vec!["threads".into()]);
+        for (jobs, wanted) in [(2, 2.0), (50, 50.0), (51, 50.0), (1_000_000, 50.0), (usize::MAX, 50.0)] {
+            let all = blocks(&study().sets, 8);
+            let Ok(Ended::Finished(rows)) = solve_all(&study(), all, jobs, &after(1000), &threads) else {
+                panic!("it is not stopped");
+            };
+            assert!(rows.rows.iter().all(|row| row.numbers == [wanted]), "{jobs}");
+        }
     }
 
     #[test]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, overload
 
+from . import _given
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
@@ -46,7 +48,8 @@ class Curve:
         """A derivative with respect to time, in `unit` per second to the power of `order`. Of outputs only."""
         import numpy as np
 
-        times = np.asarray(t, dtype=np.float64)
+        times = _given.times(t)
+        order = _given.count(order, "the order of a derivative", 0)
         values = self._core.values(self.name, np.ascontiguousarray(times.reshape(-1)), order)
         return float(values[0]) if times.ndim == 0 else values.reshape(times.shape)
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Optional, Sequence
 
+from . import _given
+from ._curve import Curve
+from ._sensitivity import checked
 from ._settings import DEFAULT, Settings
 
 if TYPE_CHECKING:
@@ -27,8 +30,10 @@ class Function:
     ) -> None:
         import numpy as np
 
-        self.inputs = list(inputs)
-        self.outputs = [one if isinstance(one, str) else (one[0], np.asarray(one[1], float)) for one in outputs]
+        self.inputs = _given.names(inputs, "inputs")
+        # Finds what cannot be set.
+        problem.with_parameters({name: 0.0 for name in self.inputs})
+        self.outputs = [one if isinstance(one, str) else (one[0], _given.times(one[1])) for one in checked(outputs)]
         self.size = sum(1 if isinstance(one, str) else one[1].size for one in self.outputs)
         self._solver = problem.solver(settings=settings)
         self._last: "Optional[tuple[tuple[float, ...], Solution]]" = None
@@ -41,7 +46,10 @@ class Function:
         rows: list[Any] = [np.empty(0)]
         for one in self.outputs:
             if isinstance(one, str):
-                rows.append([solution.objective if one == "objective" else solution[one]])
+                found = solution.objective if one == "objective" else solution[one]
+                if isinstance(found, Curve):
+                    raise TypeError(f'`{one}` is a function of time: name times too, as in ("{one}", [0, 60])')
+                rows.append([found])
             else:
                 curve: Any = solution[one[0]]
                 rows.append(curve(one[1]).reshape(-1))
@@ -57,7 +65,8 @@ class Function:
     def check(self, given: int) -> None:
         """Raises where the number of given values is not that of the inputs."""
         if given != len(self.inputs):
-            raise ValueError(f"{given} values are given for {len(self.inputs)} inputs")
+            values = "1 value is" if given == 1 else f"{given} values are"
+            raise ValueError(f"{values} given for {len(self.inputs)} inputs: {', '.join(self.inputs)}")
 
     def _solution(self, values: Any) -> "Solution":
         import numpy as np

@@ -8,9 +8,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, Sequence, Union
 
-from . import _ntg
-from ._errors import Finding, ParameterError
-from ._settings import DEFAULT, Settings, watcher
+from . import _given, _ntg
+from ._errors import Finding, ParameterError, SpecError
+from ._settings import DEFAULT, Settings, checked, watcher
 from ._solution import Solution
 from ._solver import Solver
 
@@ -41,6 +41,8 @@ class Problem:
     """
 
     def __init__(self, core: "_ntg.Compiled") -> None:
+        if not isinstance(core, _ntg.Compiled):
+            raise TypeError(f"a Problem is made by `ntg.load` and `ntg.loads`, not of {_given.kind(core)}")
         self._core = core
 
     @property
@@ -107,7 +109,7 @@ class Problem:
         Raises `ParameterError`, `SettingsError`, and `SetupError` where the problem makes no sense with these values.
         """
         core = self._core.with_parameters(merged(parameters, named))
-        return Solution(core.solve(settings, None if guess is None else guess._core, watcher(progress)))
+        return Solution(core.solve(checked(settings), _given.core(guess, Solution, "guess"), watcher(progress)))
 
     def solver(
         self,
@@ -118,7 +120,7 @@ class Problem:
         **named: "Value",
     ) -> Solver:
         """A solver that is kept and solves again and again, with other parameters or from the last solution."""
-        return Solver(self._core.with_parameters(merged(parameters, named)).solver(settings))
+        return Solver(self._core.with_parameters(merged(parameters, named)).solver(checked(settings)))
 
     def solve_many(
         self,
@@ -155,9 +157,10 @@ class Problem:
         from . import _table
 
         core = self._core.with_parameters(merged(parameters, {}))
+        how = _table.how(values, jobs, block)._replace(journal=None if journal is None else (Path(journal), (1, 1)))
         inputs, sets, back = _table.read(core, table, columns)
-        how = _table.How(list(values), jobs, block, [], None if journal is None else (Path(journal), (1, 1)))
-        found = _ntg.sweep(core, inputs, sets, settings, how, _table.watcher(progress))
+        _table.unlike(inputs, parameters)
+        found = _ntg.sweep(core, inputs, sets, checked(settings), how, _table.watcher(progress))
         return back(dict(found))
 
     def __reduce__(self) -> Any:
@@ -178,12 +181,12 @@ def load(path: "str | os.PathLike[str]", values: "Mapping[str, Value] | None" = 
     Raises `SpecError` with all findings of the compiler, `ParameterError` for names that are neither, and `OSError`
     where the file cannot be read.
     """
+    if isinstance(path, str) and "\n" in path:
+        raise ValueError("this is no path but a text of several lines; the text of a spec is compiled by `ntg.loads`")
     place = Path(path)
     try:
         text = place.read_bytes().decode("utf-8")
     except UnicodeDecodeError as error:
-        from ._errors import SpecError
-
         raise SpecError(f"`{place}` is not UTF-8 text: {error}") from None
     return _with_values(str(path), text, (place.parent, {}), merged(values, named))
 
@@ -200,7 +203,15 @@ def loads(
 
     `values` sets constants and parameters, as `load` does. Raises `SpecError` with all findings of the compiler.
     """
-    files = (None if folder is None else Path(folder), dict(tables or {}))
+    if not isinstance(text, str):
+        raise TypeError(f"a spec is a text (str), not {_given.kind(text)}; a file is compiled by `ntg.load`")
+    if "\n" not in text and text.rstrip().endswith(".ntg"):
+        raise ValueError(f"`{text}` is a path and no spec; a file is compiled by `ntg.load`")
+    texts = _given.mapping(tables, "tables")
+    for path, one in texts.items():
+        if not (isinstance(path, str) and isinstance(one, str)):
+            raise TypeError(f"tables are texts by their paths; that of {path!r} is {_given.kind(one)}")
+    files = (None if folder is None else Path(folder), texts)
     return _with_values(name, text, files, merged(values, {}))
 
 
@@ -208,6 +219,10 @@ def _with_values(
     name: str, text: str, files: "tuple[Optional[Path], dict[str, str]]", values: "Mapping[str, Value]"
 ) -> Problem:
     """Constants are set where the spec is compiled, parameters afterwards."""
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise SpecError(f"the text of the spec is no Unicode text: {error}") from None
     known = _ntg.constants(text) if values else []
     constants = {one: _constant(one, value) for one, value in values.items() if one in known}
     others = {one: value for one, value in values.items() if one not in known}
@@ -240,10 +255,11 @@ def merged(parameters: "Mapping[str, Value] | None", named: "Mapping[str, Value]
     """Both ways of giving parameters; one that is given twice is a mistake."""
     if parameters is None:
         return dict(named)
-    twice = [name for name in named if name in parameters]
+    given = _given.mapping(parameters, "parameters")
+    twice = [name for name in named if name in given]
     if twice:
         raise TypeError(f"parameter `{twice[0]}` is given twice")
-    return {**parameters, **named}
+    return {**given, **named}
 
 
 def _restored(

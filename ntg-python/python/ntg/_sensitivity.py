@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Sequence, Union
 
+from . import _given
 from ._curve import Curve
 
 if TYPE_CHECKING:
@@ -15,6 +16,17 @@ if TYPE_CHECKING:
 
     Wanted = Union[str, tuple[str, ArrayLike]]
     """A number by its name (`"objective"`, `"T"`), or a function of time with mission times: `("x", [0, 60])`."""
+
+
+def checked(wanted: "Sequence[Wanted]") -> "list[Wanted]":
+    """The wanted numbers, each a name or a name with times."""
+    if isinstance(wanted, str):
+        raise TypeError(f"wanted numbers are a list; write [{wanted!r}]")
+    for one in wanted:
+        is_pair = isinstance(one, (tuple, list)) and len(one) == 2 and isinstance(one[0], str)
+        if not (isinstance(one, str) or is_pair):
+            raise TypeError(f'a wanted number is a name, or a name with times as in ("x", [0, 60]), not {one!r}')
+    return list(wanted)
 
 
 class Weak(NamedTuple):
@@ -70,10 +82,15 @@ class Sensitivity:
         """
         import numpy as np
 
-        t = np.asarray(times, dtype=np.float64)
+        t = _given.times(times)
+        order = _given.count(order, "the order of a derivative", 0)
+        if np.isnan(t).any():
+            raise ValueError("a time is NaN")
         try:
             rows = self._core.at(name, np.ascontiguousarray(t.reshape(-1)), order)
         except KeyError:
+            if order > 0:
+                raise KeyError(f"`{name}` is no output, and only outputs have derivatives by time") from None
             raise KeyError(f"there is no function of time `{name}` to be differentiated") from None
         return rows.reshape((*t.shape, len(self.parameters)))
 
@@ -82,19 +99,21 @@ class Sensitivity:
         import numpy as np
 
         rows = [np.empty((0, len(self.parameters)))]
-        for one in wanted:
+        for one in checked(wanted):
             if isinstance(one, str):
                 rows.append(self._number(one)[None, :])
             else:
-                name, times = one
-                rows.append(self.at(name, times).reshape(-1, len(self.parameters)))
+                rows.append(self.at(*one).reshape(-1, len(self.parameters)))
         return np.concatenate(rows)
 
     def vector_jacobian(self, wanted: "Sequence[Wanted]", weights: "ArrayLike") -> "NDArray[np.float64]":
         """The gradient of the sum of the wanted numbers times their weights, one number a parameter."""
         import numpy as np
 
-        return np.asarray(weights, dtype=np.float64).reshape(-1) @ self.jacobian(wanted)
+        jacobian, by = self.jacobian(wanted), np.asarray(weights, dtype=np.float64).reshape(-1)
+        if len(by) != len(jacobian):
+            raise ValueError(f"{len(by)} weights are given for {len(jacobian)} wanted numbers")
+        return by @ jacobian
 
     def predict(self, parameters: "Mapping[str, Value] | None" = None, /, **named: "Value") -> "Prediction":
         """The solution for other values of the parameters, to first order: good for small changes."""

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Optional, Union
+
+from . import _given
+from ._errors import SettingsError
 
 if TYPE_CHECKING:
     ProgressArgument = Union[None, bool, Callable[["Progress"], Any]]
@@ -53,8 +57,56 @@ class Settings:
     scales: Mapping[str, float] = field(default_factory=dict)
     """Typical sizes of outputs and variables by name, in their units."""
 
+    def __post_init__(self) -> None:
+        for name, kind, words in _KINDS:
+            value = getattr(self, name)
+            if not kind(value):
+                raise SettingsError(f"setting `{name}`: {words}, not {value!r}")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def _is_count(value: Any) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool) and 0 <= int(value) < 2**32
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _is_limit(value: Any) -> bool:
+    return value is None or _is_number(value)
+
+
+def _is_scales(value: Any) -> bool:
+    return isinstance(value, Mapping) and all(isinstance(name, str) and _is_number(value[name]) for name in value)
+
+
+# Kinds of values; their ranges are the solver's.
+_KINDS = (
+    ("method", _is_text, "a text"),
+    ("tolerance", _is_number, "a number"),
+    ("constraint_tolerance", _is_number, "a number"),
+    ("max_iterations", _is_count, "a whole number from 0 to 2^32 - 1"),
+    ("time_limit", _is_limit, "a number of seconds, or None"),
+    ("samples", _is_count, "a whole number from 0 to 2^32 - 1"),
+    ("refine", _is_limit, "a number, or None"),
+    ("between", _is_text, "a text"),
+    ("between_tolerance", _is_number, "a number"),
+    ("scales", _is_scales, "numbers by the names of outputs and variables"),
+)
 
 DEFAULT = Settings()
+
+
+def checked(settings: Any) -> Settings:
+    """Settings, and nothing else."""
+    found: Settings = _given.instance(settings, Settings, "settings")
+    if found is None:
+        raise TypeError("settings is an ntg.Settings, not None; leave it out for the usual ones")
+    return found
 
 
 class Line:

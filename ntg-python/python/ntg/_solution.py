@@ -8,6 +8,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterator, NamedTuple, Optional, Sequence, Union
 
+from . import _given
 from ._curve import POINTS, Curve
 from ._errors import UnsolvedError
 from ._sensitivity import Sensitivity
@@ -116,6 +117,9 @@ class Solution:
     def __init__(self, core: "_ntg.Found") -> None:
         self._core = core
         self._page: Optional[str] = None
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a Solution cannot be copied or pickled; `save` it, or take what is wanted, as `sample()`")
 
     # How it ended.
 
@@ -267,6 +271,8 @@ class Solution:
         return {name: value for name, value, _ in self._core.variables}
 
     def __getitem__(self, name: str) -> Union[Curve, float]:
+        if not isinstance(name, str):
+            raise TypeError(f"a solution is read by name, not by {_given.kind(name)}; `solution.keys()` are the names")
         data = self._core.curve(name)
         if data is not None:
             return Curve(self._core, data)
@@ -300,7 +306,7 @@ class Solution:
         Raises `ParameterError` for unknown names, and `SensitivityError` where there is no solution, or where the
         conditions under which one can be differentiated do not hold.
         """
-        return Sensitivity(self._core.sensitivity(list(parameters) or None))
+        return Sensitivity(self._core.sensitivity(_given.names(parameters, "parameters") or None))
 
     # Tables.
 
@@ -312,7 +318,10 @@ class Solution:
         """
         import numpy as np
 
-        t = np.linspace(self.start, self.end, times) if isinstance(times, (int, np.integer)) else np.asarray(times, float)
+        if isinstance(times, (int, np.integer)):
+            t = np.linspace(self.start, self.end, _given.count(times, "the number of times", 0))
+        else:
+            t = _given.times(times)
         if t.ndim != 1:
             raise ValueError("times are a number of them, or an array of one dimension")
         name, _, factor = self._core.independent
@@ -362,7 +371,10 @@ class Solution:
 
     def html(self, tracks: Sequence[tuple[str, str]] = ()) -> str:
         """The report as one HTML page that needs no network; `tracks` are pairs of quantities to draw as maps."""
-        return self._core.html(list(tracks))
+        pairs = [] if isinstance(tracks, str) else list(tracks)
+        if isinstance(tracks, str) or not all(isinstance(pair, (tuple, list)) and len(pair) == 2 for pair in pairs):
+            raise TypeError('tracks are pairs of names, as in [("x", "y")]')
+        return self._core.html([(x, y) for x, y in pairs])
 
     def save(self, path: "str | os.PathLike[str]", *, overwrite: bool = False) -> None:
         """Saves as `ntg solve --save` does, for `ntg plot`, `ntg report` and `--guess`; or as HTML for `.html`.
@@ -370,6 +382,8 @@ class Solution:
         Raises `FileExistsError` for a file that exists, unless `overwrite` is given.
         """
         place = Path(path)
+        if not place.parent.is_dir():
+            raise FileNotFoundError(f"there is no folder `{place.parent}` to save `{place.name}` in")
         if place.exists() and not overwrite:
             raise FileExistsError(f"`{place}` exists; give overwrite=True to replace it, or another name")
         text = self.html() if place.suffix.lower() in (".html", ".htm") else self._core.json()
@@ -434,7 +448,8 @@ class Solution:
             self._page = self.html()
         return (
             f'<iframe srcdoc="{html.escape(self._page, quote=True)}" title="report of {html.escape(self.problem.name)}" '
-            'style="width: 100%; height: 720px; border: 1px solid #8884; border-radius: 4px" loading="lazy"></iframe>'
+            'style="width: 100%; height: 720px; border: 1px solid #8884; border-radius: 4px; box-sizing: border-box" '
+            'loading="lazy"></iframe>'
         )
 
 

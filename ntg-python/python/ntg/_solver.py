@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Mapping, Optional
 
+from . import _given
 from ._settings import watcher
 from ._solution import Solution
 
@@ -22,6 +23,9 @@ class Solver:
 
     def __init__(self, core: "_ntg.KeptSolver") -> None:
         self._core = core
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a Solver cannot be copied or pickled; its problem can, and makes another one by `solver()`")
 
     def solve(
         self,
@@ -52,5 +56,5 @@ class Solver:
     def _solve(self, parameters: Any, named: Any, again: bool, guess: Any, progress: Any) -> Solution:
         from ._problem import merged
 
-        core = None if guess is None else guess._core
+        core = _given.core(guess, Solution, "guess")
         return Solution(self._core.solve(merged(parameters, named), again, core, watcher(progress)))

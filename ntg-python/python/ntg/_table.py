@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from typing import Any, Callable, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence
 
+from . import _given
 from ._errors import ParameterError, TableError
 from ._settings import Line
 
@@ -19,6 +20,23 @@ class How(NamedTuple):
     journal: Any
 
 
+def how(values: Any, jobs: Any, block: Any) -> How:
+    """How a study is run, checked."""
+    try:
+        rows = None if block is None else _given.count(block, "`block`, the number of rows of a block,", 1)
+        together = _given.count(jobs, "`jobs`, the number of rows at a time,", 0)
+        return How(_given.names(values, "`values`"), together, rows, [], None)
+    except ValueError as error:
+        raise TableError(str(error)) from None
+
+
+def unlike(inputs: Sequence[str], parameters: Any) -> None:
+    """Raises where a parameter is a column, and given for all rows too."""
+    for name in inputs:
+        if parameters is not None and name in parameters:
+            raise TableError(f"`{name}` is a column, and given in `parameters` too")
+
+
 Read = tuple[list[str], Any, Callable[[dict[str, Any]], Any]]
 
 
@@ -29,6 +47,10 @@ def read(core: Any, table: Any, columns: Optional[Sequence[str]]) -> Read:
     named, back = _columns(table, columns)
     if not named:
         raise TableError("the table has no columns; name them after parameters")
+    for name, values in named.items():
+        if isinstance(values, (str, bytes)) or not hasattr(values, "__len__"):
+            words = "give a list, and what holds for all rows as `parameters`"
+            raise TableError(f"column `{name}` is {values!r}, one value; {words}")
     lengths = {name: len(values) for name, values in named.items()}
     if len(set(lengths.values())) > 1:
         raise TableError(f"the columns have different lengths: {lengths}")
@@ -51,6 +73,8 @@ def _numbers(core: Any, name: str, values: Any) -> Any:
         known: dict[str, float] = {}
         numbers = np.empty(len(array))
         for row, value in enumerate(array):
+            if value is None:
+                raise TableError(f"row {row}: `{name}` has no value")
             text = value.decode() if isinstance(value, bytes) else str(value)
             if text not in known:
                 try:
@@ -59,6 +83,8 @@ def _numbers(core: Any, name: str, values: Any) -> Any:
                     raise TableError(f"row {row}: {error}") from None
             numbers[row] = known[text]
         array = numbers
+    if array.dtype.kind not in "biufO":
+        raise TableError(f"column `{name}` holds no numbers but {array.dtype}")
     try:
         numbers = array.astype(np.float64)
     except (TypeError, ValueError) as error:
@@ -72,6 +98,8 @@ def _numbers(core: Any, name: str, values: Any) -> Any:
 def _columns(table: Any, columns: Optional[Sequence[str]]) -> tuple[dict[str, Any], Callable[[dict[str, Any]], Any]]:
     kind = type(table).__module__.split(".")[0]
     name = type(table).__name__
+    if columns is not None:
+        columns = _given.names(columns, "`columns`")
     if columns is not None and kind != "numpy":
         raise TableError("`columns` names the columns of a NumPy array; a table has names of its own")
     if kind == "pandas" and name == "DataFrame":
@@ -79,14 +107,15 @@ def _columns(table: Any, columns: Optional[Sequence[str]]) -> tuple[dict[str, An
     if kind == "polars" and name == "DataFrame":
         return {str(one): table[one].to_numpy() for one in table.columns}, _to_polars
     if kind == "pyarrow" and name in ("Table", "RecordBatch"):
+        _unlike(table.schema.names)
         arrays = {one: table.column(one).to_numpy(**({} if name == "Table" else {"zero_copy_only": False})) for one in table.schema.names}
         return arrays, _to_arrow
     if kind == "numpy":
         return _numpy(table, columns), _to_numpy
-    if hasattr(table, "keys") and hasattr(table, "__getitem__"):
+    if isinstance(table, Mapping) or (name != "Series" and hasattr(table, "keys") and hasattr(table, "__getitem__")):
         return {str(one): table[one] for one in table.keys()}, _to_numpy
     raise TableError(
-        f"a {kind}.{name} is no table; give a pandas or polars DataFrame, an Arrow table, a mapping of columns, or a "
+        f"{name} is no table; give a pandas or polars DataFrame, an Arrow table, a mapping of columns, or a "
         "NumPy array with `columns`"
     )
 
@@ -99,7 +128,15 @@ def _pandas(table: Any) -> tuple[dict[str, Any], Callable[[dict[str, Any]], Any]
 
         return pandas.DataFrame(found, index=index)
 
+    _unlike([str(one) for one in table.columns])
     return {str(one): table[one].to_numpy() for one in table.columns}, back
+
+
+def _unlike(names: Sequence[str]) -> None:
+    """Raises where two columns have one name."""
+    for i, one in enumerate(names):
+        if one in names[:i]:
+            raise TableError(f"two columns are called `{one}`")
 
 
 def _numpy(table: Any, columns: Optional[Sequence[str]]) -> dict[str, Any]:
@@ -108,9 +145,8 @@ def _numpy(table: Any, columns: Optional[Sequence[str]]) -> dict[str, Any]:
     if columns is None:
         raise TableError("an array without named fields needs `columns`, the parameters that its columns are")
     if table.ndim != 2 or table.shape[1] != len(columns):
-        raise TableError(f"the array has shape {table.shape}, but {len(columns)} columns are named")
-    if len(set(columns)) < len(columns):
-        raise TableError("a column is named twice")
+        raise TableError(f"the array has shape {table.shape}; with these `columns` its shape is (rows, {len(columns)})")
+    _unlike(columns)
     return {one: table[:, i] for i, one in enumerate(columns)}
 
 
@@ -150,4 +186,4 @@ def watcher(progress: Any) -> Optional[Callable[[int, int], Any]]:
     return show
 
 
-__all__ = ["How", "read", "watcher"]
+__all__ = ["How", "how", "read", "unlike", "watcher"]

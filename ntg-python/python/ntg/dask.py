@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Sequence
 
-from . import _batches
+from . import _batches, _given
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -32,18 +32,27 @@ def solve_many(problem: "Problem", table: Any, client: Any = None, **options: "U
     """As `Problem.solve_many`, with the same rows, on the workers of a client; the present client where none is given.
 
     Options are `columns`, `values`, `settings`, `block` and `parameters` of `Problem.solve_many`; `jobs`, the number of
-    rows at a time on each worker's thread (1); and `batch`, the least number of rows that are sent at once (2048).
+    rows at a time on each worker's thread (1); and `batch`, the number of rows that are sent at once, at most (2048).
     """
     from dask.distributed import get_client
 
-    client = get_client() if client is None else client
+    if client is None:
+        try:
+            client = get_client()
+        except ValueError:
+            raise ValueError("there is no Dask client; make one, `Client()`, and give it as `client`") from None
+    if not hasattr(client, "submit"):
+        raise TypeError(f"`client` is a dask.distributed.Client, not {_given.kind(client)}")
     futures: list[Any] = []
+
+    def workers() -> int:
+        return max(1, sum(int(threads) for threads in client.nthreads().values()))
 
     def gathered(task: "_batches.Task", batches: Sequence[Any]) -> Any:
         futures.extend(map_batches(task, batches, client))
         return client.gather(futures)
 
     try:
-        return _batches.solve_many(gathered, problem, table, options)
+        return _batches.solve_many(gathered, workers, problem, table, options)
     finally:
         client.cancel(futures)

@@ -39,11 +39,28 @@ def function(
     value = jax.ShapeDtypeStruct((core.size,), kind)
     matrix = jax.ShapeDtypeStruct((core.size, len(core.inputs)), kind)
 
-    def solved(p: Any) -> Any:
-        return np.asarray(core.value(np.asarray(p)), kind)
+    raised: list[Exception] = []
 
+    def kept(work: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """Keeps what a callback raises, because JAX wraps it."""
+
+        def callback(p: Any) -> Any:
+            raised.clear()
+            try:
+                return work(np.asarray(p))
+            except Exception as error:
+                raised.append(error)
+                raise
+
+        return callback
+
+    @kept
+    def solved(p: Any) -> Any:
+        return np.asarray(core.value(p), kind)
+
+    @kept
     def differentiated(p: Any) -> Any:
-        return solved(p), np.asarray(core.jacobian(np.asarray(p)), kind)
+        return np.asarray(core.value(p), kind), np.asarray(core.jacobian(p), kind)
 
     @jax.custom_vjp
     def optimum(p: Any) -> Any:
@@ -59,7 +76,12 @@ def function(
 
     def checked(p: Any) -> Any:
         values = jnp.asarray(p, kind)
-        core.check(values.size)  # Here, because JAX wraps what a callback raises.
-        return optimum(values)
+        core.check(values.size)
+        try:
+            return optimum(values)
+        except jax.errors.JaxRuntimeError:
+            if not raised:
+                raise
+            raise raised.pop() from None
 
     return checked
