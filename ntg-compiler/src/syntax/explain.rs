@@ -41,6 +41,7 @@ pub(super) fn explain(scan: &Scan, stuck: &Stuck, base: usize) -> Diagnostic {
         .or_else(|| here.stray_doc())
         .or_else(|| here.reserved())
         .or_else(|| here.unit())
+        .or_else(|| here.unit_alone())
         .unwrap_or_else(|| here.unexpected())
 }
 
@@ -288,10 +289,11 @@ impl Here<'_> {
         if this == "at" && self.expected.has(Rule::part) {
             return Some("one time has a block of its own: `at 2.5 [s] { ... }`".into());
         }
-        if let Some(advice) = self.advice_on_units(this, before) {
+        if let Some(advice) = self.advice_on_lists(this).or_else(|| self.advice_on_units(this, before)) {
             return Some(advice);
         }
-        let in_declaration = matches!(self.first_word(), Some("state" | "input" | "output" | "param" | "const"));
+        let in_declaration =
+            matches!(self.first_word(), Some("state" | "input" | "output" | "variable" | "param" | "const"));
         if let Some(advice) = self.advice_on_ranges(this, before).or_else(|| self.advice_on_heads(this, before)) {
             return Some(advice);
         }
