@@ -15,7 +15,7 @@ use ntg_nlp::{Outcome, Start, Status, method};
 
 /// All of them, in their order.
 const ATTEMPTS: [Attempt; 5] =
-    [Attempt::SizesAnew, Attempt::Squares, Attempt::AugmentedLagrangian, Attempt::FewerKnots, Attempt::Sqp];
+    [Attempt::SizesAnew, Attempt::OtherWays, Attempt::AugmentedLagrangian, Attempt::FewerKnots, Attempt::Sqp];
 
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +23,9 @@ enum Attempt {
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
     /// what it guesses.
     SizesAnew,
-    /// From the first point, with shifts of the diagonal, and with restorations that reduce the squares of violations.
-    Squares,
+    /// From the first point, with the other restoration and the other correction of the inertia: in place of the default
+    /// ones, squares of violations and shifts of the diagonal.
+    OtherWays,
     /// From the first point, by the augmented Lagrangian.
     AugmentedLagrangian,
     /// From a solution on fewer knots.
@@ -33,12 +34,25 @@ enum Attempt {
     Sqp,
 }
 
+/// What the first attempt did not try.
+fn other_ways(settings: Settings) -> Settings {
+    let restoration = match settings.restoration {
+        Violations::Absolute => Violations::Squared,
+        Violations::Squared => Violations::Absolute,
+    };
+    let inertia_correction = match settings.inertia_correction {
+        InertiaCorrection::ByElement => InertiaCorrection::ByShift,
+        InertiaCorrection::ByShift => InertiaCorrection::ByElement,
+    };
+    Settings { restoration, inertia_correction, ..settings }
+}
+
 impl Attempt {
     /// Whether it follows an outcome of this status: any that is not final. After an acceptable point only what has been
     /// seen to solve the problem then.
     fn follows(self, status: &Status) -> bool {
         match status {
-            Status::Acceptable => matches!(self, Self::SizesAnew | Self::Squares),
+            Status::Acceptable => matches!(self, Self::SizesAnew | Self::OtherWays),
             _ => !status.is_final(),
         }
     }
@@ -110,9 +124,8 @@ impl Session {
                 nlp.set_scales(x, &settings)?;
                 next
             }
-            Attempt::Squares => {
-                let inertia_correction = InertiaCorrection::ByShift;
-                let settings = Settings { restoration: Violations::Squared, inertia_correction, ..settings };
+            Attempt::OtherWays => {
+                let settings = other_ways(settings);
                 self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
             }
             Attempt::AugmentedLagrangian => {
