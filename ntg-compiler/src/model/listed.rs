@@ -31,8 +31,10 @@ impl Elaborator<'_> {
         }
     }
 
-    /// Refuses names for which the unit in another name's bounds stands nearer than the unit that they take.
-    pub(super) fn units_in_doubt(&mut self, names: &[DeclaredName], measured: &[Measured]) {
+    /// Refuses names for which the unit in another name's bounds stands nearer than the unit that they take, and gives
+    /// their places in the list: what they are measured in is not known.
+    pub(super) fn units_in_doubt(&mut self, names: &[DeclaredName], measured: &[Measured]) -> Vec<usize> {
+        let mut in_doubt = vec![];
         for (i, name) in names.iter().enumerate() {
             let Some(rival) = rival(names, i) else { continue };
             let ((Some(own), unit), (Some(other), bounds)) = (&measured[i], &measured[rival]) else { continue };
@@ -50,7 +52,9 @@ impl Elaborator<'_> {
                 finding = finding.label(taken.span, format!("{unit}, of the list"));
             }
             self.report(finding.help(format!("write the unit that is meant: `{text} {bounds}`, or `{text} {unit}`")));
+            in_doubt.push(i);
         }
+        in_doubt
     }
 }
 

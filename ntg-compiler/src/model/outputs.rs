@@ -104,7 +104,11 @@ impl<'a> Elaborator<'a> {
                 let declared = all.iter().find(|declared| declared.output.name == name.name.text);
                 declared.map_or((None, Unit::default()), |found| (found.dimension, found.output.unit.clone()))
             };
-            self.units_in_doubt(&output.names, &output.names.iter().map(measured).collect::<Vec<_>>());
+            let measured: Vec<_> = output.names.iter().map(measured).collect();
+            for at in self.units_in_doubt(&output.names, &measured) {
+                let doubtful = all.iter_mut().filter(|known| known.output.name == output.names[at].name.text);
+                doubtful.for_each(|known| known.dimension = None);
+            }
         }
         all
     }

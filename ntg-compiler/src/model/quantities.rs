@@ -276,7 +276,9 @@ impl<'a> Elaborator<'a> {
             let first = self.problem.variables.len() - variable.names.len();
             let measured = |k: usize| (self.variables[k].1, self.problem.variables[k].unit.clone());
             let measured: Vec<_> = (first..self.problem.variables.len()).map(measured).collect();
-            self.units_in_doubt(&variable.names, &measured);
+            for at in self.units_in_doubt(&variable.names, &measured) {
+                self.variables[first + at].1 = None;
+            }
         }
     }
 

@@ -141,6 +141,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
             finding.help("phases follow one another by `phase coast after boost { ... }`")
         }
         _ if matches!(word, "function" | "def" | "func") => finding.help("write `fn f(a) = a / 2;`"),
+        _ if word == "in" => finding.help("how long a phase lasts has its word: `duration in 1 .. 9 [s];`"),
         _ if word == "if" => finding.help("an `if` is a value: `let y = if a <= b { ... } else { ... };`"),
         _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
         Some(meant) => finding.help(format!("did you mean `{meant}`?")),
