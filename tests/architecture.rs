@@ -155,6 +155,7 @@ fn no_floor_of_the_solver_knows_a_floor_above_it() {
 #[test]
 fn no_floor_of_the_runtime_knows_a_floor_above_it() {
     let floors: &[&[&str]] = &[
+        &["digits"],
         &["math", "problem", "settings", "status"],
         &["lanes", "transcribe"],
         &["error", "solution"],

@@ -198,6 +198,30 @@ pub(crate) struct Solve {
     /// Which method solves the problem.
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub(crate) method: Method,
+    /// What the interior-point method makes small where it restores feasibility.
+    #[arg(long, value_enum, default_value_t = Restoration::Absolute)]
+    pub(crate) restoration: Restoration,
+    /// How the interior-point method corrects the inertia of its matrix.
+    #[arg(long, value_enum, default_value_t = InertiaCorrection::ByElement)]
+    pub(crate) inertia_correction: InertiaCorrection,
+}
+
+/// What a restoration of feasibility makes small.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Restoration {
+    /// The sum of violations.
+    Absolute,
+    /// The sum of their squares.
+    Squared,
+}
+
+/// How the matrix of a step is given the inertia of a minimum.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum InertiaCorrection {
+    /// The second derivatives of each element are made positive semidefinite.
+    ByElement,
+    /// A multiple of the identity is added.
+    ByShift,
 }
 
 /// What becomes of violations between the points.

@@ -18,7 +18,7 @@ use ntg_runtime::problem::Problem;
 use ntg_runtime::refine::{Refined, Refinement};
 use ntg_runtime::report::Report;
 use ntg_runtime::sensitivity::{Sensitivity, SensitivityError};
-use ntg_runtime::settings::{Between, Method, Settings};
+use ntg_runtime::settings::{Between, InertiaCorrection, Method, Settings, Violations};
 use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
@@ -182,6 +182,14 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
         arguments::Method::Sqp => Method::Sqp,
         arguments::Method::InteriorPoint => Method::InteriorPoint,
         arguments::Method::AugmentedLagrangian => Method::AugmentedLagrangian,
+    };
+    settings.restoration = match arguments.restoration {
+        arguments::Restoration::Absolute => Violations::Absolute,
+        arguments::Restoration::Squared => Violations::Squared,
+    };
+    settings.inertia_correction = match arguments.inertia_correction {
+        arguments::InertiaCorrection::ByElement => InertiaCorrection::ByElement,
+        arguments::InertiaCorrection::ByShift => InertiaCorrection::ByShift,
     };
     settings.validate().map_err(|invalid| invalid.to_string())?;
     Ok(settings)

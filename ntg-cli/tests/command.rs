@@ -139,6 +139,16 @@ fn not_solved_exits_with_1() {
 }
 
 #[test]
+fn the_other_correction_of_the_inertia_takes_another_path_to_the_same_optimum() {
+    let alone = ["solve", "gates.ntg", "--method", "interior-point"];
+    let usual = json(&alone);
+    let other = ["--inertia-correction", "by-shift", "--restoration", "squared"];
+    let other = json(&[&alone[..], &other[..]].concat());
+    assert!((number(&usual["objective"]) - number(&other["objective"])).abs() < 1e-6);
+    assert_ne!(usual["iterations"], other["iterations"]);
+}
+
+#[test]
 fn a_saved_solution_is_a_guess_and_is_never_overwritten_silently() {
     let folder = std::env::temp_dir().join(format!("ntg-command-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a temporary folder");

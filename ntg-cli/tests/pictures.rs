@@ -119,6 +119,62 @@ fn what_a_track_passes_is_found_from_the_constraints_alone() {
     assert!(!scene.to_string().contains("speed"));
 }
 
+/// Over a table of heights, which a constraint holds (HOLD) or an integral alone asks for, past two radars.
+const HILLS: &str = "problem Hills {
+    const R = 2;
+    duration T = 100 [s];
+    output r[2] [km]: spline(order = 4, intervals = 4);
+    output z [m]: spline(order = 4, intervals = 4);
+    table ground(east [km], north [km]) [m] = bspline(order = 3) {
+           0,   2,   4;
+      0:   0, 100,   0;
+      2: 100, 400, 100;
+      4:   0, 100,   0;
+    }
+    param radar[R, 2] = ((1, 3), (3, 1)) [km];
+    param reach[R] = (3, 2) [km];
+    minimize effort: integral(norm(der(r, 2))^2 + der(z, 2)^2) / 1 [m^2/s^3];
+    minimize height: integral((z - ground(r[1], r[2]))^2) / 1 [km^2*s];
+    minimize seen: sum(i in 1 .. R, integral(exp(-dot(r - radar[i], r - radar[i]) / reach[i]^2))) / 1 [s];
+    initial { r == (0.5, 0.5) [km];  z == 300 [m]; }
+    HOLD
+    final { r == (3.5, 3) [km];  z == 300 [m]; }
+}
+";
+
+fn hills(hold: &str) -> Value {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("hills.ntg"), HILLS.replace("HOLD", hold)).expect("writable");
+    done(folder.path(), &["solve", "hills.ntg", "--save", "hills.json"]);
+    let run: Value = serde_json::from_str(&read(folder.path(), "hills.json")).expect("JSON");
+    run["scene"].clone()
+}
+
+#[test]
+fn heights_in_a_table_are_hills_under_the_track_and_a_list_of_lengths_is_no_place() {
+    let scene = hills("trajectory { terrain: z >= ground(r[1], r[2]) + 50 [m]; }");
+    assert_eq!(scene["tracks"][0]["paths"], serde_json::json!(["r[1]", "r[2]", "z"]));
+    assert_eq!((&scene["up"], &scene["axes"][2]["unit"]), (&Value::from(2), &Value::from("m")));
+    let terrain = named(&scene["surfaces"], "terrain");
+    let highest = terrain["z"].as_array().expect("heights").iter().map(number).fold(0.0, f64::max);
+    assert!(terrain["floor"] == true && (highest - 450.0).abs() < 1.0, "{highest}");
+    let places = |scene: &Value| {
+        let places = scene["places"].as_array().expect("places").iter();
+        places.map(|place| place["name"].as_str().unwrap_or_default().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(places(&scene), ["radar[1]", "radar[2]"]);
+    assert_eq!(scene["places"][0]["at"][1], 3.0);
+
+    // Where no constraint draws the ground, the table itself does.
+    let scene = hills("");
+    let levels = scene["levels"].as_array().expect("lines of equal value");
+    assert!(levels.len() > 3 && levels.iter().all(|level| level["name"] == "ground"), "{levels:?}");
+    for at in levels[0]["lines"][0].as_array().expect("points") {
+        assert!((0.0..=4.0).contains(&number(&at[0])) && (0.0..=4.0).contains(&number(&at[1])), "{at}");
+    }
+    assert_eq!(places(&scene), ["radar[1]", "radar[2]"]);
+}
+
 #[test]
 fn samples_are_equally_spaced_and_end_at_the_end() {
     let (folder, run) = tour();

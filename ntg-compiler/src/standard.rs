@@ -17,13 +17,18 @@ pub fn library(name: &str) -> Option<&'static str> {
     LIBRARIES.iter().find(|(own, _)| *own == name).map(|(_, text)| *text)
 }
 
-/// The library that has a name, and the name there: the same words in any order, `earth_radius` for `radius_earth`.
-pub fn holder(name: &str) -> Option<(&'static str, &'static str)> {
+/// The words that declare what stands as a value, and what is applied.
+pub const VALUES: &[&str] = &["const "];
+/// See [`VALUES`].
+pub const APPLIED: &[&str] = &["fn ", "table "];
+
+/// The library in which one of these words declares a name, and the name there: the same words in any order,
+/// `earth_radius` for `radius_earth`.
+pub fn holder(name: &str, kinds: &[&str]) -> Option<(&'static str, &'static str)> {
     let words = |name: &'static str| name.split('_').collect::<std::collections::BTreeSet<_>>();
     let wanted: std::collections::BTreeSet<&str> = name.split('_').collect();
     let declared = |line: &'static str| {
-        let rest =
-            line.strip_prefix("const ").or_else(|| line.strip_prefix("fn ")).or_else(|| line.strip_prefix("table "))?;
+        let rest = kinds.iter().find_map(|kind| line.strip_prefix(kind))?;
         rest.split(|c: char| !c.is_alphanumeric() && c != '_').next()
     };
     let all = || {

@@ -206,6 +206,21 @@ fn definition_leads_to_the_declaration() {
 }
 
 #[test]
+fn each_name_of_a_list_of_variables_is_known() {
+    let text = TEXT.replace("const two", "/// Sizes.\n    variable wide [m], high in 1 .. 5 [m];\n    const two");
+    let text = text.replace("fast: v <= v_max;", "fast: v <= v_max;  x <= wide + high;");
+    let mut editor = Editor::new();
+    editor.open(&text);
+    for (word, column) in [("wide + high", 13), ("high; }", 23)] {
+        let found = editor.at("textDocument/definition", &text, word, 0, &json!({})).expect("an answer");
+        assert_eq!(found[0]["range"]["start"], json!({ "line": 7, "character": column }));
+        let said = editor.hover(&text, word, 0);
+        assert!(said.contains("Sizes.") && said.contains("[m]"), "{said}");
+    }
+    editor.end();
+}
+
+#[test]
 fn rename_changes_every_mention_and_refuses_what_does_not_do() {
     let mut editor = Editor::new();
     editor.open(TEXT);

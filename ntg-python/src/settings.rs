@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use ntg_runtime::refine::Refinement;
-use ntg_runtime::settings::{Between, Method, Settings};
+use ntg_runtime::settings::{Between, InertiaCorrection, Method, Settings, Violations};
 use pyo3::prelude::*;
 
 use crate::errors;
@@ -13,6 +13,8 @@ use crate::errors;
 #[derive(FromPyObject)]
 pub(crate) struct Given {
     method: String,
+    restoration: String,
+    inertia_correction: String,
     tolerance: f64,
     constraint_tolerance: f64,
     max_iterations: usize,
@@ -39,6 +41,16 @@ impl Given {
                 return Err(none_of("method", other, "`auto`, `interior-point`, `augmented-lagrangian`, `sqp`"));
             }
         };
+        let restoration = match self.restoration.as_str() {
+            "absolute" => Violations::Absolute,
+            "squared" => Violations::Squared,
+            other => return Err(none_of("restoration", other, "`absolute`, `squared`")),
+        };
+        let inertia_correction = match self.inertia_correction.as_str() {
+            "by-element" => InertiaCorrection::ByElement,
+            "by-shift" => InertiaCorrection::ByShift,
+            other => return Err(none_of("inertia_correction", other, "`by-element`, `by-shift`")),
+        };
         let between = match self.between.as_str() {
             "report" => Between::Report,
             "refuse" => Between::Refuse,
@@ -49,6 +61,8 @@ impl Given {
         let time_limit = time_limit.map_err(|_| invalid("setting `time_limit`: a positive number of seconds"))?;
         let settings = Settings {
             method,
+            restoration,
+            inertia_correction,
             tolerance: self.tolerance,
             constraint_tolerance: self.constraint_tolerance,
             max_iterations: self.max_iterations,

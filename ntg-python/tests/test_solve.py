@@ -101,9 +101,22 @@ def test_an_unsolved_solve_says_so(move):
 
 
 def test_settings_are_checked(move):
-    for settings in (ntg.Settings(tolerance=-1), ntg.Settings(method="magic"), ntg.Settings(time_limit=-1.0)):
+    wrong = [
+        ntg.Settings(tolerance=-1),
+        ntg.Settings(method="magic"),
+        ntg.Settings(time_limit=-1.0),
+        ntg.Settings(restoration="cubed"),
+        ntg.Settings(inertia_correction="none"),
+    ]
+    for settings in wrong:
         with pytest.raises(ntg.SettingsError, match="setting `"):
             move.solve(settings=settings)
+
+
+def test_restorations_and_corrections_of_the_inertia_find_the_same_optimum(move):
+    optimum = move.solve(limit=0.8).objective
+    settings = ntg.Settings(method="interior-point", restoration="squared", inertia_correction="by-shift")
+    assert move.solve(settings=settings, limit=0.8).objective == pytest.approx(optimum, rel=1e-6)
 
 
 def test_values_that_make_no_sense_are_a_finding_with_its_place(flight):

@@ -145,12 +145,13 @@ fn font(size: u32) -> FontDesc<'static> {
 
 /// Limits across and events up.
 fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>) -> Drawn {
-    for (y, name) in &panel.limits {
+    // A limit that is far away is not drawn: the library has no room for its distance, and no mark there is seen.
+    for (y, name) in panel.limits.iter().filter(|limit| ys.contains(&limit.0)) {
         chart.draw_series(DashedLineSeries::new([(xs.start, *y), (xs.end, *y)], 50, 70, INK.stroke_width(30)))?;
         let label = Text::new(name.clone(), (100, -260), font(220).color(&GREY));
         chart.draw_series([EmptyElement::at((xs.start, *y)) + label])?;
     }
-    for (i, (x, name)) in panel.marks.iter().enumerate() {
+    for (i, (x, name)) in panel.marks.iter().filter(|mark| (xs.start..=xs.end).contains(&mark.0)).enumerate() {
         chart.draw_series(DashedLineSeries::new([(*x, ys.start), (*x, ys.end)], 100, 80, GREY.stroke_width(20)))?;
         // Neighbouring events stand at different heights.
         let height = 40 + 240 * i32::try_from(i % 4)?;

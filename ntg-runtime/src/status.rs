@@ -3,7 +3,8 @@
 pub use ntg_nlp::residuals::{Residual, Residuals};
 pub use ntg_nlp::status::Bounded;
 
-use ntg_structure::Place;
+use crate::digits::{apart, brief_in};
+use ntg_structure::{Place, Unit};
 use std::fmt;
 
 /// A bound that is not met.
@@ -19,6 +20,8 @@ pub struct Violation {
     pub bound: f64,
     /// By how much, positive, in the program's own units.
     pub violation: f64,
+    /// The unit of the spec in which messages show the three.
+    pub unit: Unit,
 }
 
 /// Bounds between which no number lies.
@@ -32,6 +35,8 @@ pub struct Crossing {
     pub lower: f64,
     /// The upper bound, which is smaller, or either is not a number.
     pub upper: f64,
+    /// The unit of the spec in which messages show both.
+    pub unit: Unit,
 }
 
 /// A value that is not finite: what, where, and at which point.
@@ -189,7 +194,8 @@ impl fmt::Display for Status {
             Self::Infeasible { rows } => {
                 f.write_str("infeasible: no nearby point meets all constraints")?;
                 list(f, rows, |f, row| {
-                    write!(f, "{} misses its bound {:.6e} by {:.3e}", row.name, row.bound, row.violation)
+                    let (bound, by) = (brief_in(row.bound, &row.unit), brief_in(row.violation, &row.unit));
+                    write!(f, "{} misses its bound {bound} by {by}", row.name)
                 })
             }
             Self::IterationLimit => f.write_str("the iteration limit was reached"),
@@ -200,7 +206,10 @@ impl fmt::Display for Status {
             Self::NotFinite(what) => write!(f, "not finite: {what}"),
             Self::Contradiction { bounds } => {
                 f.write_str("contradictory bounds")?;
-                list(f, bounds, |f, c| write!(f, "{} must lie between {:.6e} and {:.6e}", c.name, c.lower, c.upper))
+                list(f, bounds, |f, c| {
+                    let (lower, upper) = apart(c.lower, c.upper, &c.unit);
+                    write!(f, "{} must lie between {lower} and {upper}", c.name)
+                })
             }
             Self::SubproblemFailed => f.write_str("a quadratic subproblem could not be solved"),
         }

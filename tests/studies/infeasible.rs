@@ -277,6 +277,6 @@ fn two_targets_that_contradict_each_other_are_the_conflict() {
 fn an_explanation_takes_no_longer_than_the_solve_has_left() {
     let problem = Shipped::spec("low_observable").with("signature_max", &[2.0]);
     let report = solve(problem.problem(), &Settings::default()).unwrap_or_else(|error| panic!("{error}"));
-    let spent = Settings { time_limit: Some(std::time::Duration::from_nanos(1)), ..Settings::default() };
+    let spent = Settings { time_limit: Some(Duration::from_nanos(1)), ..Settings::default() };
     assert_eq!(report.explain(problem.problem(), &spent), Ok(Some(Explanation::Unknown)));
 }

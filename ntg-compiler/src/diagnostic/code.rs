@@ -130,6 +130,7 @@ codes! {
     UnknownPlace "E093" "a place in time that is not known before the solve, or outside";
     Delay "E094" "an expression at another time than that at which it stands";
     WrongMeasurement "E095" "something in `measure` that is no measurement";
+    UnitInDoubt "E096" "a unit in a list that can be read two ways";
 
     GradientJumps "N001" "a gradient that may jump";
     DerivativeJumps "N002" "a derivative that jumps at the knots";

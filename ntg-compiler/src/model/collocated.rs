@@ -16,7 +16,7 @@ use super::scope::{Allow, Context, ScopeId};
 use super::units;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{self, Course, ItemKind, OutputName, Role};
+use crate::syntax::ast::{self, Course, DeclaredName, ItemKind, Role};
 
 impl<'a> Elaborator<'a> {
     /// What is told once for all names of a declaration; the spline itself follows for each name.
@@ -38,7 +38,7 @@ impl<'a> Elaborator<'a> {
         &mut self,
         phase: usize,
         (course, role): (&Course, Role),
-        name: &'a OutputName,
+        name: &'a DeclaredName,
         written: Spline,
     ) -> Spline {
         let points = match self.problem.phases[phase].collocation {
@@ -128,7 +128,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Dimension and unit of an output without a unit: those of its bounds; no dimension where these were refused.
-    pub(super) fn unit_of_bounds(&mut self, scope: ScopeId, name: &'a OutputName) -> (Option<Dimension>, Unit) {
+    pub(super) fn unit_of_bounds(&mut self, scope: ScopeId, name: &'a DeclaredName) -> (Option<Dimension>, Unit) {
         let Some(bounds) = &name.bounds else { return (Some(Dimension::NONE), Unit::default()) };
         let mut is_refused = false;
         let cx = Context::of(scope, Allow::Parameters);

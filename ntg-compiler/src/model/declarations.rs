@@ -96,9 +96,11 @@ impl<'a> Elaborator<'a> {
                 }
             }
             ItemKind::Variable(v) => {
-                let entity = Entity::Variable(self.variables.len());
-                self.declare(scope, &v.name, Declared { entity, span: v.name.span });
-                self.variables.push((v, None));
+                for name in &v.names {
+                    let entity = Entity::Variable(self.variables.len());
+                    self.declare(scope, &name.name, Declared { entity, span: name.name.span });
+                    self.variables.push((name, None));
+                }
             }
             ItemKind::Output(o) => {
                 for name in &o.names {

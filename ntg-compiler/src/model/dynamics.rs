@@ -17,7 +17,7 @@ use super::shape::{Ends, Shape};
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{self, Comparison, ItemKind, OutputName, Relation, Role, Statement};
+use crate::syntax::ast::{self, Comparison, DeclaredName, ItemKind, Relation, Role, Statement};
 
 impl<'a> Elaborator<'a> {
     /// The equations of a block in one phase, counted.
@@ -67,7 +67,7 @@ impl<'a> Elaborator<'a> {
             return;
         }
         let mut elements: i64 = 0;
-        let mut resting: Option<&'a OutputName> = None;
+        let mut resting: Option<&'a DeclaredName> = None;
         for name in &states {
             let outputs = &self.problem.phases[phase].outputs;
             let Some(k) = outputs.iter().position(|output| output.name == name.name.text) else { continue };
@@ -107,7 +107,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The states of a phase, those of its agent first.
-    fn states_of(&self, phase: usize) -> Vec<&'a OutputName> {
+    fn states_of(&self, phase: usize) -> Vec<&'a DeclaredName> {
         self.declared_outputs(phase)
             .into_iter()
             .filter(|(role, _)| *role == Role::State)
@@ -116,10 +116,10 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What is declared as output, state or input in a phase; a phase's own declaration replaces that of its agent.
-    fn declared_outputs(&self, phase: usize) -> Vec<(Role, &'a OutputName)> {
+    fn declared_outputs(&self, phase: usize) -> Vec<(Role, &'a DeclaredName)> {
         let (scope, agent) = (self.phases[phase].scope, self.phases[phase].agent);
         let common = self.agents[agent].scope;
-        let mut all: Vec<(Role, &'a OutputName)> = Vec::new();
+        let mut all: Vec<(Role, &'a DeclaredName)> = Vec::new();
         for scope in if scope == common { vec![common] } else { vec![common, scope] } {
             for item in self.items[scope] {
                 let ItemKind::Output(output) = &item.kind else { continue };
@@ -159,7 +159,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn bounds_fit(&mut self, cx: &Context<'a>, name: &'a OutputName, bounds: &'a ast::Bounds, shape: &Shape) -> bool {
+    fn bounds_fit(&mut self, cx: &Context<'a>, name: &'a DeclaredName, bounds: &'a ast::Bounds, shape: &Shape) -> bool {
         for end in bounds.lower.iter().chain(&bounds.upper) {
             let Some(own) = self.shape(cx, end) else { return false };
             if !own.is_number() && own != *shape {
@@ -175,7 +175,7 @@ impl<'a> Elaborator<'a> {
         &mut self,
         cx: &Context<'a>,
         (phase, output): (usize, usize),
-        name: &'a OutputName,
+        name: &'a DeclaredName,
         axes: &[Ends],
         at: &[Form],
     ) {

@@ -130,7 +130,7 @@ pub(super) struct Elaborator<'a> {
     pub(super) definitions: Vec<Definition<'a>>,
     pub(super) functions: Vec<FunctionDeclaration<'a>>,
     pub(super) parameters: Vec<(&'a ast::Ident, Option<Dimension>)>,
-    pub(super) variables: Vec<(&'a ast::Variable, Option<Dimension>)>,
+    pub(super) variables: Vec<(&'a ast::DeclaredName, Option<Dimension>)>,
     pub(super) tables: Vec<&'a ast::Table>,
     pub(super) signatures: Vec<TableSignature>,
     pub(super) phases: Vec<PhaseDeclaration<'a>>,

@@ -170,6 +170,19 @@ impl<'a> Elaborator<'a> {
                 return format!("multiply the pure number by a unit: `{text} * 1 [{}]`", unit_of(other));
             }
         }
+        let is_temperature = |v: &Value| v.dimension == Some(Dimension::of([0, 0, 0, 0, 1, 0, 0]));
+        for (coulombs, other) in [(a, b), (b, a)] {
+            // `[C]` and `[F]` beside a temperature are meant as degrees.
+            if is_temperature(other)
+                && matches!(&coulombs.unit, Some(unit) if matches!(unit.symbol.as_str(), "C" | "F"))
+            {
+                let symbol = coulombs.unit.as_ref().map_or("", |unit| unit.symbol.as_str());
+                let name = if symbol == "C" { "coulomb" } else { "farad" };
+                return format!(
+                    "`{symbol}` is the {name}; temperatures count from absolute zero: `293.15 [K]` for 20 degrees Celsius"
+                );
+            }
+        }
         "bring both to the same dimension: check units, powers and missing factors".to_owned()
     }
 

@@ -13,11 +13,12 @@ use super::elaborator::Elaborator;
 use super::kinds::Kind;
 use super::problem::Form;
 use super::scope::{Allow, Context, Entity, Meaning, look_up, visible};
-use super::suggest::nearest;
+use super::suggest::{behind_near, nearest};
 use super::value::{Flaw, Misplaced, Value, What};
 use super::vectors::{VECTOR_FUNCTIONS, vector_function};
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{NodeId, Unary};
+use crate::standard::APPLIED;
 use crate::syntax::ast::{Call, Expr, ExprKind};
 
 /// A function of the language.
@@ -218,14 +219,13 @@ impl<'a> Elaborator<'a> {
         if self.is_of_broken_library(cx.names(), name) {
             return self.poison(call.span);
         }
-        if let Some(help) = self.library_help(cx.names(), name) {
-            return self.refuse(finding.help(help), call.span);
-        }
-        if let Some(help) = self.in_standard(name).filter(|_| HABITS.iter().all(|(habit, _)| *habit != name)) {
-            return self.refuse(finding.help(help), call.span);
-        }
         let names = visible(&self.scopes, cx.names());
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
+        let standard = || self.in_standard(name, APPLIED).filter(|_| HABITS.iter().all(|(habit, _)| *habit != name));
+        if let Some(help) = self.library_help(cx.names(), name).or_else(standard) {
+            let help = behind_near(nearest(name, own), help);
+            return self.refuse(finding.help(help), call.span);
+        }
         let habit = HABITS.iter().find(|(habit, _)| *habit == name).map(|(_, right)| *right);
         let finding = match (
             habit,

@@ -14,7 +14,7 @@ use super::scope::{Declared, PROBLEM, ScopeId, library_named};
 use super::suggest::nearest;
 use crate::diagnostic::{Code, Diagnostic, InLibrary, Severity};
 use crate::source::{Source, Span};
-use crate::standard;
+use crate::standard::{self, APPLIED, VALUES};
 use crate::syntax::ast::{self, ItemKind, Use, UseTarget};
 use crate::syntax::{self, FileKind};
 
@@ -392,7 +392,8 @@ impl<'a> Elaborator<'a> {
                 });
             };
             let names = &self.scopes[known].order;
-            if let Some((library, own)) = standard::holder(inner).filter(|_| names.iter().all(|name| *name != inner)) {
+            let any = || [VALUES, APPLIED].iter().find_map(|kinds| standard::holder(inner, kinds));
+            if let Some((library, own)) = any().filter(|_| names.iter().all(|name| *name != inner)) {
                 return Some(format!("`{library}` has it: {}", taken_from(library, own)));
             }
             return Some(match nearest(inner, names.iter().copied()) {
@@ -415,8 +416,8 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What to write for a name that a library of the language has, where the spec does not use it.
-    pub(super) fn in_standard(&self, name: &str) -> Option<String> {
-        let (library, own) = standard::holder(name)?;
+    pub(super) fn in_standard(&self, name: &str, kinds: &[&str]) -> Option<String> {
+        let (library, own) = standard::holder(name, kinds)?;
         Some(format!("`{library}` has it: {}", taken_from(library, own)))
     }
 

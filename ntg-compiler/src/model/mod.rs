@@ -32,6 +32,7 @@ mod independent;
 mod kinds;
 mod known_shapes;
 mod library;
+mod listed;
 mod measure;
 mod mention;
 mod mission;

@@ -12,10 +12,11 @@ use super::mention::names_in;
 use super::problem::{At, Form, Instant, Leaf};
 use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up, visible};
 use super::shape::Ends;
-use super::suggest::nearest;
+use super::suggest::{behind_near, nearest};
 use super::value::{Flaw, Misplaced, Value, What};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
+use crate::standard::VALUES;
 use crate::syntax::ast::{Ident, Path, Segment};
 
 /// Names that people take for known, and what to write.
@@ -128,8 +129,9 @@ impl<'a> Elaborator<'a> {
         if self.is_of_broken_library(scope, text) {
             return self.poison(segment.span);
         }
+        let near = nearest(text, names.iter().copied());
         if let Some(help) = self.library_help(scope, text) {
-            return self.refuse(finding.help(help), segment.span);
+            return self.refuse(finding.help(behind_near(near, help)), segment.span);
         }
         if let Some(bound) = self.index_names.get(text.as_str()) {
             let help = format!("`{text}` is an index: it has a value only inside its `for`, its sum or its family");
@@ -139,8 +141,9 @@ impl<'a> Elaborator<'a> {
         let elsewhere = elsewhere.or_else(|| as_derivative(&dotted(text).unwrap_or_else(|| text.clone()), &names));
         let habit =
             || HABITS.iter().find(|(wrong, _)| wrong.contains(&text.as_str())).map(|(_, help)| (*help).to_owned());
-        let elsewhere = elsewhere.or_else(habit).or_else(|| self.in_standard(text));
-        let finding = match (elsewhere, nearest(text, names.iter().copied())) {
+        let elsewhere = elsewhere.or_else(habit);
+        let elsewhere = elsewhere.or_else(|| self.in_standard(text, VALUES).map(|help| behind_near(near, help)));
+        let finding = match (elsewhere, near) {
             (Some(help), _) => finding.help(help),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),
             (None, None) if names.is_empty() => finding.help("nothing is declared here"),

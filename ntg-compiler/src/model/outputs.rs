@@ -5,7 +5,7 @@
 //! Finds: splines that do not exist, arrays with impossible sizes.
 
 use ntg_splines::{KnotError, Knots};
-use ntg_structure::Spline;
+use ntg_structure::{Spline, Unit};
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, doc_text};
@@ -13,7 +13,7 @@ use super::problem::Output;
 use super::scope::{Allow, Context, ScopeId};
 use super::shape::Ends;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::ast::{self, Course, ItemKind, OutputName, Role};
+use crate::syntax::ast::{self, Course, DeclaredName, ItemKind, Role};
 
 /// A spline in place of one that is wrong: so high that no derivative is refused because of it.
 pub(super) fn stand_in() -> Spline {
@@ -100,27 +100,20 @@ impl<'a> Elaborator<'a> {
                 let spline = self.collocated(phase, (&output.course, output.role), name, spline.clone());
                 all.push(self.output_declaration(scope, name, doc, &spline));
             }
+            let measured = |name: &DeclaredName| {
+                let declared = all.iter().find(|declared| declared.output.name == name.name.text);
+                declared.map_or((None, Unit::default()), |found| (found.dimension, found.output.unit.clone()))
+            };
+            let measured: Vec<_> = output.names.iter().map(measured).collect();
+            for at in self.units_in_doubt(&output.names, &measured) {
+                let doubtful = all.iter_mut().filter(|known| known.output.name == output.names[at].name.text);
+                doubtful.for_each(|known| known.dimension = None);
+            }
         }
         all
     }
 
-    /// Notes names in a list of outputs that take the next unit, where earlier versions gave them the last one.
-    fn units_taken(&mut self, output: &'a ast::Output) {
-        let Some(last) = output.names.iter().rev().find_map(|name| name.unit.as_ref()) else { return };
-        for name in output.names.iter().filter(|_| output.role == Role::Output) {
-            let Some(unit) = name.unit.as_ref().filter(|unit| unit.span.start > name.span.end) else { continue };
-            let (taken, before) = (self.text(unit.span), self.text(last.span));
-            if taken == before {
-                continue;
-            }
-            let text = &name.name.text;
-            let message = format!("`{text}` takes the next unit, {taken}; before version 2 it was {before}");
-            let note = Diagnostic::new(Code::UnitTaken, name.name.span, message).label(unit.span, "the next unit");
-            self.report(note.help(format!("write it out: `{text} {taken}`")));
-        }
-    }
-
-    fn output_declaration(&mut self, scope: ScopeId, name: &'a OutputName, doc: String, spline: &Spline) -> Declared {
+    fn output_declaration(&mut self, scope: ScopeId, name: &'a DeclaredName, doc: String, spline: &Spline) -> Declared {
         let cx = Context::of(scope, Allow::Constants);
         let axes = name.shape.as_ref().map_or(Vec::new(), |shape| self.declared_axes(&cx, shape));
         let family = self.family_of(&axes);
@@ -128,7 +121,7 @@ impl<'a> Elaborator<'a> {
         let has_unit = name.unit.is_some() || name.bounds.is_some();
         let (dimension, unit) = match unit {
             Some((quantity, shown)) => (Some(quantity.dimension), shown),
-            None if name.unit.is_some() => (None, ntg_structure::Unit::default()),
+            None if name.unit.is_some() => (None, Unit::default()),
             None => self.unit_of_bounds(scope, name),
         };
         let columns = match axes.as_slice() {

@@ -21,7 +21,7 @@ use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::NodeId;
 use crate::source::Span;
-use crate::syntax::ast::{self, Expr, ExprKind, ItemKind, Values};
+use crate::syntax::ast::{self, DeclaredName, Expr, ExprKind, ItemKind, Values};
 
 /// A list of constants of one dimension.
 struct Numbers {
@@ -268,45 +268,54 @@ impl<'a> Elaborator<'a> {
 
     /// All variables; their bounds may depend on parameters.
     pub(super) fn variables(&mut self) {
-        let cx = Context::of(PROBLEM, Allow::Parameters);
-        let mut seen = 0;
         for item in self.items[PROBLEM] {
             let ItemKind::Variable(variable) = &item.kind else { continue };
-            let k = seen;
-            seen += 1;
-            let name = &variable.name.text;
-            let what = format!("a bound of `{name}`");
-            let axes = variable.shape.as_ref().map_or(Vec::new(), |shape| self.declared_axes(&cx, shape));
-            let (family, bounds, joined) = self.variable_bounds(&cx, variable, &axes, &what);
-            self.variable_axes.push(axes);
-            let declared = variable.unit.as_ref().and_then(|unit| self.unit(unit));
-            let is_refused = variable.unit.is_some() && declared.is_none();
-            let mut dimension = joined.as_ref().and_then(|value| value.dimension);
-            let mut unit = joined.and_then(|value| value.unit).map(|unit| (*unit).clone());
-            if let Some((quantity, shown)) = declared {
-                if let Some(found) = dimension.filter(|found| *found != quantity.dimension) {
-                    let (this, that) = (quantity.dimension.describe(), found.describe());
-                    let message = format!("`{name}` is {this}, but its bounds are {that}");
-                    let finding = Diagnostic::new(Code::WrongUnit, variable.name.span, message);
-                    self.report(finding.help(format!("give the bounds the unit: `[{}]`", shown.symbol)));
-                }
-                dimension = Some(quantity.dimension);
-                unit = Some(shown);
+            for name in &variable.names {
+                self.variable(name, doc_text(&item.doc));
             }
-            let dimension = dimension.unwrap_or(Dimension::NONE);
-            self.variables[k].1 = (!is_refused).then_some(dimension);
-            let unit = unit.unwrap_or_else(|| units::si(&dimension));
-            let doc = doc_text(&item.doc);
-            let (name, span) = (name.clone(), variable.name.span);
-            self.problem.variables.push(Variable { name, doc, unit, family, bounds, span });
+            let first = self.problem.variables.len() - variable.names.len();
+            let measured = |k: usize| (self.variables[k].1, self.problem.variables[k].unit.clone());
+            let measured: Vec<_> = (first..self.problem.variables.len()).map(measured).collect();
+            for at in self.units_in_doubt(&variable.names, &measured) {
+                self.variables[first + at].1 = None;
+            }
         }
+    }
+
+    fn variable(&mut self, variable: &'a DeclaredName, doc: String) {
+        let cx = Context::of(PROBLEM, Allow::Parameters);
+        let k = self.problem.variables.len();
+        let name = &variable.name.text;
+        let what = format!("a bound of `{name}`");
+        let axes = variable.shape.as_ref().map_or(Vec::new(), |shape| self.declared_axes(&cx, shape));
+        let (family, bounds, joined) = self.variable_bounds(&cx, variable, &axes, &what);
+        self.variable_axes.push(axes);
+        let declared = variable.unit.as_ref().and_then(|unit| self.unit(unit));
+        let is_refused = variable.unit.is_some() && declared.is_none();
+        let mut dimension = joined.as_ref().and_then(|value| value.dimension);
+        let mut unit = joined.and_then(|value| value.unit).map(|unit| (*unit).clone());
+        if let Some((quantity, shown)) = declared {
+            if let Some(found) = dimension.filter(|found| *found != quantity.dimension) {
+                let (this, that) = (quantity.dimension.describe(), found.describe());
+                let message = format!("`{name}` is {this}, but its bounds are {that}");
+                let finding = Diagnostic::new(Code::WrongUnit, variable.name.span, message);
+                self.report(finding.help(format!("give the bounds the unit: `[{}]`", shown.symbol)));
+            }
+            dimension = Some(quantity.dimension);
+            unit = Some(shown);
+        }
+        let dimension = dimension.unwrap_or(Dimension::NONE);
+        self.variables[k].1 = (!is_refused).then_some(dimension);
+        let unit = unit.unwrap_or_else(|| units::si(&dimension));
+        let (name, span) = (name.clone(), variable.name.span);
+        self.problem.variables.push(Variable { name, doc, unit, family, bounds, span });
     }
 
     /// The bounds of a variable, for an array those of each member.
     fn variable_bounds(
         &mut self,
         cx: &Context<'a>,
-        variable: &'a ast::Variable,
+        variable: &'a DeclaredName,
         axes: &[Ends],
         what: &str,
     ) -> (Option<Loop>, Bounds, Option<Value>) {

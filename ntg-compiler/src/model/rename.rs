@@ -153,9 +153,8 @@ impl<'n> Rename<'n> {
         match kind {
             ItemKind::Const(it) => self.expr(&mut it.value),
             ItemKind::Param(it) => self.values(&mut it.default),
-            ItemKind::Variable(it) => it.bounds.iter_mut().for_each(|bounds| self.bounds(bounds)),
-            ItemKind::Output(it) => {
-                it.names.iter_mut().flat_map(|name| &mut name.bounds).for_each(|bounds| self.bounds(bounds));
+            ItemKind::Variable(Variable { names }) | ItemKind::Output(Output { names, .. }) => {
+                names.iter_mut().flat_map(|name| &mut name.bounds).for_each(|bounds| self.bounds(bounds));
             }
             ItemKind::Function(it) => {
                 let before = self.locals.len();

@@ -70,8 +70,9 @@ fn declared(kind: &ItemKind) -> Vec<&Ident> {
     match kind {
         ItemKind::Const(it) => vec![&it.name],
         ItemKind::Param(it) => vec![&it.name],
-        ItemKind::Variable(it) => vec![&it.name],
-        ItemKind::Output(it) => it.names.iter().map(|name| &name.name).collect(),
+        ItemKind::Variable(Variable { names }) | ItemKind::Output(Output { names, .. }) => {
+            names.iter().map(|name| &name.name).collect()
+        }
         ItemKind::Function(it) => vec![&it.name],
         ItemKind::Let(it) => vec![&it.name],
         ItemKind::Table(it) => vec![&it.name],
@@ -217,11 +218,14 @@ impl Pass<'_> {
         mut variable: Variable,
         further: &mut Option<Item>,
     ) -> Variable {
-        let own = variable.name.clone();
-        variable.name.text = array(&scenario.name.text, &own.text);
-        let bounds = self.bounds(scenario, &own, &mut variable.bounds);
-        variable.shape = Some(with_axis(scenario, variable.shape.take(), false));
-        *further = held(scenario, item, BlockPlace::Temporal, bounds.map(Statement::One).into_iter().collect());
+        let mut statements = vec![];
+        for name in &mut variable.names {
+            let own = name.name.clone();
+            name.name.text = array(&scenario.name.text, &own.text);
+            statements.extend(self.bounds(scenario, &own, &mut name.bounds).map(Statement::One));
+            name.shape = Some(with_axis(scenario, name.shape.take(), false));
+        }
+        *further = held(scenario, item, BlockPlace::Temporal, statements);
         variable
     }
 

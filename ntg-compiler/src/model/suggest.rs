@@ -19,6 +19,11 @@ pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a s
     best.map(|(_, candidate)| candidate)
 }
 
+/// What a library has for an unknown name, behind the name of the spec itself that is near it, if there is one.
+pub(super) fn behind_near(near: Option<&str>, library: String) -> String {
+    near.map_or(library.clone(), |near| format!("did you mean `{near}`? If not, {library}"))
+}
+
 /// Restricted Damerau-Levenshtein distance.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());

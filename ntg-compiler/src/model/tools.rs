@@ -1,14 +1,14 @@
 //! What editors ask about the language: which units and functions there are, and what a unit is.
 
 use super::functions::BUILTINS;
-use super::units::{self, SYMBOLS};
+use super::units;
 use super::vectors::VECTOR_FUNCTIONS;
 use crate::source::Source;
 use crate::syntax;
 
-/// Every unit symbol, in the order of the manual.
+/// Every unit symbol without a prefix, and those with one that are in daily use.
 pub fn unit_symbols() -> impl Iterator<Item = &'static str> {
-    SYMBOLS.iter().map(|(symbol, ..)| *symbol)
+    units::offered()
 }
 
 /// Every function of the language that is applied like one of the user's own.

@@ -23,14 +23,8 @@ impl Look {
             match &item.kind {
                 ItemKind::Const(c) => self.expr(&c.value),
                 ItemKind::Param(p) => self.values(&p.default),
-                ItemKind::Variable(v) => {
-                    self.unit(&v.unit);
-                    self.bounds(&v.bounds);
-                }
-                ItemKind::Output(o) => o.names.iter().for_each(|name| {
-                    self.unit(&name.unit);
-                    self.bounds(&name.bounds);
-                }),
+                ItemKind::Variable(v) => self.names(&v.names),
+                ItemKind::Output(o) => self.names(&o.names),
                 ItemKind::Function(f) => {
                     f.parameters.iter().for_each(|argument| self.unit(&argument.unit));
                     self.unit(&f.unit);
@@ -82,6 +76,13 @@ impl Look {
 
     fn values(&mut self, values: &Values) {
         values.elements.iter().for_each(|value| self.expr(value));
+    }
+
+    fn names(&mut self, names: &[DeclaredName]) {
+        for name in names {
+            self.unit(&name.unit);
+            self.bounds(&name.bounds);
+        }
     }
 
     fn bounds(&mut self, bounds: &Option<Bounds>) {

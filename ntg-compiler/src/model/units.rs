@@ -41,26 +41,52 @@ const CURRENT: [i8; 7] = [0, 0, 0, 1, 0, 0, 0];
 const CHARGE: [i8; 7] = [0, 0, 1, 1, 0, 0, 0];
 const VOLTAGE: [i8; 7] = [1, 2, -3, -1, 0, 0, 0];
 
-/// Every symbol. Values: the SI brochure (BIPM, 9th edition); international foot, yard, mile,
-/// nautical mile and pound; conventional standard atmosphere; IAU astronomical unit.
-pub(super) const SYMBOLS: &[Symbol] = &[
+/// The units of the SI, and those beside it that take its prefixes. Values: the SI brochure (BIPM, 9th edition).
+pub(super) const PREFIXED: &[Symbol] = &[
+    ("g", 1e-3, MASS),
+    ("m", 1.0, LENGTH),
+    ("s", 1.0, TIME),
+    ("A", 1.0, CURRENT),
+    ("K", 1.0, [0, 0, 0, 0, 1, 0, 0]),
+    ("mol", 1.0, [0, 0, 0, 0, 0, 1, 0]),
+    ("cd", 1.0, [0, 0, 0, 0, 0, 0, 1]),
     ("rad", 1.0, ANGLE),
-    ("mrad", 1e-3, ANGLE),
+    ("sr", 1.0, ANGLE),
+    ("Hz", 1.0, RATE),
+    ("N", 1.0, FORCE),
+    ("Pa", 1.0, PRESSURE),
+    ("J", 1.0, ENERGY),
+    ("W", 1.0, POWER),
+    ("C", 1.0, CHARGE),
+    ("V", 1.0, VOLTAGE),
+    ("ohm", 1.0, [1, 2, -3, -2, 0, 0, 0]),
+    ("S", 1.0, [-1, -2, 3, 2, 0, 0, 0]),
+    ("F", 1.0, [-1, -2, 4, 2, 0, 0, 0]),
+    ("H", 1.0, [1, 2, -2, -2, 0, 0, 0]),
+    ("Wb", 1.0, [1, 2, -2, -1, 0, 0, 0]),
+    ("T", 1.0, [1, 0, -2, -1, 0, 0, 0]),
+    ("lm", 1.0, [0, 0, 0, 0, 0, 0, 1]),
+    ("lx", 1.0, [0, -2, 0, 0, 0, 0, 1]),
+    ("L", 1e-3, VOLUME),
+    ("l", 1e-3, VOLUME),
+    ("t", 1e3, MASS),
+    ("bar", 1e5, PRESSURE),
+    ("eV", 1.602_176_634e-19, ENERGY),
+    ("Wh", 3.6e3, ENERGY),
+    ("Ah", 3600.0, CHARGE),
+    ("Bq", 1.0, RATE),
+    ("Gy", 1.0, [0, 2, -2, 0, 0, 0, 0]),
+    ("Sv", 1.0, [0, 2, -2, 0, 0, 0, 0]),
+    ("kat", 1.0, [0, 0, -1, 0, 0, 1, 0]),
+];
+
+/// Units that take no prefix. Values: the SI brochure; international foot, yard, mile, nautical mile and pound;
+/// conventional standard atmosphere; IAU astronomical unit.
+pub(super) const PLAIN: &[Symbol] = &[
     ("deg", PI / 180.0, ANGLE),
     ("arcmin", PI / 10_800.0, ANGLE),
     ("arcsec", PI / 648_000.0, ANGLE),
     ("rev", 2.0 * PI, ANGLE),
-    ("sr", 1.0, ANGLE),
-    ("m", 1.0, LENGTH),
-    ("km", 1e3, LENGTH),
-    ("dm", 1e-1, LENGTH),
-    ("cm", 1e-2, LENGTH),
-    ("mm", 1e-3, LENGTH),
-    ("um", 1e-6, LENGTH),
-    ("µm", 1e-6, LENGTH),
-    ("μm", 1e-6, LENGTH),
-    ("nm", 1e-9, LENGTH),
-    ("Mm", 1e6, LENGTH),
     ("inch", 0.0254, LENGTH),
     ("ft", 0.3048, LENGTH),
     ("yd", 0.9144, LENGTH),
@@ -68,82 +94,56 @@ pub(super) const SYMBOLS: &[Symbol] = &[
     ("nmi", 1852.0, LENGTH),
     ("au", 149_597_870_700.0, LENGTH),
     ("ha", 1e4, AREA),
-    ("L", 1e-3, VOLUME),
-    ("l", 1e-3, VOLUME),
-    ("mL", 1e-6, VOLUME),
-    ("ml", 1e-6, VOLUME),
-    ("s", 1.0, TIME),
-    ("ms", 1e-3, TIME),
-    ("us", 1e-6, TIME),
-    ("µs", 1e-6, TIME),
-    ("μs", 1e-6, TIME),
-    ("ns", 1e-9, TIME),
     ("min", 60.0, TIME),
     ("h", 3600.0, TIME),
     ("d", 86_400.0, TIME),
     ("day", 86_400.0, TIME),
-    ("Hz", 1.0, RATE),
-    ("kHz", 1e3, RATE),
-    ("MHz", 1e6, RATE),
-    ("GHz", 1e9, RATE),
     ("rpm", 2.0 * PI / 60.0, RATE),
     ("kn", 1852.0 / 3600.0, SPEED),
     ("kt", 1852.0 / 3600.0, SPEED),
     ("mph", 1609.344 / 3600.0, SPEED),
-    ("kg", 1.0, MASS),
-    ("g", 1e-3, MASS),
-    ("mg", 1e-6, MASS),
-    ("t", 1e3, MASS),
     ("lb", 0.453_592_37, MASS),
-    ("N", 1.0, FORCE),
-    ("mN", 1e-3, FORCE),
-    ("kN", 1e3, FORCE),
-    ("MN", 1e6, FORCE),
     ("lbf", 4.448_221_615_260_5, FORCE),
-    ("Pa", 1.0, PRESSURE),
-    ("hPa", 1e2, PRESSURE),
-    ("kPa", 1e3, PRESSURE),
-    ("MPa", 1e6, PRESSURE),
-    ("GPa", 1e9, PRESSURE),
-    ("bar", 1e5, PRESSURE),
-    ("mbar", 1e2, PRESSURE),
     ("atm", 101_325.0, PRESSURE),
     ("psi", 6_894.757_293_168, PRESSURE),
-    ("J", 1.0, ENERGY),
-    ("mJ", 1e-3, ENERGY),
-    ("kJ", 1e3, ENERGY),
-    ("MJ", 1e6, ENERGY),
-    ("GJ", 1e9, ENERGY),
-    ("Wh", 3.6e3, ENERGY),
-    ("kWh", 3.6e6, ENERGY),
-    ("MWh", 3.6e9, ENERGY),
-    ("eV", 1.602_176_634e-19, ENERGY),
-    ("W", 1.0, POWER),
-    ("mW", 1e-3, POWER),
-    ("kW", 1e3, POWER),
-    ("MW", 1e6, POWER),
-    ("GW", 1e9, POWER),
     ("hp", 745.699_871_582_270_2, POWER),
-    ("A", 1.0, CURRENT),
-    ("mA", 1e-3, CURRENT),
-    ("kA", 1e3, CURRENT),
-    ("C", 1.0, CHARGE),
-    ("Ah", 3600.0, CHARGE),
-    ("V", 1.0, VOLTAGE),
-    ("mV", 1e-3, VOLTAGE),
-    ("kV", 1e3, VOLTAGE),
-    ("ohm", 1.0, [1, 2, -3, -2, 0, 0, 0]),
-    ("S", 1.0, [-1, -2, 3, 2, 0, 0, 0]),
-    ("F", 1.0, [-1, -2, 4, 2, 0, 0, 0]),
-    ("H", 1.0, [1, 2, -2, -2, 0, 0, 0]),
-    ("Wb", 1.0, [1, 2, -2, -1, 0, 0, 0]),
-    ("T", 1.0, [1, 0, -2, -1, 0, 0, 0]),
-    ("K", 1.0, [0, 0, 0, 0, 1, 0, 0]),
-    ("mol", 1.0, [0, 0, 0, 0, 0, 1, 0]),
-    ("mmol", 1e-3, [0, 0, 0, 0, 0, 1, 0]),
-    ("cd", 1.0, [0, 0, 0, 0, 0, 0, 1]),
-    ("lm", 1.0, [0, 0, 0, 0, 0, 0, 1]),
-    ("lx", 1.0, [0, -2, 0, 0, 0, 0, 1]),
+];
+
+/// The prefixes of the SI, with their powers of ten (BIPM, 27th general conference, 2022); three ways to write micro.
+const PREFIXES: &[(&str, i32)] = &[
+    ("Q", 30),
+    ("R", 27),
+    ("Y", 24),
+    ("Z", 21),
+    ("E", 18),
+    ("P", 15),
+    ("T", 12),
+    ("G", 9),
+    ("M", 6),
+    ("k", 3),
+    ("h", 2),
+    ("da", 1),
+    ("d", -1),
+    ("c", -2),
+    ("m", -3),
+    ("u", -6),
+    ("µ", -6),
+    ("μ", -6),
+    ("n", -9),
+    ("p", -12),
+    ("f", -15),
+    ("a", -18),
+    ("z", -21),
+    ("y", -24),
+    ("r", -27),
+    ("q", -30),
+];
+
+/// Symbols with a prefix that are in daily use: those that editors offer and messages propose.
+pub(super) const EVERYDAY: &[&str] = &[
+    "mrad", "km", "dm", "cm", "mm", "um", "nm", "Mm", "mL", "ml", "ms", "us", "ns", "kHz", "MHz", "GHz", "kg", "mg",
+    "mN", "kN", "MN", "hPa", "kPa", "MPa", "GPa", "mbar", "mJ", "kJ", "MJ", "GJ", "kWh", "MWh", "mW", "kW", "MW", "GW",
+    "mA", "kA", "mV", "kV", "mmol",
 ];
 
 /// Symbols that people write for others: (what they write, what to write instead).
@@ -225,9 +225,24 @@ pub(super) fn is_symbol(text: &str) -> bool {
     symbol(text).is_some()
 }
 
+/// A symbol that has a meaning without a prefix keeps it: `kt` is the knot, no thousand tonnes.
 fn symbol(text: &str) -> Option<Quantity> {
-    let (_, factor, exponents) = SYMBOLS.iter().find(|(symbol, ..)| *symbol == text)?;
-    Some(Quantity { factor: *factor, dimension: Dimension::of(*exponents) })
+    let whole = PREFIXED.iter().chain(PLAIN).find(|(symbol, ..)| *symbol == text);
+    let whole = whole.map(|(_, factor, exponents)| (*factor, *exponents));
+    let (factor, exponents) = whole.or_else(|| PREFIXES.iter().find_map(|prefix| prefixed(text, *prefix)))?;
+    Some(Quantity { factor, dimension: Dimension::of(exponents) })
+}
+
+/// A unit behind a prefix; its factor is the decimal number, rounded once.
+fn prefixed(text: &str, (prefix, power): (&str, i32)) -> Option<(f64, [i8; 7])> {
+    let unit = text.strip_prefix(prefix)?;
+    let (_, factor, exponents) = PREFIXED.iter().find(|(symbol, ..)| *symbol == unit)?;
+    Some((format!("{factor}e{power}").parse().ok()?, *exponents))
+}
+
+/// The symbols that are offered: all units, and those with a prefix that are in daily use.
+pub(super) fn offered() -> impl Iterator<Item = &'static str> {
+    PREFIXED.iter().chain(PLAIN).map(|(symbol, ..)| *symbol).chain(EVERYDAY.iter().copied())
 }
 
 fn unknown(text: &str, span: Span) -> Diagnostic {
@@ -244,7 +259,13 @@ fn unknown(text: &str, span: Span) -> Diagnostic {
         return found.help(help);
     }
     let habit = HABITS.iter().find(|(wrong, _)| *wrong == text).map(|(_, right)| *right);
-    match habit.or_else(|| nearest(text, SYMBOLS.iter().map(|(symbol, ..)| *symbol))) {
+    // Of symbols that differ by the size of letters alone, one in daily use.
+    let alike = |symbol: &String| symbol.eq_ignore_ascii_case(text);
+    let every =
+        PREFIXES.iter().flat_map(|(prefix, _)| PREFIXED.iter().map(move |(unit, ..)| format!("{prefix}{unit}")));
+    let near = offered().map(str::to_owned).chain(every).find(alike);
+    let near = habit.map(str::to_owned).or(near).or_else(|| nearest(text, offered()).map(str::to_owned));
+    match near {
         Some(near) => found.help(format!("did you mean `{near}`?")),
         None => {
             found.help("units are combined from symbols such as `m`, `km`, `s`, `kg`, `N`, `deg` by `*`, `/` and `^`")
@@ -272,9 +293,56 @@ mod tests {
 
     #[test]
     fn symbols_are_unique() {
-        for (i, (symbol, ..)) in SYMBOLS.iter().enumerate() {
-            assert!(SYMBOLS[..i].iter().all(|(other, ..)| other != symbol), "{symbol} is listed twice");
-            assert!(HABITS.iter().all(|(wrong, _)| wrong != symbol), "{symbol} is a symbol and a habit");
+        let all: Vec<&str> = offered().collect();
+        for (i, symbol) in all.iter().enumerate() {
+            assert!(!all[..i].contains(symbol), "{symbol} is listed twice");
+            assert!(super::symbol(symbol).is_some(), "{symbol} has no meaning");
+        }
+        for (wrong, _) in HABITS {
+            assert!(symbol(wrong).is_none(), "{wrong} is a symbol and a habit");
+        }
+    }
+
+    /// Every prefix stands before every unit of the SI; where that is the symbol of another unit too, the other unit wins.
+    #[test]
+    fn every_prefix_goes_with_every_si_unit() {
+        let plain = |text: &str| PREFIXED.iter().chain(PLAIN).any(|(symbol, ..)| *symbol == text);
+        let mut others = vec![];
+        for (prefix, power) in PREFIXES {
+            for (unit, factor, exponents) in PREFIXED {
+                let text = format!("{prefix}{unit}");
+                let readings = PREFIXES.iter().filter(|other| prefixed(&text, **other).is_some()).count();
+                assert_eq!(readings, 1, "{text} is two units with prefixes");
+                if plain(&text) {
+                    others.push(text);
+                    continue;
+                }
+                let found = symbol(&text).unwrap_or_else(|| panic!("{text} is no unit"));
+                let expected = factor * 10_f64.powi(*power);
+                assert!((found.factor / expected - 1.0).abs() < 1e-14, "{text}: {} and {expected}", found.factor);
+                assert_eq!(found.dimension, Dimension::of(*exponents), "{text}");
+            }
+        }
+        assert_eq!(others, ["kt", "ft"], "the manual names them");
+    }
+
+    #[test]
+    fn factors_are_rounded_once() {
+        let factors = ["mL", "mbar", "kWh", "ug", "kg", "MeV", "TWh", "kmol"].map(|text| symbol(text).unwrap().factor);
+        assert_eq!(factors, [1e-6, 1e2, 3.6e6, 1e-9, 1.0, 1.602_176_634e-13, 3.6e15, 1e3]);
+    }
+
+    #[test]
+    fn the_manual_lists_every_unit() {
+        let manual = include_str!("../../../docs/language.md");
+        let section = manual.split("### Units").nth(1).and_then(|rest| rest.split("### ").next()).unwrap();
+        let listed: Vec<&str> = section.split('`').skip(1).step_by(2).flat_map(str::split_whitespace).collect();
+        for (unit, ..) in PREFIXED.iter().chain(PLAIN) {
+            assert!(listed.contains(unit), "{unit} is not in the manual");
+        }
+        for word in listed {
+            let known = symbol(word).is_some() || PREFIXES.iter().any(|(prefix, _)| *prefix == word);
+            assert!(known, "{word} of the manual is no unit");
         }
     }
 

@@ -105,7 +105,7 @@ pub enum ItemKind {
     Const(Const),
     /// `param v_max = 0.25 [km/s];`, `param start_x[N] = (-100, -97) [km];`
     Param(Param),
-    /// `variable m0 in 1 .. 5 [kg];`
+    /// `variable m0 in 1 .. 5 [kg], k [N/m];`
     Variable(Variable),
     /// `output x, y [km]: spline(order = 5, intervals = 8);`
     Output(Output),
@@ -205,17 +205,11 @@ pub struct Values {
     pub span: Span,
 }
 
-/// `variable name in bounds;` or `variable name;`
+/// `variable names;`, each with bounds or without.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
-    /// Its name.
-    pub name: Ident,
-    /// Its size, for an array.
-    pub shape: Option<Shape>,
-    /// Its unit where no bound tells it: `variable m0 [kg];`.
-    pub unit: Option<Unit>,
-    /// Its bounds.
-    pub bounds: Option<Bounds>,
+    /// The variables declared at once, one at least.
+    pub names: Vec<DeclaredName>,
 }
 
 /// `lower .. upper`; one of the two at least is there.
@@ -235,7 +229,7 @@ pub struct Output {
     /// Which word declares them.
     pub role: Role,
     /// The outputs declared at once, one at least.
-    pub names: Vec<OutputName>,
+    pub names: Vec<DeclaredName>,
     /// What they are made of.
     pub course: Course,
 }
@@ -265,16 +259,16 @@ pub enum Course {
     Collocated,
 }
 
-/// `x`, `x [km]`, `x[1 .. N] [km]` or `m in 750 .. 2000 [kg]` in a list of outputs.
+/// `x`, `x [km]`, `x[1 .. N] [km]` or `m in 750 .. 2000 [kg]` in a list of outputs or variables.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OutputName {
+pub struct DeclaredName {
     /// Its name.
     pub name: Ident,
     /// The size, for an array.
     pub shape: Option<Shape>,
     /// Its unit: its own, else the one that the list gives it.
     pub unit: Option<Unit>,
-    /// Between what it stays all the way.
+    /// Between what it stays, an output all the way.
     pub bounds: Option<Bounds>,
     /// Name, size, its own unit and bounds.
     pub span: Span,

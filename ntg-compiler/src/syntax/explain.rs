@@ -41,6 +41,7 @@ pub(super) fn explain(scan: &Scan, stuck: &Stuck, base: usize) -> Diagnostic {
         .or_else(|| here.stray_doc())
         .or_else(|| here.reserved())
         .or_else(|| here.unit())
+        .or_else(|| here.unit_alone())
         .unwrap_or_else(|| here.unexpected())
 }
 
@@ -140,6 +141,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
             finding.help("phases follow one another by `phase coast after boost { ... }`")
         }
         _ if matches!(word, "function" | "def" | "func") => finding.help("write `fn f(a) = a / 2;`"),
+        _ if word == "in" => finding.help("how long a phase lasts has its word: `duration in 1 .. 9 [s];`"),
         _ if word == "if" => finding.help("an `if` is a value: `let y = if a <= b { ... } else { ... };`"),
         _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
         Some(meant) => finding.help(format!("did you mean `{meant}`?")),
@@ -288,10 +290,11 @@ impl Here<'_> {
         if this == "at" && self.expected.has(Rule::part) {
             return Some("one time has a block of its own: `at 2.5 [s] { ... }`".into());
         }
-        if let Some(advice) = self.advice_on_units(this, before) {
+        if let Some(advice) = self.advice_on_lists(this).or_else(|| self.advice_on_units(this, before)) {
             return Some(advice);
         }
-        let in_declaration = matches!(self.first_word(), Some("state" | "input" | "output" | "param" | "const"));
+        let in_declaration =
+            matches!(self.first_word(), Some("state" | "input" | "output" | "variable" | "param" | "const"));
         if let Some(advice) = self.advice_on_ranges(this, before).or_else(|| self.advice_on_heads(this, before)) {
             return Some(advice);
         }

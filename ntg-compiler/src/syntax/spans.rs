@@ -110,10 +110,10 @@ structures! {
     ShapeAxis { index, first, last, span }
     Param { name, shape, default }
     Values { elements, is_tuple, span }
-    Variable { name, shape, unit, bounds }
+    Variable { names }
     Bounds { lower, upper, span }
     Output { role, names, course }
-    OutputName { name, shape, unit, bounds, span }
+    DeclaredName { name, shape, unit, bounds, span }
     Spline { order, intervals, knots, smoothness, span }
     Function { name, parameters, shape, unit, body }
     Argument { name, shape, unit }

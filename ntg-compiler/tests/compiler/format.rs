@@ -99,7 +99,7 @@ fn assert_layout(text: &str, expected: &str) {
 #[test]
 fn blanks_and_line_breaks_are_those_of_the_language() {
     assert_layout(
-        "problem P{const N=3;param a [ N ]=( 1,2 ,- 3 )[ km / s ^ 2 ];\n\n\n\noutput x[1..N],y [km]:spline(order=5);let v=- der( x [1],2 )* ( 2 ^ - 3 - 1..2 );}"
+        "problem P{const N=3;param a [ N ]=( 1,2 ,- 3 )[ km / s ^ 2 ];\n\n\n\noutput x[1..N],y [km]:spline(order=5);variable a ,b[2]in 0.. 1[kg];let v=- der( x [1],2 )* ( 2 ^ - 3 - 1..2 );}"
             .replace(" - 1..2", "")
             .as_str(),
         "problem P {
@@ -107,6 +107,7 @@ fn blanks_and_line_breaks_are_those_of_the_language() {
     param a[N] = (1, 2, -3) [km/s^2];
 
     output x[1 .. N], y [km]: spline(order = 5);
+    variable a, b[2] in 0 .. 1 [kg];
     let v = -der(x[1], 2) * (2^-3);
 }
 ",

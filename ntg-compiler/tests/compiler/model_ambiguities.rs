@@ -44,7 +44,7 @@ const READ_AS: &[(&str, &str)] = &[
     ("const m = 2; output k[m]: spline(order = 4, intervals = 2);", "output k [m]: spline(order = 4, intervals = 2);"),
     // Bounds hand no unit to other names.
     (
-        "output p, q in 1 .. 2 [kg]: spline(order = 4, intervals = 2);",
+        "output p [1], q in 1 .. 2 [kg]: spline(order = 4, intervals = 2);",
         "output p: spline(order = 4, intervals = 2); output q in 1 .. 2 [kg]: spline(order = 4, intervals = 2);",
     ),
 ];
@@ -71,6 +71,7 @@ fn what_has_no_one_reading_is_refused() {
         ("let z = { 1 };", "E001"),
         ("trajectory { r <= sin(a)[1]; }", "E001"),
         ("output k[n]: spline(order = 4, intervals = 2);", "E040"),
+        ("output p, q in 1 .. 2 [kg]: spline(order = 4, intervals = 2);", "E096"),
     ] {
         let source = Source::new("spec.ntg", format!("problem P {{ {AROUND} {text} }}"));
         let found = ntg_compiler::compile(&source, &Files(vec![])).err().map(|found| found.into_iter().next());

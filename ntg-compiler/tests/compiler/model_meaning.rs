@@ -379,6 +379,24 @@ fn a_continuation_refines_a_parameter_and_leaves_its_unit() {
 }
 
 #[test]
+fn a_list_of_variables_declares_what_one_statement_for_each_does() {
+    let spec = |variables: &str| {
+        let text = format!(
+            "problem P {{ duration T = 1 [s]; output x: spline(order = 4, intervals = 2); param top = 3 [kg]; {variables} \
+             minimize integral(x^2) / 1 [s] + a / 1 [kg] + b[2] / 1 [m] + c / 1 [m]; guess {{ a = 2 [kg]; c = 1 [m]; }} }}"
+        );
+        good(&text)
+            .variables
+            .into_iter()
+            .map(|v| format!("{} {:?} {:?} {}", v.name, v.unit, v.family, v.doc))
+            .collect::<Vec<_>>()
+    };
+    let alone = spec("/// Doc.\nvariable a in 1 [kg] .. top;  /// Doc.\nvariable b[3] [m];  /// Doc.\nvariable c [m];");
+    assert_eq!(spec("/// Doc.\nvariable a in 1 [kg] .. top, b[3], c [m];"), alone);
+    assert_eq!(alone.len(), 3);
+}
+
+#[test]
 fn every_node_has_a_place_in_the_text() {
     let p = good(include_str!("../../../specs/low_observable.ntg"));
     let roots: Vec<_> =

@@ -232,7 +232,8 @@ fn a_unit_after_a_tuple_reaches_its_bare_literals_and_nothing_else() {
 #[test]
 fn a_unit_after_a_range_reaches_its_lower_end() {
     let bounds = |text: &str| match items(text).remove(0).kind {
-        ItemKind::Variable(Variable { bounds: Some(Bounds { lower, upper, .. }), .. }) => {
+        ItemKind::Variable(mut variable) => {
+            let Bounds { lower, upper, .. } = variable.names.remove(0).bounds.unwrap();
             [lower, upper].map(|end| end.map(|end| brackets(&end)).unwrap_or_default())
         }
         other => panic!("{other:?}"),

@@ -84,12 +84,17 @@ impl Walk {
             let kind = match &item.kind {
                 ItemKind::Const(it) => (&it.name, Kind::Const),
                 ItemKind::Param(it) => (&it.name, Kind::Param),
-                ItemKind::Variable(it) => (&it.name, Kind::Variable),
                 ItemKind::Function(it) => (&it.name, Kind::Function),
                 ItemKind::Let(it) => (&it.name, Kind::Let),
                 ItemKind::Table(it) => (&it.name, Kind::Table),
                 ItemKind::Continuation(it) => (&it.name, Kind::Param),
                 ItemKind::Duration(Duration { name: Some(name), .. }) => (name, Kind::Duration),
+                ItemKind::Variable(variable) => {
+                    for name in &variable.names {
+                        self.declare(scope, &name.name, Kind::Variable, item.span, doc.clone(), None);
+                    }
+                    continue;
+                }
                 ItemKind::Output(output) => {
                     for name in &output.names {
                         self.declare(scope, &name.name, Kind::Output, item.span, doc.clone(), None);
@@ -202,6 +207,14 @@ impl Walk {
 
     // ------------------------------------------------------------ items
 
+    /// What stands behind the names of a list.
+    fn declared_names(&mut self, scope: usize, names: &[DeclaredName]) {
+        for name in names {
+            self.size(scope, &name.shape);
+            name.bounds.iter().for_each(|bounds| self.bounds(scope, bounds));
+        }
+    }
+
     /// The ends of the axes of a declared size.
     fn size(&mut self, scope: usize, shape: &Option<Shape>) {
         for axis in shape.iter().flat_map(|shape| &shape.axes) {
@@ -241,15 +254,9 @@ impl Walk {
                 self.size(scope, &it.shape);
                 self.values(scope, &it.default);
             }
-            ItemKind::Variable(it) => {
-                self.size(scope, &it.shape);
-                it.bounds.iter().for_each(|bounds| self.bounds(scope, bounds));
-            }
+            ItemKind::Variable(it) => self.declared_names(scope, &it.names),
             ItemKind::Output(it) => {
-                for name in &it.names {
-                    self.size(scope, &name.shape);
-                    name.bounds.iter().for_each(|bounds| self.bounds(scope, bounds));
-                }
+                self.declared_names(scope, &it.names);
                 if let Course::Spline(spline) = &it.course {
                     let settings = [&spline.order, &spline.intervals, &spline.smoothness];
                     settings.into_iter().flatten().for_each(|setting| self.expr(scope, setting));

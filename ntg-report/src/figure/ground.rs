@@ -8,8 +8,8 @@ use crate::scene::{contour, ellipse};
 pub(super) fn plan(scene: &Scene) -> Vec<Shape> {
     let mut shapes = vec![];
     let plane = scene.plane();
-    // Of a limit that holds beneath another one there is nothing to see.
-    for surface in &scene.surfaces {
+    // Lines of equal height of the ground alone: those of a ceiling would run among them.
+    for surface in scene.surfaces.iter().filter(|surface| surface.floor) {
         contours(surface, &mut shapes);
     }
     for level in &scene.levels {

@@ -6,7 +6,7 @@
 mod estimate;
 mod layout;
 mod numbers;
-mod reading;
+pub(crate) mod reading;
 mod record;
 mod scene;
 mod study;

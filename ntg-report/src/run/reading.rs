@@ -12,6 +12,8 @@ use ntg_compiler::syntax::{self, ast};
 pub(crate) struct Reading {
     /// Arrays whose last index counts elements of a vector, with their number.
     pub(crate) vectors: IndexMap<String, usize>,
+    /// Parameters of one index that the spec never uses as a whole: lists of numbers, and no vectors.
+    pub(crate) lists: BTreeSet<String>,
     /// Named expressions that nobody asked to see: without documentation and unit, and in no constraint or objective.
     pub(crate) helpers: BTreeSet<String>,
 }
@@ -22,7 +24,20 @@ pub(crate) fn read(source: &Source) -> Reading {
     let mut found = Found::default();
     found.items(&spec.problem.items, &source.text);
     let helpers = found.plain.iter().filter(|name| !found.wanted.contains(*name)).cloned().collect();
-    Reading { vectors: found.vectors, helpers }
+    let is_list = |name: &String| !is_used_whole(&source.text, name);
+    Reading { vectors: found.vectors, helpers, lists: found.parameters.into_iter().filter(is_list).collect() }
+}
+
+/// Whether a name stands somewhere without an index behind it. Its declaration has its size there.
+fn is_used_whole(text: &str, name: &str) -> bool {
+    let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    code.into_iter().any(|line| {
+        line.match_indices(name).any(|(at, _)| {
+            let (before, behind) = (&line[..at], &line[at + name.len()..]);
+            !before.ends_with(is_part) && !behind.starts_with(is_part) && !behind.trim_start().starts_with('[')
+        })
+    })
 }
 
 #[derive(Default)]
@@ -30,6 +45,8 @@ struct Found {
     vectors: IndexMap<String, usize>,
     /// Named expressions without documentation and unit.
     plain: BTreeSet<String>,
+    /// Parameters with one index.
+    parameters: BTreeSet<String>,
     /// Words of constraints and objectives.
     wanted: BTreeSet<String>,
 }
@@ -42,6 +59,9 @@ impl Found {
                     for name in &output.names {
                         self.shape(&name.name.text, name.shape.as_ref());
                     }
+                }
+                ast::ItemKind::Param(param) if param.shape.as_ref().is_some_and(|shape| shape.axes.len() == 1) => {
+                    self.parameters.insert(param.name.text.clone());
                 }
                 ast::ItemKind::Let(declared) => {
                     self.shape(&declared.name.text, declared.shape.as_ref());

@@ -46,7 +46,7 @@ impl Recording<'_> {
         for (path, series) in &mut run.lets {
             series.helper = !series.t.is_empty() && reading.helpers.contains(crate::figure::base(path));
         }
-        run.scene = crate::scene::find(&run, self.problem, &reading.vectors);
+        run.scene = crate::scene::find(&run, self.problem, &reading);
         run
     }
 

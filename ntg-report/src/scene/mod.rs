@@ -2,8 +2,9 @@
 //!
 //! Takes a problem with what was found, and gives a [`Scene`]: a constraint that depends on nothing but the place of one
 //! mover is a zone, a border or a ground, whatever its formula; a named expression that is a distance has a place as its
-//! centre; parameters with the names of coordinates are places.
+//! centre; parameters with the names of coordinates are places; a table whose arguments are the coordinates is a map.
 
+mod charts;
 pub(crate) mod contour;
 mod field;
 mod places;
@@ -18,6 +19,7 @@ use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::{Block, Domain, Group, Row, Structure};
 use ntg_runtime::transcribe::interpolants;
 
+use crate::run::reading::Reading;
 use crate::run::{Ball, Level, Outline, Place, Run, Scene, Surface};
 use contour::{Grid, Rectangle};
 use field::{Field, Space};
@@ -34,8 +36,8 @@ pub(crate) fn named(run: &Run) -> Scene {
 }
 
 /// The scene of a run whose quantities are known already.
-pub(crate) fn find(run: &Run, problem: &dyn Problem, vectors: &IndexMap<String, usize>) -> Scene {
-    let mut scene = tracks::find(run, vectors);
+pub(crate) fn find(run: &Run, problem: &dyn Problem, reading: &Reading) -> Scene {
+    let mut scene = tracks::find(run, &reading.vectors);
     if scene.is_empty() {
         return scene;
     }
@@ -49,8 +51,11 @@ pub(crate) fn find(run: &Run, problem: &dyn Problem, vectors: &IndexMap<String, 
     for group in &structure.groups {
         found.group(&space, &view, group);
     }
-    let (centres, levels) = named_fields(run, &space, &view);
-    let mut places = places::find(run, &scene, &found.bound);
+    let (centres, mut levels) = named_fields(run, &space, &view);
+    if levels.is_empty() && found.surfaces.is_empty() {
+        levels = charts::levels(&structure.tables, &tables, (&scene, &space.factors), view.rectangle);
+    }
+    let mut places = places::find(run, &scene, &found.bound, &reading.lists);
     let near = |a: &Place, b: &Place| {
         let pairs = a.at.iter().zip(&b.at).filter(|(a, b)| a.is_finite() && b.is_finite());
         pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-3 * view.size)
@@ -179,7 +184,11 @@ impl Found {
                 self.balls.push(Ball { name: limit.name.clone(), keep_out, centre: quadric.centre(), half_axes });
             }
             (_, None) => self.outline(view, limit, row),
-            (_, Some((axis, range))) => self.surface(view, limit, (axis, range), row),
+            // A height at an end is where the track begins or ends.
+            (_, Some((axis, range))) if limit.block == Block::Trajectory => {
+                self.surface(view, limit, (axis, range), row);
+            }
+            (_, Some(_)) => {}
         }
     }
 

@@ -1,11 +1,14 @@
 //! Parameters and named numbers that are positions: `x_radar, y_radar`, `gate_x, gate_y, gate_z`, `place[n, 3]`.
 //!
 //! Takes a run with the coordinates of its positions; gives a place for each set of numbers whose names are those of
-//! the coordinates with one word more, in a unit of the same kind.
+//! the coordinates with one word more, in a unit of the same kind, and for each vector of as many elements that the spec
+//! does not use as a mere list of numbers.
+
+use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
-use crate::run::{Place, Run, Scene};
+use crate::run::{Coordinate, Place, Run, Scene};
 
 /// Places that are shown at most.
 const MOST: usize = 200;
@@ -25,7 +28,7 @@ const LENGTHS: [(&str, f64); 11] = [
 ];
 
 /// What a number of one unit is in another; none where they measure other things.
-fn ratio(from: &str, to: &str) -> Option<f64> {
+pub(super) fn ratio(from: &str, to: &str) -> Option<f64> {
     let metres = |unit: &str| LENGTHS.iter().find(|(name, _)| *name == unit).map(|(_, metres)| metres);
     if from == to { Some(1.0) } else { Some(metres(from)? / metres(to)?) }
 }
@@ -39,10 +42,10 @@ struct Numbers<'a> {
 }
 
 /// All places. `bound` are coordinates to which positions are bound somewhere: axis and value.
-pub(super) fn find(run: &Run, scene: &Scene, bound: &[(usize, f64)]) -> Vec<Place> {
+pub(super) fn find(run: &Run, scene: &Scene, bound: &[(usize, f64)], lists: &BTreeSet<String>) -> Vec<Place> {
     let numbers = numbers(run);
     let mut places = by_coordinate(&numbers, scene);
-    places.extend(vectors(&numbers, scene, bound));
+    places.extend(vectors(&numbers, scene, bound, lists));
     places.truncate(MOST);
     places
 }
@@ -98,24 +101,27 @@ fn by_coordinate(numbers: &[Numbers<'_>], scene: &Scene) -> Vec<Place> {
     places
 }
 
-/// Arrays of vectors. Without a unit, only that is a place to which a position is bound.
-fn vectors(numbers: &[Numbers<'_>], scene: &Scene, bound: &[(usize, f64)]) -> Vec<Place> {
-    let n = scene.axes.len();
+/// Arrays of vectors. Without a unit, or of a list of numbers, only that is a place to which a position is bound.
+fn vectors(numbers: &[Numbers<'_>], scene: &Scene, bound: &[(usize, f64)], lists: &BTreeSet<String>) -> Vec<Place> {
     // Coordinates that are no elements of a vector have parameters by their names.
-    if !scene.axes.iter().all(|axis| axis.name.contains('[')) {
+    let axes: Vec<&Coordinate> = scene.axes.iter().filter(|axis| axis.name.contains('[')).collect();
+    let n = axes.len();
+    if n < 2 {
         return vec![];
     }
     let mut places = vec![];
     for one in numbers.iter().filter(|one| !one.values.is_empty() && one.values.len().is_multiple_of(n)) {
-        let ratios: Option<Vec<f64>> = scene.axes.iter().map(|axis| ratio(one.unit, &axis.unit)).collect();
+        let ratios: Option<Vec<f64>> = axes.iter().map(|axis| ratio(one.unit, &axis.unit)).collect();
         let is_bound = |(k, value): (usize, &f64)| {
             bound.iter().any(|(axis, level)| *axis == k % n && (level - value).abs() <= 1e-9 * value.abs())
         };
-        let told = !one.unit.is_empty() || one.values.iter().enumerate().all(is_bound);
+        let told = !one.unit.is_empty() && !lists.contains(one.name);
+        let told = told || one.values.iter().enumerate().all(is_bound);
         let Some(ratios) = ratios.filter(|_| told) else { continue };
         let count = one.values.len() / n;
         for (member, at) in one.values.chunks_exact(n).enumerate() {
-            let at = at.iter().zip(&ratios).map(|(value, ratio)| value * ratio).collect();
+            let mut at: Vec<f64> = at.iter().zip(&ratios).map(|(value, ratio)| value * ratio).collect();
+            at.resize(scene.axes.len(), f64::NAN);
             places.push(Place { name: named(one.agent, one.name, (member, count)), at });
         }
     }

@@ -1,7 +1,7 @@
 //! Which quantities are the coordinates of positions.
 //!
 //! Takes the names of a run's quantities and which arrays are vectors; gives coordinates and everything that has them.
-//! Positions are known by their names: `x, y, z`, `x, h`, `east, north`, or a vector `r`.
+//! Positions are known by their names: `x, y, z`, `x, h`, `east, north`, a vector `r`, or `r[2]` and a height `z`.
 
 use indexmap::IndexMap;
 
@@ -32,6 +32,9 @@ const NAMED: [(&[&str], Option<usize>); 18] = [
 /// Names of vectors that are positions.
 const VECTORS: [&str; 8] = ["r", "p", "pos", "position", "x", "place", "tip", "s"];
 
+/// Names of the height over a plane in which a vector of two elements is the position.
+const HEIGHTS: [&str; 7] = ["z", "h", "alt", "altitude", "height", "up", "depth"];
+
 /// Coordinates and tracks of a run; an empty scene where nothing is known to have a position. `vectors` says of each
 /// array whose last index counts two or three elements how many these are.
 pub(crate) fn find(run: &Run, vectors: &IndexMap<String, usize>) -> Scene {
@@ -40,11 +43,17 @@ pub(crate) fn find(run: &Run, vectors: &IndexMap<String, usize>) -> Scene {
     let all = || along.clone().into_iter().chain(run.lets.iter().filter(|(_, s)| is_along(s)).map(short)).collect();
     let scene = named(&along, 3)
         .or_else(|| vector(&along, vectors, 3))
+        .or_else(|| vector(&along, vectors, 2).and_then(|scene| with_height(&along, scene)))
         .or_else(|| named(&along, 2))
         .or_else(|| vector(&along, vectors, 2))
         .or_else(|| named(&all(), 2))
         .unwrap_or_default();
     upright(scene, run)
+}
+
+/// Whether two names are those of coordinates of a plane.
+pub(super) fn is_plane(names: &[&str; 2]) -> bool {
+    NAMED.iter().any(|(known, up)| *known == &names[..] && up.is_none())
 }
 
 fn is_along(series: &Series) -> bool {
@@ -94,6 +103,31 @@ fn vector(quantities: &IndexMap<&str, &Series>, vectors: &IndexMap<String, usize
     });
     let mut scenes = scenes.filter(|scene| !scene.tracks.is_empty() && is_position(scene));
     scenes.next()
+}
+
+/// Positions in the plane with the height of each track; none where a track has none, or where that is no length.
+fn with_height(quantities: &IndexMap<&str, &Series>, mut scene: Scene) -> Option<Scene> {
+    let height = HEIGHTS.iter().find(|height| {
+        let path = scene.tracks.first().map(|track| height_of(&track.name, height));
+        path.is_some_and(|path| quantities.contains_key(path.as_str()))
+    })?;
+    for track in &mut scene.tracks {
+        let path = height_of(&track.name, height);
+        quantities.get(path.as_str())?;
+        track.paths.push(path);
+    }
+    let unit = quantities[scene.tracks[0].paths[2].as_str()].unit.clone();
+    let is_length = super::places::ratio(&unit, &scene.axes[0].unit).is_some();
+    scene.axes.push(Coordinate { name: (*height).to_owned(), unit });
+    scene.up = Some(2);
+    is_length.then_some(scene)
+}
+
+/// `uav[1].z` of the track `uav[1]`, `z[2]` of `[2]`, `uav[1].z[2]` of `uav[1][2]`, whose vector is `uav[1].r[2, ..]`.
+fn height_of(track: &str, height: &str) -> String {
+    let is_member = track.ends_with(']') && (track.starts_with('[') || track.matches('[').count() > 1);
+    let (agent, member) = track.split_at(if is_member { track.rfind('[').unwrap_or(0) } else { track.len() });
+    if agent.is_empty() { format!("{height}{member}") } else { format!("{agent}.{height}{member}") }
 }
 
 fn scene(quantities: &IndexMap<&str, &Series>, names: Vec<String>, tracks: Vec<Moving>, up: Option<usize>) -> Scene {

@@ -1,7 +1,7 @@
 //! A conflict as a person reads about it.
 
 use super::{Conflict, Explanation, Near, Part};
-use crate::transcribe::names::brief;
+use crate::digits::brief;
 use std::fmt;
 
 impl fmt::Display for Explanation {

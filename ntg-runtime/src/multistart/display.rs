@@ -1,7 +1,7 @@
 //! Many starts as a person reads about them.
 
 use super::{MultiReport, Origin};
-use crate::transcribe::names::brief;
+use crate::digits::brief;
 use std::fmt;
 
 /// Minima that are listed before "and n more".

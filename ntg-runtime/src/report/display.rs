@@ -1,7 +1,7 @@
 //! A report as a person reads it.
 
 use super::{ConstraintReport, Estimate, Report, Warning};
-use crate::transcribe::names::brief;
+use crate::digits::brief;
 use ntg_structure::{Independent, Unit};
 use std::fmt;
 

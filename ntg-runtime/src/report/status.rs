@@ -3,6 +3,7 @@
 use crate::status::{Crossing, Status, Violation};
 use crate::transcribe::Transcription;
 use ntg_nlp::status::Bounded;
+use ntg_structure::Unit;
 
 /// The status of a solve of this transcription.
 pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
@@ -19,6 +20,7 @@ pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
                     value,
                     bound,
                     violation,
+                    unit: unit(nlp, of),
                 })
                 .collect(),
         },
@@ -36,10 +38,18 @@ pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
                     name: name(nlp, of),
                     lower,
                     upper,
+                    unit: unit(nlp, of),
                 })
                 .collect(),
         },
         Solver::SubproblemFailed => Status::SubproblemFailed,
+    }
+}
+
+fn unit(nlp: &Transcription, of: Bounded) -> Unit {
+    match of {
+        Bounded::Row(row) => nlp.row_unit(row),
+        Bounded::Variable(variable) => nlp.variable_unit(variable),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a person should know about a report although it is a solution.
 
 use super::{ConstraintReport, RefineStatus, Report};
-use crate::transcribe::names::brief;
+use crate::digits::brief;
 use ntg_structure::{Independent, Place};
 use std::fmt;
 

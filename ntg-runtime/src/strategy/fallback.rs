@@ -18,7 +18,7 @@ use ntg_nlp::{Outcome, Start, Status, method};
 const ATTEMPTS: [Attempt; 6] = [
     Attempt::SizesAnew,
     Attempt::Beside,
-    Attempt::Squares,
+    Attempt::OtherWays,
     Attempt::AugmentedLagrangian,
     Attempt::FewerKnots,
     Attempt::Sqp,
@@ -33,8 +33,9 @@ enum Attempt {
     /// From beside the first point: near a symmetric guess violations may have a local minimum, or a saddle that nothing
     /// leaves.
     Beside,
-    /// From the first point, with shifts of the diagonal, and with restorations that reduce the squares of violations.
-    Squares,
+    /// From the first point, with the other restoration and the other correction of the inertia: in place of the default
+    /// ones, squares of violations and shifts of the diagonal.
+    OtherWays,
     /// From the first point, by the augmented Lagrangian.
     AugmentedLagrangian,
     /// From a solution on fewer knots.
@@ -43,12 +44,25 @@ enum Attempt {
     Sqp,
 }
 
+/// What the first attempt did not try.
+fn other_ways(settings: Settings) -> Settings {
+    let restoration = match settings.restoration {
+        Violations::Absolute => Violations::Squared,
+        Violations::Squared => Violations::Absolute,
+    };
+    let inertia_correction = match settings.inertia_correction {
+        InertiaCorrection::ByElement => InertiaCorrection::ByShift,
+        InertiaCorrection::ByShift => InertiaCorrection::ByElement,
+    };
+    Settings { restoration, inertia_correction, ..settings }
+}
+
 impl Attempt {
     /// Whether it follows an outcome of this status: any that is not final. After an acceptable point only what has been
     /// seen to solve the problem then. From beside the guess only where an attempt has ended as infeasible.
     fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
         match status {
-            Status::Acceptable => matches!(self, Self::SizesAnew | Self::Squares),
+            Status::Acceptable => matches!(self, Self::SizesAnew | Self::OtherWays),
             _ => !status.is_final() && (seems_infeasible || self != Self::Beside),
         }
     }
@@ -115,9 +129,8 @@ impl Session {
                 let x = beside_infeasible(nlp, x);
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings)
             }
-            Attempt::Squares => {
-                let inertia_correction = InertiaCorrection::ByShift;
-                let settings = Settings { restoration: Violations::Squared, inertia_correction, ..settings };
+            Attempt::OtherWays => {
+                let settings = other_ways(settings);
                 self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
             }
             Attempt::AugmentedLagrangian => {

@@ -3,6 +3,7 @@
 //! Most mistakes are found when a spec is compiled. These are the ones that only the values of
 //! parameters, tables and indices decide, or the program that calls the runtime.
 
+use crate::digits::apart;
 use ntg_splines::KnotError;
 use ntg_structure::{Place, Unit};
 use std::fmt;
@@ -139,12 +140,12 @@ impl SetupError {
         match self {
             Self::NotFinite { what, value, .. } => format!("{what} is {value}; it must be a finite number"),
             Self::CrossingBounds { what, lower, upper, unit, .. } => {
-                let (lower, upper) = (show(*lower, unit), show(*upper, unit));
+                let (lower, upper) = apart(*lower, *upper, unit);
                 format!("the bounds of {what} cross: no number lies between {lower} and {upper}")
             }
             Self::Contradiction { what, value, bound, why, unit, .. } => {
                 let side = if value > bound { "at least" } else { "at most" };
-                let (value, bound) = (show(*value, unit), show(*bound, unit));
+                let (value, bound) = apart(*value, *bound, unit);
                 let why = match why {
                     Why::Conditions => format!("the other conditions there make it {value}"),
                     Why::Bounds => format!("durations and variables within their bounds make it {side} {value}"),
@@ -201,9 +202,3 @@ impl fmt::Display for SetupError {
 }
 
 impl std::error::Error for SetupError {}
-
-/// A value in its declared unit, with the unit's symbol.
-fn show(value: f64, unit: &Unit) -> String {
-    let number = value / unit.factor;
-    if unit.symbol.is_empty() { format!("{number}") } else { format!("{number} {}", unit.symbol) }
-}

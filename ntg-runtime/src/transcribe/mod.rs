@@ -55,7 +55,7 @@ use layout::Layout;
 use linear::LinearSystem;
 use ntg_nlp::Limits;
 use ntg_splines::Table;
-use ntg_structure::{Place, Structure};
+use ntg_structure::{Place, Structure, Unit};
 use rows::RowKind;
 use std::sync::Arc;
 use times::Clock;
@@ -195,6 +195,36 @@ impl<'p> Transcription<'p> {
             point if point.is_empty() => words,
             point => format!("{words} at {point}"),
         }
+    }
+
+    /// The unit of the spec in which row `row` is shown.
+    pub(crate) fn row_unit(&self, row: usize) -> Unit {
+        match self.elements.rows.get(row).map(|info| info.kind) {
+            Some(RowKind::Constraint(constraint)) => self.model.structure.constraints[constraint].unit.clone(),
+            Some(RowKind::Integral(_)) | None => Unit::default(),
+        }
+    }
+
+    /// The unit of the spec in which variable `variable` of the program is shown.
+    pub(crate) fn variable_unit(&self, variable: usize) -> Unit {
+        let (structure, layout) = (&self.model.structure, &self.model.layout);
+        let is = |candidate: u32| candidate as usize == variable;
+        for phase in &layout.phases {
+            if let Some(member) = phase.outputs.iter().find(|member| member.coefficients.iter().any(|c| is(*c))) {
+                return structure.phases[phase.phase].outputs[member.output].unit.clone();
+            }
+        }
+        let times =
+            layout.phases.iter().map(|phase| phase.duration).chain(layout.agents.iter().map(|agent| agent.start));
+        if times.into_iter().any(|time| matches!(time, layout::Time::Free(v) if is(v))) {
+            return structure.independent.unit.clone();
+        }
+        let mut variables = structure.variables.iter().zip(&layout.variable_first);
+        let found = variables.find(|(declared, first)| {
+            let members = instances::family_members(declared.family).len();
+            variable.checked_sub(**first as usize).is_some_and(|member| member < members)
+        });
+        found.map_or_else(Unit::default, |(declared, _)| declared.unit.clone())
     }
 
     /// What variable `variable` of the program is, in the user's words.

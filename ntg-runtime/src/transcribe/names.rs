@@ -3,6 +3,7 @@
 use super::error::SetupError;
 use super::layout::{Layout, Time};
 use super::points::Point;
+use crate::digits::brief;
 use ntg_structure::Structure;
 
 /// `name`, or `name[index]` for a member of a family.
@@ -102,35 +103,4 @@ pub(crate) fn unknown(what: &str, name: &str, structure: &Structure) -> SetupErr
     }
     let known: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
     SetupError::Guess { message: format!("{what} is given for `{name}`, which is none of {}", known.join(", ")) }
-}
-
-/// Six significant digits, without trailing zeros.
-pub(crate) fn brief(value: f64) -> String {
-    /// Significant digits that a person reads in a message.
-    const DIGITS: i32 = 6;
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if !(-5..=9).contains(&magnitude) {
-        return format!("{value:.5e}");
-    }
-    let decimals = usize::try_from(DIGITS - 1 - magnitude).unwrap_or(0);
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::brief;
-
-    #[test]
-    fn numbers_are_short_and_true() {
-        let cases =
-            [(12.5, "12.5"), (0.0, "0"), (638.110_312, "638.11"), (-1e-3, "-0.001"), (123_456_789.0, "123456789")];
-        for (value, text) in cases {
-            assert_eq!(brief(value), text);
-        }
-        assert_eq!(brief(1.25e-9), "1.25000e-9");
-    }
 }

@@ -1,6 +1,7 @@
 //! What to write instead of a bracket that stands where none may: a unit behind what is no number, or before one.
 
 use super::Here;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::grammar::Rule;
 use crate::syntax::scan::TokenKind;
 
@@ -40,6 +41,43 @@ impl Here<'_> {
             ")" => Some(format!("{shown}; an element is taken of a name, `der(r[1])`, or of what has one by `let`")),
             _ => None,
         }
+    }
+
+    /// `0 .. [kg/m^3]`, `h <= [km]`, `param g = [m/s^2];`: a unit whose number was forgotten.
+    pub(super) fn unit_alone(&self) -> Option<Diagnostic> {
+        let (this, before) = (self.word(self.index), self.index.checked_sub(1).map(|at| self.word(at))?);
+        if this != "[" || !self.expected.has_expression() {
+            return None;
+        }
+        let close = self.closer(self.index)?;
+        let unit = self.written(self.index, close + 1);
+        let behind = self.word(close + 1);
+        let ends = matches!(behind, ";" | "," | ")" | ":" | "<=" | ">=" | "==" | "" | "}" | "{" | "sigma");
+        let span = self.scan.tokens[self.index].span.to(self.scan.tokens[close].span);
+        let what = if before == ".." || behind == ".." { "bound" } else { "number" };
+        let finding = Diagnostic::new(Code::Unexpected, span, format!("a {what} is missing before its unit"));
+        match before {
+            ".." if ends => {
+                let lower = self.lower_end(self.index - 1);
+                Some(finding.help(match lower.is_empty() {
+                    true => format!("write it: `.. 1 {unit}`"),
+                    false => {
+                        format!("write it between the dots and the unit; with no upper bound, `{lower} {unit} ..`")
+                    }
+                }))
+            }
+            "in" if behind == ".." => Some(finding.help(format!("write it: `in 0 {unit} ..`, or leave the unit out"))),
+            "in" | "=" | "==" | "<=" | ">=" if ends => Some(finding.help(format!("write it: `{before} 1 {unit}`"))),
+            _ => None,
+        }
+    }
+
+    /// What stands before the dots of a range, without its unit.
+    fn lower_end(&self, dots: usize) -> String {
+        let start = (0..dots).rev().find(|at| matches!(self.word(*at), "in" | ";" | "{" | "(" | ","));
+        let start = start.map_or(dots, |start| start + 1);
+        let unit = (start..dots).find(|at| self.word(*at) == "[" && self.word(dots - 1) == "]");
+        self.written(start, unit.unwrap_or(dots))
     }
 
     /// `let z = e in [kJ];` as `let z [kJ] = e;`

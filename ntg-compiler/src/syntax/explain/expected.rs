@@ -203,7 +203,7 @@ fn kind(rule: Rule) -> Kind {
         | R::segment
         | R::axis
         | R::axis_name
-        | R::output_name
+        | R::declared
         | R::objective_name
         | R::constraint_name
         | R::index_range => Kind::Name,

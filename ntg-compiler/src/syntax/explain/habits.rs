@@ -36,6 +36,15 @@ impl Here<'_> {
             ("(", _) if is(TokenKind::Number, self.token) && matches!(first, "output" | "state" | "input") => {
                 "settings have names: `spline(order = 5, intervals = 8)`"
             }
+            ("(", _) if first == "table" && this != ")" => {
+                "values stand in braces, a row for each node: `= monotone { 0: 1;  2: 3; }`"
+            }
+            ("held" | "continuous", "in") => {
+                "bounds stand behind the name, before the colon: `input u in 0 .. 1: held;`"
+            }
+            ("=" | "==" | "<=" | ">=" | "(" | "," | "+" | "-" | "*" | "/", "{") if first != "fn" => {
+                "a list stands in parentheses, `(1, 2, 3)`; braces are blocks of statements"
+            }
             _ if is(TokenKind::String, self.token) && self.expected.has_expression() => {
                 "a number stands without quotes, its unit in brackets: `1 [kg]`"
             }

@@ -3,6 +3,7 @@
 use super::Here;
 use crate::syntax::grammar::Rule;
 use crate::syntax::recover::text;
+use crate::syntax::scan::TokenKind;
 
 /// Bounds that are none.
 const NO_BOUNDS: [&str; 6] = ["inf", "Inf", "INF", "infinity", "Infinity", "oo"];
@@ -55,6 +56,31 @@ impl Here<'_> {
             }
             _ => return None,
         })
+    }
+
+    /// `param a = 1, b = 2;`, `let a, b = 3;`: what has a value has a statement of its own.
+    pub(super) fn advice_on_lists(&self, this: &str) -> Option<String> {
+        let first = self.first_word()?;
+        let is_name = |at: usize| self.scan.tokens.get(at).is_some_and(|token| token.kind == TokenKind::Word);
+        let lists = matches!(first, "state" | "input" | "output" | "variable") && self.expected.has(Rule::comma);
+        if lists && is_name(self.index) && this != "in" && self.word(self.index + 1) == "in" {
+            return Some(format!("names of a list are parted by commas: `, {this} in ...`"));
+        }
+        if !matches!(first, "param" | "const" | "let" | "continuation") {
+            return None;
+        }
+        if this != "," || !is_name(self.index + 1) {
+            return None;
+        }
+        let has_value = self.expected.has(Rule::semicolon) && self.word(self.index + 2) == "=";
+        if !has_value && !self.expected.has(Rule::equals) {
+            return None;
+        }
+        let (one, other) = (self.word(self.statement_start() + 1), self.word(self.index + 1));
+        Some(format!(
+            "what has a value has a statement of its own: `{first} {one} = ...;  {first} {other} = ...;`; lists of names \
+             are for `state`, `input`, `output` and `variable`"
+        ))
     }
 
     /// A list in brackets or parentheses as a range.

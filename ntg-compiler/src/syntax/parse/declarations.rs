@@ -4,7 +4,7 @@ use super::Build;
 use super::parts::Parts;
 use super::shapes::Indices;
 use crate::syntax::ast::{
-    Argument, Const, Continuation, Course, Function, Let, Objective, Output, OutputName, Param, Role, Sense, Spline,
+    Argument, Const, Continuation, Course, DeclaredName, Function, Let, Objective, Output, Param, Role, Sense, Spline,
     Unit, Values, Variable,
 };
 use crate::syntax::grammar::{Pair, Rule};
@@ -45,17 +45,12 @@ impl Build {
     }
 
     pub(super) fn variable(&mut self, pair: Pair<'_>) -> Variable {
-        let mut parts = Parts::of(pair);
-        let name = self.name(&parts.required(Rule::name));
-        let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::Refused));
-        let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
-        let bounds = parts.optional(Rule::bounds).map(|pair| self.bounds(pair));
-        Variable { name, shape, unit, bounds }
+        Variable { names: self.declared_names(&mut Parts::of(pair)) }
     }
 
     pub(super) fn output(&mut self, pair: Pair<'_>) -> Output {
         let mut parts = Parts::of(pair);
-        let names = self.output_names(&mut parts);
+        let names = self.declared_names(&mut parts);
         let course = Course::Spline(self.spline(parts.required(Rule::spline)));
         Output { role: Role::Output, names, course }
     }
@@ -63,7 +58,7 @@ impl Build {
     /// `state` or `input`.
     pub(super) fn process(&mut self, pair: Pair<'_>, role: Role) -> Output {
         let mut parts = Parts::of(pair);
-        let names = self.output_names(&mut parts);
+        let names = self.declared_names(&mut parts);
         let course = match parts.next() {
             None => Course::Collocated,
             Some(pair) if pair.as_rule() == Rule::spline => Course::Spline(self.spline(pair)),
@@ -74,10 +69,10 @@ impl Build {
     }
 
     /// The names of a list. One without unit and bounds takes the next unit to its right, else the last one of the list.
-    fn output_names(&mut self, parts: &mut Parts<'_>) -> Vec<OutputName> {
+    fn declared_names(&mut self, parts: &mut Parts<'_>) -> Vec<DeclaredName> {
         let mut names = vec![];
-        while let Some(pair) = parts.optional(Rule::output_name) {
-            names.push(self.output_name(pair));
+        while let Some(pair) = parts.optional(Rule::declared) {
+            names.push(self.declared_name(pair));
         }
         let last: Option<Unit> = names.iter().rev().find_map(|name| name.unit.clone());
         let mut next = last;
@@ -91,14 +86,14 @@ impl Build {
         names
     }
 
-    fn output_name(&mut self, pair: Pair<'_>) -> OutputName {
+    fn declared_name(&mut self, pair: Pair<'_>) -> DeclaredName {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let name = self.name(&parts.required(Rule::name));
         let shape = parts.optional(Rule::shape).map(|pair| self.shape(pair, Indices::Refused));
         let unit = parts.optional(Rule::unit).map(|pair| self.unit(pair));
         let bounds = parts.optional(Rule::bounds).map(|pair| self.bounds(pair));
-        OutputName { name, shape, unit, bounds, span }
+        DeclaredName { name, shape, unit, bounds, span }
     }
 
     fn spline(&mut self, pair: Pair<'_>) -> Spline {

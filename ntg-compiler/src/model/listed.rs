@@ -1,0 +1,75 @@
+//! Units in lists of names: which unit a name takes that has none of its own.
+//!
+//! Takes a declaration whose names have got their units. A name without one took the next to its right, else the last
+//! of the list (`syntax::parse`). Finds: names that take another unit than they did before version 2, and names for
+//! which a reader may take the unit in the bounds of another name.
+
+use ntg_structure::Unit;
+
+use super::dimension::Dimension;
+use super::elaborator::Elaborator;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::ast::{self, DeclaredName, Role};
+
+/// What a name of a list is measured in; no dimension where its unit was refused.
+pub(super) type Measured = (Option<Dimension>, Unit);
+
+impl Elaborator<'_> {
+    /// Notes names in a list of outputs that take the next unit, where earlier versions gave them the last one.
+    pub(super) fn units_taken(&mut self, output: &ast::Output) {
+        let Some(last) = output.names.iter().rev().find_map(|name| name.unit.as_ref()) else { return };
+        for name in output.names.iter().filter(|_| output.role == Role::Output) {
+            let Some(unit) = name.unit.as_ref().filter(|unit| unit.span.start > name.span.end) else { continue };
+            let (taken, before) = (self.text(unit.span), self.text(last.span));
+            if taken == before {
+                continue;
+            }
+            let text = &name.name.text;
+            let message = format!("`{text}` takes the next unit, {taken}; before version 2 it was {before}");
+            let note = Diagnostic::new(Code::UnitTaken, name.name.span, message).label(unit.span, "the next unit");
+            self.report(note.help(format!("write it out: `{text} {taken}`")));
+        }
+    }
+
+    /// Refuses names for which the unit in another name's bounds stands nearer than the unit that they take, and gives
+    /// their places in the list: what they are measured in is not known.
+    pub(super) fn units_in_doubt(&mut self, names: &[DeclaredName], measured: &[Measured]) -> Vec<usize> {
+        let mut in_doubt = vec![];
+        for (i, name) in names.iter().enumerate() {
+            let Some(rival) = rival(names, i) else { continue };
+            let ((Some(own), unit), (Some(other), bounds)) = (&measured[i], &measured[rival]) else { continue };
+            if own == other && unit == bounds {
+                continue;
+            }
+            let brackets = |unit: &Unit| format!("[{}]", if unit.symbol.is_empty() { "1" } else { &unit.symbol });
+            let (text, near) = (&name.name.text, &names[rival].name.text);
+            let (unit, bounds) = (brackets(unit), brackets(bounds));
+            let message = format!("the unit of `{text}` can be read two ways: {bounds} or {unit}");
+            let mut finding = Diagnostic::new(Code::UnitInDoubt, name.name.span, message)
+                .label(name.name.span, "no unit of its own")
+                .label(names[rival].span, format!("{bounds}, from bounds, which are about `{near}` alone"));
+            if let Some(taken) = &name.unit {
+                finding = finding.label(taken.span, format!("{unit}, of the list"));
+            }
+            self.report(finding.help(format!("write the unit that is meant: `{text} {bounds}`, or `{text} {unit}`")));
+            in_doubt.push(i);
+        }
+        in_doubt
+    }
+}
+
+/// The name with bounds and no unit of its own that stands nearer to a bare name than the unit which that one takes.
+fn rival(names: &[DeclaredName], i: usize) -> Option<usize> {
+    let name = &names[i];
+    let is_bare = name.bounds.is_none() && name.unit.as_ref().is_none_or(|unit| !name.span.contains(unit.span));
+    if !is_bare {
+        return None;
+    }
+    let is_bounded = |at: &usize| names[*at].bounds.is_some() && names[*at].unit.is_none();
+    let source = name.unit.as_ref().and_then(|unit| names.iter().position(|other| other.span.contains(unit.span)));
+    match source {
+        Some(right) if right > i => (i + 1..right).find(is_bounded),
+        Some(left) => (left + 1..i).rev().find(is_bounded),
+        None => (i + 1..names.len()).find(is_bounded).or_else(|| (0..i).rev().find(is_bounded)),
+    }
+}
