@@ -118,15 +118,19 @@ fn pushing(report: &Report) -> Vec<bool> {
     multipliers.iter().map(|y| y.abs() > IDLE * largest).collect()
 }
 
-/// The parameters by which derivatives and differences do not agree, with the worst quantity. Nothing is compared where
-/// constraints are said to be only just active, and the objective alone where other solutions are said to be as good.
-fn disagreements(problem: Interpreted) -> Vec<String> {
+/// The parameters by which derivatives and differences do not agree, with the worst quantity.
+fn disagreements(problem: Interpreted, what: Compared) -> Vec<String> {
     let mut solver = Solver::new(problem, &settings());
     let report = solver.solve().unwrap_or_else(|error| panic!("{error}"));
     assert!(report.is_solved(), "{report}");
     let sensitivity = report.sensitivity(&solver.problem).unwrap_or_else(|error| panic!("{error}"));
-    if !sensitivity.weak().is_empty() {
-        return vec![];
+    match what {
+        Compared::All => {}
+        Compared::Objective => assert!(!sensitivity.is_strict(), "other solutions are as good: {report}"),
+        Compared::Nothing => {
+            assert!(!sensitivity.weak().is_empty(), "constraints are only just active: {report}");
+            return vec![];
+        }
     }
     let span = (report.solution.start(), report.solution.end());
     let times = [0.31, 0.77].map(|part| span.0 + part * (span.1 - span.0));
@@ -169,7 +173,7 @@ fn disagreements(problem: Interpreted) -> Vec<String> {
                 errors[i] = errors[i].min(if error == 0.0 { 0.0 } else { error / size });
             }
         }
-        errors.truncate(if sensitivity.is_strict() { errors.len() } else { 1 });
+        errors.truncate(if what == Compared::Objective { 1 } else { errors.len() });
         let worst = (0..errors.len()).max_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap_or(0);
         if compared && (errors[worst].is_nan() || errors[worst] > MOST) {
             let own = numbers[worst].slopes.get(k);
@@ -177,6 +181,28 @@ fn disagreements(problem: Interpreted) -> Vec<String> {
         }
     }
     found
+}
+
+/// What of a spec is compared with differences.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Compared {
+    All,
+    /// Other solutions are as good, and the report says so.
+    Objective,
+    /// Constraints are only just active, and the report says so: a difference changes which of them are.
+    Nothing,
+}
+
+/// The specs of which not all is compared.
+const NOT_STRICT: [&str; 1] = ["swarm"];
+const WEAK: [&str; 2] = ["low_observable_lock_loss", "low_observable_alternation"];
+
+fn compared(name: &str) -> Compared {
+    match name {
+        _ if NOT_STRICT.contains(&name) => Compared::Objective,
+        _ if WEAK.contains(&name) => Compared::Nothing,
+        _ => Compared::All,
+    }
 }
 
 /// Specs at whose solutions active constraints contradict each other as soon as they move: there are no derivatives.
@@ -198,7 +224,8 @@ fn assert_differentiated(is_wanted: impl Fn(&str) -> bool) {
     let names: Vec<String> = shipped_names().into_iter().filter(|name| is_compared(name)).collect();
     assert!(names.len() > 3, "{names:?}");
     for name in names {
-        found.extend(disagreements(shipped(&name)).into_iter().map(|words| format!("{name}: {words}")));
+        found
+            .extend(disagreements(shipped(&name), compared(&name)).into_iter().map(|words| format!("{name}: {words}")));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
 }

@@ -92,6 +92,10 @@ pub struct Settings {
     /// How the interior-point method corrects the inertia of its matrix. [`Method::Auto`] tries the other way where the
     /// first attempt fails. Default [`InertiaCorrection::ByElement`].
     pub inertia_correction: InertiaCorrection,
+    /// Whether the interior-point method goes on by conjugate residuals where the refinement of equalities stalls, which they
+    /// do where rows all but depend on each other (docs/maths.md, equation 11.4a). [`Method::Auto`] does so where the first
+    /// attempt fails. Default false.
+    pub conjugate_residuals: bool,
 }
 
 impl Default for Settings {
@@ -113,6 +117,7 @@ impl Default for Settings {
             exact_hessian: true,
             restoration: Violations::Absolute,
             inertia_correction: InertiaCorrection::ByElement,
+            conjugate_residuals: false,
         }
     }
 }
@@ -136,6 +141,7 @@ impl fmt::Debug for Settings {
             .field("exact_hessian", &self.exact_hessian)
             .field("restoration", &self.restoration)
             .field("inertia_correction", &self.inertia_correction)
+            .field("conjugate_residuals", &self.conjugate_residuals)
             .finish()
     }
 }
@@ -173,6 +179,7 @@ impl Settings {
             exact_hessian: self.exact_hessian,
             restoration: self.restoration,
             inertia_correction: self.inertia_correction,
+            conjugate_residuals: self.conjugate_residuals,
         }
     }
 

@@ -164,8 +164,10 @@ fn equalities_that_say_nearly_the_same(method: Method) {
         let pairs = x.chunks(2).zip(DIFFERENCES).flat_map(|(pair, d)| [pair[0], pair[0] + pair[1] * d]);
         std::iter::once(squares).chain(pairs).collect()
     });
-    let found = solved(method, &p, &[0.0; 8], &[1.0; 8], 1e-5);
-    assert!(found.iterations <= 20, "{} iterations", found.iterations);
+    let options = Options { method, conjugate_residuals: true, ..Options::default() };
+    let found = solve(&p, &[0.0; 8], &options);
+    assert!(found.status.is_solved() && found.iterations <= 20, "{} after {}", found.status, found.iterations);
+    assert!(found.x.iter().all(|x| (x - 1.0).abs() <= 1e-5), "{:?}", found.x);
 }
 
 fn inequalities_that_say_the_same_at_a_vertex(method: Method) {

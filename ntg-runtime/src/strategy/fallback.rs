@@ -115,6 +115,9 @@ impl Session {
         budget: &mut Budget<'_>,
     ) -> Result<Option<Outcome>, SetupError> {
         let Some(settings) = budget.further() else { return Ok(None) };
+        // Where rows disagree by the error of the discretisation, exact steps lead away from an acceptable point.
+        let conjugate_residuals = failed.status != Status::Acceptable;
+        let settings = Settings { conjugate_residuals, ..settings };
         let next = match attempt {
             Attempt::SizesAnew => {
                 if failed.x.iter().any(|x| !x.is_finite()) {
@@ -145,6 +148,7 @@ impl Session {
                 let structure = nlp.model.structure.clone();
                 let Some(solution) = start_from_fewer(task, &structure, budget)? else { return Ok(None) };
                 let Some(settings) = budget.further() else { return Ok(None) };
+                let settings = Settings { conjugate_residuals, ..settings };
                 let x = start(nlp, Some(&Guess::from(&solution)))?;
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
             }
