@@ -113,7 +113,7 @@ fn bad_arguments_exit_with_2_and_say_what_to_write() {
         (&["solve", "low_observable.ntg", "--set", "v_max"], "write NAME=VALUE"),
         (&["solve", "low_observable.ntg", "--set", "v_max=fast"], "--set v_max=fast"),
         (&["solve", "low_observable.ntg", "--set", "v_max=1 [kg]"], "1 [km/s]"),
-        (&["solve", "low_observable.ntg", "--set", "v_max=1, 2"], "holds 1 values, but 2 are given"),
+        (&["solve", "low_observable.ntg", "--set", "v_max=1, 2"], "holds 1 value, but 2 are given"),
         (&["solve", "low_observable.ntg", "--set", "v_max[1]=2"], "`v_max[1]` does not exist"),
         (&["solve", "van_der_pol.ntg", "--guess", "van_der_pol.ntg"], "is not JSON"),
     ] {

@@ -253,7 +253,7 @@ fn what_is_no_study_is_refused_with_words() {
         (&["--set", "v_max=1:2:many", "-o", "o.csv"], "`many` is no number of values"),
         (&["--set", "v_max=1:2:3 [kg]", "-o", "o.csv"], "1 [km/s]"),
         (&["--set", "v_max=1:2:0", "-o", "o.csv"], "there is no parameter set"),
-        (&["--set", "v_max[1]=1:2:2", "-o", "o.csv"], "`v_max[1]` does not exist"),
+        (&["--set", "v_max[1]=1:2:2", "-o", "o.csv"], "there is no `v_max[1]`: `v_max` is one number, not an array"),
         (&["--set", "v_max=1:2:2", "--set", "v_max=1:2:2", "-o", "o.csv"], "`v_max` is varied twice"),
         (&["--from", "bad.csv", "-o", "o.csv"], "row 0, `v_max` = `fast`"),
         (&["--from", "ragged.csv", "-o", "o.csv"], "ragged.csv"),
