@@ -114,7 +114,10 @@ fn bad_arguments_exit_with_2_and_say_what_to_write() {
         (&["solve", "low_observable.ntg", "--set", "v_max=fast"], "--set v_max=fast"),
         (&["solve", "low_observable.ntg", "--set", "v_max=1 [kg]"], "1 [km/s]"),
         (&["solve", "low_observable.ntg", "--set", "v_max=1, 2"], "holds 1 value, but 2 are given"),
-        (&["solve", "low_observable.ntg", "--set", "v_max[1]=2"], "`v_max[1]` does not exist"),
+        (
+            &["solve", "low_observable.ntg", "--set", "v_max[1]=2"],
+            "there is no `v_max[1]`: `v_max` is one number, not an array",
+        ),
         (&["solve", "van_der_pol.ntg", "--guess", "van_der_pol.ntg"], "is not JSON"),
     ] {
         let output = ntg(arguments);
