@@ -93,8 +93,8 @@ pub struct Settings {
     /// first attempt fails. Default [`InertiaCorrection::ByElement`].
     pub inertia_correction: InertiaCorrection,
     /// Whether the interior-point method goes on by conjugate residuals where the refinement of equalities stalls, which they
-    /// do where rows all but depend on each other (docs/maths.md, equation 11.4a). [`Method::Auto`] does so where the first
-    /// attempt fails. Default false.
+    /// do where rows all but depend on each other (docs/maths.md, equation 11.4a). [`Method::Auto`] does so in a further
+    /// attempt where the first one fails. Default false.
     pub conjugate_residuals: bool,
 }
 

@@ -34,7 +34,7 @@ enum Attempt {
     /// leaves.
     Beside,
     /// From the first point, with the other restoration and the other correction of the inertia: in place of the default
-    /// ones, squares of violations and shifts of the diagonal.
+    /// ones, squares of violations and shifts of the diagonal. With conjugate residuals.
     OtherWays,
     /// From the first point, by the augmented Lagrangian.
     AugmentedLagrangian,
@@ -115,9 +115,6 @@ impl Session {
         budget: &mut Budget<'_>,
     ) -> Result<Option<Outcome>, SetupError> {
         let Some(settings) = budget.further() else { return Ok(None) };
-        // Where rows disagree by the error of the discretisation, exact steps lead away from an acceptable point.
-        let conjugate_residuals = failed.status != Status::Acceptable;
-        let settings = Settings { conjugate_residuals, ..settings };
         let next = match attempt {
             Attempt::SizesAnew => {
                 if failed.x.iter().any(|x| !x.is_finite()) {
@@ -133,7 +130,9 @@ impl Session {
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings)
             }
             Attempt::OtherWays => {
-                let settings = other_ways(settings);
+                // Where rows disagree by the error of the discretisation, exact steps lead away from an acceptable point.
+                let conjugate_residuals = failed.status != Status::Acceptable;
+                let settings = Settings { conjugate_residuals, ..other_ways(settings) };
                 self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
             }
             Attempt::AugmentedLagrangian => {
@@ -148,7 +147,6 @@ impl Session {
                 let structure = nlp.model.structure.clone();
                 let Some(solution) = start_from_fewer(task, &structure, budget)? else { return Ok(None) };
                 let Some(settings) = budget.further() else { return Ok(None) };
-                let settings = Settings { conjugate_residuals, ..settings };
                 let x = start(nlp, Some(&Guess::from(&solution)))?;
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
             }
