@@ -1,16 +1,20 @@
 //! What the derivatives of a solution by all its parameters cost beside the solve that found it, for the shipped specs.
 //!
-//! Run with `cargo run --release -p ntg-benches --example sensitivities [SPEC ...]`; prints medians of the turns. The form
-//! in which parameters are variables is made once a program, before anything is timed.
+//! Run with `cargo run --release -p ntg-benches --example sensitivities [SPEC ...]`; prints medians of the turns, of
+//! processor time. "First" makes everything that a kept solver and a kept differentiator have. The form in which parameters
+//! are variables is made once a program, before anything is timed.
 
 use std::path::Path;
-use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use ntg::prelude::*;
+use ntg::runtime::sensitivity::Differentiator;
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 
+/// Everything is timed by turns for so many seconds in all, and at least so many times.
+const SECONDS: f64 = 1.0;
 const TURNS: usize = 5;
 const SPECS: [&str; 18] = [
     "gates",
@@ -43,8 +47,10 @@ impl Loader for BesideSpecs {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!("| spec | parameters | a solve, ms | all derivatives, ms | part of a solve |");
-    println!("|---|---|---|---|---|");
+    println!(
+        "| spec | parameters | first solve, ms | all derivatives | part | kept solve, ms | all derivatives | part | by one parameter | part |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let named: Vec<String> = std::env::args().skip(1).collect();
     let names = if named.is_empty() { SPECS.map(str::to_owned).to_vec() } else { named };
     names.iter().try_for_each(|name| row(name))
@@ -58,30 +64,44 @@ fn row(name: &str) -> Result<(), Box<dyn std::error::Error>> {
     let problem = Interpreted::new(&compiled.program);
     // Points between those of the program cost as much again, and belong to the report.
     let settings = Settings { samples: 1, ..Settings::default() };
-    let report = solve(&problem, &settings)?;
-    let by = match report.sensitivity(&problem) {
+    let (mut solver, mut differentiator) = (Solver::new(problem.clone(), &settings), Differentiator::new(&problem));
+    let report = solver.solve()?;
+    let by = match differentiator.differentiate(&report.solution) {
         Ok(by) => by,
         Err(error) => {
-            println!("| {name} | | | {error} | |");
+            println!("| {name} | | | {error} | | | | | | |");
             return Ok(());
         }
     };
-    let (mut solves, mut derivatives) = (vec![], vec![]);
-    for _ in 0..TURNS {
-        let clock = Instant::now();
-        solve(&problem, &settings)?;
-        solves.push(clock.elapsed().as_secs_f64());
-        let clock = Instant::now();
-        report.sensitivity(&problem)?;
-        derivatives.push(clock.elapsed().as_secs_f64());
-    }
-    let (solve, all) = (median(solves), median(derivatives));
     let count = by.parameters().len();
-    println!("| {name} | {count} | {:.2} | {:.2} | {:.3} |", 1e3 * solve, 1e3 * all, all / solve);
+    let one = by.parameters().first().map(|parameter| parameter.name.clone()).unwrap_or_default();
+    let mut times: [Vec<f64>; 5] = Default::default();
+    let began = ThreadTime::now();
+    while began.elapsed().as_secs_f64() < SECONDS || times[0].len() < TURNS {
+        let [first_solve, first, kept_solve, kept, by_one] = &mut times;
+        first_solve.push(milliseconds(|| solve(&problem, &settings))?);
+        first.push(milliseconds(|| report.sensitivity(&problem))?);
+        kept_solve.push(milliseconds(|| solver.solve())?);
+        kept.push(milliseconds(|| differentiator.differentiate(&report.solution))?);
+        by_one.push(milliseconds(|| differentiator.differentiate_by(&report.solution, &[&one]))?);
+    }
+    let [first_solve, first, kept_solve, kept, by_one] = times.map(median);
+    println!(
+        "| {name} | {count} | {first_solve:.2} | {first:.2} | {:.2} | {kept_solve:.2} | {kept:.2} | {:.2} | {by_one:.2} | {:.2} |",
+        first / first_solve,
+        kept / kept_solve,
+        by_one / kept_solve
+    );
     Ok(())
 }
 
-fn median(mut seconds: Vec<f64>) -> f64 {
-    seconds.sort_by(f64::total_cmp);
-    seconds[seconds.len() / 2]
+fn milliseconds<T, E>(run: impl FnOnce() -> Result<T, E>) -> Result<f64, E> {
+    let began = ThreadTime::now();
+    run()?;
+    Ok(1e3 * began.elapsed().as_secs_f64())
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
 }

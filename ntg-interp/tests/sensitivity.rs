@@ -7,7 +7,9 @@ use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_runtime::prelude::*;
-use ntg_runtime::sensitivity::{Sensitivity, SensitivityError};
+use ntg_runtime::problem::WithStructure;
+use ntg_runtime::sensitivity::{Differentiator, Sensitivity, SensitivityError};
+use ntg_runtime::structure::{Phase, Points};
 
 /// The largest error of a derivative, relative to the largest derivative of the same quantity at the times of the test.
 const MOST: f64 = 1e-6;
@@ -69,7 +71,7 @@ fn solved(problem: &Interpreted) -> Report {
 }
 
 /// One quantity at one time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Number {
     /// What shares a size.
     name: String,
@@ -317,6 +319,52 @@ fn some_parameters_are_some_columns() {
     assert_eq!(by(&["gain[2]"]).map(|one| one.parameters().len()).ok(), Some(1));
     let error = by(&["speed"]).err().map(|error| error.to_string());
     assert_eq!(error.as_deref(), Some("there is no parameter `speed`; the parameters are: `long`, `far`, `gain`"));
+}
+
+/// Makes two intervals of each.
+fn halved(phase: &mut Phase) {
+    for output in &mut phase.outputs {
+        let breakpoints = &output.spline.breakpoints;
+        let middles = breakpoints.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);
+        output.spline.breakpoints = middles.chain([1.0]).collect();
+    }
+    for points in &mut phase.points {
+        if let Points::Uniform { points } = points {
+            *points = 2 * *points - 1;
+        }
+    }
+}
+
+/// What a differentiator keeps from the solutions before changes no bit: for other parameters, after a solution of another
+/// mesh, and after a name that there is none of.
+#[test]
+fn what_is_kept_between_solutions_changes_no_bit() {
+    for name in ["low_observable", "low_observable_phases", "launch", "robust", "multi_vehicle"] {
+        let mut problem = shipped(name);
+        let mut differentiator = Differentiator::new(&problem);
+        let coarse = solved(&problem);
+        let parameter = coarse.solution.structure().parameters[0].clone();
+        let place = problem.place(&parameter.name, parameter.array.then_some(1)).expect("a parameter");
+        for change in [1.0, 1.001, 0.999] {
+            problem.put(place, change * parameter.value[0] / parameter.unit.factor).expect("a finite number");
+            let report = solved(&problem);
+            assert!(differentiator.differentiate_by(&report.solution, &["no such name"]).is_err());
+            let kept = differentiator.differentiate(&report.solution).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let alone = report.sensitivity(&problem).unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_eq!(
+                everything(&problem, &report, Some(&kept), &[0.5]),
+                everything(&problem, &report, Some(&alone), &[0.5])
+            );
+            assert_eq!(kept.objective(), alone.objective(), "{name}");
+            assert_eq!((kept.weak(), kept.is_strict()), (alone.weak(), alone.is_strict()), "{name}");
+        }
+        let finer = WithStructure::new(&problem).edited(|structure| structure.phases.iter_mut().for_each(halved));
+        let finer = solve(&finer, &settings()).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(finer.is_solved(), "{name}: {finer}");
+        let kept = differentiator.differentiate(&finer.solution).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let alone = finer.sensitivity(&problem).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(kept.objective(), alone.objective(), "{name}, finer");
+    }
 }
 
 #[test]

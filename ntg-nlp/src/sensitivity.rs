@@ -139,17 +139,31 @@ impl<W> Sensitivity<W> {
     /// # Errors
     /// [`Unavailable::NotFinite`] and [`Unavailable::Singular`].
     pub fn new<N: Nlp<Workspace = W>>(nlp: &N, x: &[f64], multipliers: Multipliers<'_>) -> Result<Self, Unavailable> {
-        let mut system = System::new(nlp);
+        Self::again(None, nlp, x, multipliers)
+    }
+
+    /// As [`Sensitivity::new`]. Where the program has the patterns of the one that was analysed `earlier`, that analysis is
+    /// used again, and gives the same bits.
+    ///
+    /// # Errors
+    /// As [`Sensitivity::new`].
+    pub fn again<N: Nlp<Workspace = W>>(
+        earlier: Option<Self>,
+        nlp: &N,
+        x: &[f64],
+        multipliers: Multipliers<'_>,
+    ) -> Result<Self, Unavailable> {
         let (n, m) = (nlp.variables(), nlp.rows());
+        let (mut system, assembly) = match earlier {
+            Some(Self { system, assembly, .. }) if system.fits(nlp) => (system.refit(nlp), assembly),
+            _ => (System::new(nlp), Assembly::new(n, m, nlp.blocks())),
+        };
         let mut scaled: Vec<f64> = x.iter().zip(&system.scales.variables).map(|(x, size)| x / size).collect();
         scaled.push(0.0);
         system.choose_scales(nlp, &scaled, Scaling::Automatic).map_err(Unavailable::NotFinite)?;
         let weights = scaled_multipliers(&system, multipliers);
         let mut values = vec![0.0; system.functions()];
         system.derivatives(nlp, &scaled, &weights, &mut values).map_err(Unavailable::NotFinite)?;
-        let mut assembly = Assembly::new(n, m, nlp.blocks());
-        assembly.first(nlp.blocks(), system.latest());
-        assembly.hessian(nlp.blocks(), system.latest(), |_, _, _| {});
         let activity = activity(nlp.limits(), &system.scales, system.latest(), (x, multipliers));
         let first = system.first_variable();
         let functions = (0..m).chain(first..first + n);
@@ -162,6 +176,8 @@ impl<W> Sensitivity<W> {
             rows: vec![0.0; m],
         };
         let mut found = Self { system, assembly, activity, active, shift: 0.0, buffers };
+        found.assembly.first(nlp.blocks(), found.system.latest());
+        found.assembly.hessian(nlp.blocks(), found.system.latest(), |_, _, _| {});
         found.factorise()?;
         Ok(found)
     }

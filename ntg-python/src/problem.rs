@@ -10,6 +10,7 @@ use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
+use ntg_runtime::sensitivity::Differentiator;
 use ntg_runtime::solve_from;
 use ntg_runtime::structure::Structure;
 use pyo3::exceptions::{PyOverflowError, PyTypeError};
@@ -30,6 +31,8 @@ pub(crate) struct Spec {
     tables: BTreeMap<String, String>,
     /// The constants that were set, as text.
     constants: BTreeMap<String, String>,
+    /// What derivatives of its solutions share; none while somebody differentiates.
+    pub(crate) differentiator: Mutex<Option<Differentiator>>,
 }
 
 /// A compiled spec.
@@ -81,7 +84,7 @@ pub(crate) fn compile(
         Ok(compiled) => {
             let problem = Arc::new(Interpreted::new(&compiled.program));
             let tables = loader.found.into_inner().unwrap_or_else(PoisonError::into_inner);
-            Ok(Compiled { spec: Arc::new(Spec { source, notes: compiled.notes, tables, constants }), problem })
+            Ok(Compiled { spec: Arc::new(Spec { source, notes: compiled.notes, tables, constants, differentiator: Mutex::default() }), problem })
         }
         Err(found) => {
             let data = errors::findings(py, found.iter(), &source)?;

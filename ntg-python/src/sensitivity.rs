@@ -1,10 +1,10 @@
 //! Derivatives of a solution by parameters, and what it is predicted to be nearby.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 
 use ntg_interp::Interpreted;
 use ntg_runtime::report::Report;
-use ntg_runtime::sensitivity::{Sensitivity, SensitivityError};
+use ntg_runtime::sensitivity::{Differentiator, Sensitivity, SensitivityError};
 use ntg_runtime::solution::Solution;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyKeyError;
@@ -38,12 +38,23 @@ impl Derivatives {
         report: &Report,
         names: Option<Vec<String>>,
     ) -> PyResult<Self> {
-        let found = py.detach(|| match &names {
-            Some(names) if report.has_solution() => {
-                let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                report.solution.sensitivity_by(&**problem, &names)
+        let found = py.detach(|| {
+            if !report.has_solution() {
+                return report.sensitivity(&**problem);
             }
-            _ => report.sensitivity(&**problem),
+            // Another thread that differentiates meanwhile makes what is kept for itself.
+            let lock = || spec.differentiator.lock().unwrap_or_else(PoisonError::into_inner);
+            let kept = lock().take();
+            let mut differentiator = kept.unwrap_or_else(|| Differentiator::new(&**problem));
+            let found = match &names {
+                Some(names) => {
+                    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                    differentiator.differentiate_by(&report.solution, &names)
+                }
+                None => differentiator.differentiate(&report.solution),
+            };
+            *lock() = Some(differentiator);
+            found
         });
         let sensitivity = found.map_err(|error| raised(py, &error))?;
         Ok(Self { spec: spec.clone(), problem: problem.clone(), sensitivity })

@@ -164,6 +164,11 @@ impl Knots {
     ///
     /// Beyond the ends it is the first or the last interval, whose polynomial goes on there.
     pub fn interval(&self, tau: f64, side: Side) -> usize {
+        // Where breakpoints are equally spaced, as they mostly are, this is the interval, or one beside it.
+        let likely = ((tau * self.intervals() as f64) as usize).min(self.intervals() - 1);
+        if self.breakpoints[likely] < tau && tau < self.breakpoints[likely + 1] {
+            return likely;
+        }
         let inner = &self.breakpoints[1..self.intervals()];
         match side {
             Side::Left => inner.partition_point(|b| *b < tau),

@@ -103,7 +103,7 @@ impl<W> System<W> {
     }
 
     /// Whether a program has the patterns that were analysed.
-    fn fits<N: Nlp<Workspace = W>>(&self, nlp: &N) -> bool {
+    pub(crate) fn fits<N: Nlp<Workspace = W>>(&self, nlp: &N) -> bool {
         let same = |(pattern, block): (&Pattern, &Block)| pattern.is_of(block);
         (self.x.len(), self.weights.len()) == (nlp.variables(), nlp.rows())
             && self.patterns.len() == nlp.blocks().len()
@@ -111,7 +111,7 @@ impl<W> System<W> {
     }
 
     /// The same analysis with the numbers of another program, whose workspace holds its data.
-    fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N) -> Self {
+    pub(crate) fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N) -> Self {
         let sizes = Scales::sizes(nlp.limits());
         self.elements.refill(nlp.blocks(), &sizes);
         self.scales = Scales { variables: sizes, rows: vec![1.0; self.weights.len()], objective: 1.0 };

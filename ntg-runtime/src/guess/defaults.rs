@@ -124,7 +124,8 @@ fn line(known: &[(f64, f64)], t: f64) -> Option<f64> {
 /// coefficients are one multiple of the B-splines' values, which add up to 1.
 pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)> {
     let layout = &nlp.model.layout;
-    let coefficients = &layout.phases[phase].outputs[output].coefficients;
+    let mut coefficients = layout.phases[phase].outputs[output].coefficients.clone();
+    coefficients.sort_unstable();
     let mut found: Option<(f64, f64)> = None;
     for (group, block) in nlp.elements.batches.iter().zip(&nlp.elements.blocks) {
         let declared = &nlp.model.structure.groups[group.group];
@@ -139,7 +140,7 @@ pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option
                 let variables = block.variables(element);
                 let map = &block.map(element)[slot * variables.len()..][..variables.len()];
                 let active = || variables.iter().zip(map).filter(|(_, c)| **c != 0.0);
-                active().all(|(v, c)| coefficients.contains(v) && *c > 0.0)
+                active().all(|(v, c)| coefficients.binary_search(v).is_ok() && *c > 0.0)
                     && (active().map(|(_, c)| c).sum::<f64>() - 1.0).abs() < 1e-9
             };
             let here = |element: &usize| group.batch.sites[*element].point.phase == Some(phase) && is_own(*element);

@@ -6,22 +6,23 @@
 //! Finds: unknown parameters, solutions that are none, active constraints that contradict each other as soon as they
 //! move.
 
+mod differentiator;
 mod error;
 mod parametric;
 mod predict;
 mod values;
 
+pub use differentiator::Differentiator;
 pub use error::SensitivityError;
 pub use values::Gradient;
 
 use crate::problem::{Parametric, Problem};
 use crate::report::Report;
-use crate::solution::{Inner, Solution, Value};
+use crate::solution::{Solution, Value};
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::{RowKind, constraint_words};
 use crate::transcribe::{Model, names};
-use ntg_nlp::Multipliers;
-use ntg_nlp::sensitivity::{Activity, Moving, Response, Sensitivity as Factors};
+use ntg_nlp::sensitivity::{Activity, Response, Sensitivity as Factors};
 use parametric::AtSolution;
 use std::sync::Arc;
 
@@ -93,7 +94,7 @@ impl Solution {
     /// The second-order conditions of a minimum do not hold, or active constraints contradict each other as soon as
     /// they move.
     pub fn sensitivity(&self, problem: &dyn Parametric) -> Result<Sensitivity, SensitivityError> {
-        self.differentiated(problem, None)
+        Differentiator::new(problem).differentiate(self)
     }
 
     /// As [`Solution::sensitivity`], by some parameters alone: `v_max`, all members of an array `start`, one member
@@ -102,59 +103,7 @@ impl Solution {
     /// # Errors
     /// As [`Solution::sensitivity`]; and unknown names.
     pub fn sensitivity_by(&self, problem: &dyn Parametric, names: &[&str]) -> Result<Sensitivity, SensitivityError> {
-        self.differentiated(problem, Some(names))
-    }
-
-    fn differentiated(
-        &self,
-        problem: &dyn Parametric,
-        names: Option<&[&str]>,
-    ) -> Result<Sensitivity, SensitivityError> {
-        let problem = problem.parametric();
-        let program = AtSolution::new(&*problem, &self.inner)?;
-        let (parameters, variables) = self.parameters(&program.parameters, names)?;
-        let multipliers = Multipliers { rows: &program.row_multipliers, bounds: &program.bound_multipliers };
-        let mut factors = Factors::new(&program.nlp, &program.x, multipliers)?;
-        let lagrangian = factors.lagrangian(&program.row_multipliers);
-        let mut responses = vec![];
-        let structure = self.structure();
-        let sign = if structure.maximize { -1.0 } else { 1.0 };
-        let mut objective = Gradient { unit: structure.objective_unit.clone(), values: vec![] };
-        for (variable, parameter) in variables.iter().zip(&parameters) {
-            let held = program.held(*variable);
-            let rates = |limits: &[parametric::Limit], multipliers: &[f64]| -> Vec<f64> {
-                limits.iter().zip(multipliers).map(|(limit, multiplier)| limit.rate(*multiplier, &held)).collect()
-            };
-            let rows = rates(&program.rows, &program.row_multipliers);
-            let bounds = rates(&program.variables, &program.bound_multipliers);
-            // Equation 16.3.
-            let by_rows: f64 = program.row_multipliers.iter().zip(&rows).map(|(y, rate)| y * rate).sum();
-            let active = factors.variables().iter().map(|activity| f64::from(u8::from(activity.is_active())));
-            let by_bounds: f64 = lagrangian.iter().zip(&bounds).zip(active).map(|((y, rate), is)| is * y * rate).sum();
-            let factor = sign * parameter.unit.factor / structure.objective_unit.factor;
-            objective.values.push(factor * (by_rows + by_bounds));
-            responses.push(factors.response(Moving { rows: &rows, variables: &bounds })?);
-        }
-        let weak = weak(&program, &factors);
-        let is_strict = factors.is_strict();
-        let AtSolution { nlp, x, image, row_image, .. } = program;
-        let inner =
-            Inner { model: nlp.model.clone(), x, rows: vec![], row_multipliers: vec![], bound_multipliers: vec![] };
-        let at = Solution { inner: Arc::new(inner) };
-        let moving = Arc::new(moving(&nlp.model));
-        Ok(Sensitivity {
-            problem,
-            solution: self.clone(),
-            at,
-            moving,
-            parameters,
-            variables,
-            responses,
-            objective,
-            weak,
-            is_strict,
-            images: (image, row_image),
-        })
+        Differentiator::new(problem).differentiate_by(self, names)
     }
 
     /// The parameters of these names, member by member, with the variables that they are.

@@ -13,7 +13,7 @@ use crate::transcribe::layout::{Layout, Time, narrow};
 use crate::transcribe::node::Site;
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowInfo, RowKind};
-use crate::transcribe::{SetupError, Transcription};
+use crate::transcribe::{Kept, SetupError, Transcription};
 use ntg_nlp::BlockValues;
 use ntg_splines::Side;
 use ntg_structure::{Bounds, Call, Duration, Row, Start, Structure};
@@ -73,11 +73,19 @@ impl Limit {
 }
 
 impl<'p> AtSolution<'p> {
-    /// The parametric program at a solution.
-    pub(super) fn new(problem: &'p dyn Problem, solution: &Inner) -> Result<Self, SetupError> {
+    /// The parametric program at a solution. `kept` is that of another solution of the same problem; what has not changed
+    /// is not made anew.
+    pub(super) fn new(problem: &'p dyn Problem, kept: Option<Kept>, solution: &Inner) -> Result<Self, SetupError> {
         let own = &solution.model;
         let full = with_mesh(problem.structure(), &own.structure)?;
-        let mut nlp = Transcription::with(problem, without_bounds(&full))?;
+        let bare = without_bounds(&full);
+        let mut nlp = match kept.map(|kept| kept.of(problem)) {
+            Some(mut nlp) => {
+                nlp.take(&bare)?;
+                nlp
+            }
+            None => Transcription::with(problem, bare)?,
+        };
         let layout = &nlp.model.layout;
         let image = images(&own.structure, &own.layout, layout)?;
         let parameters = layout.variable_first[own.structure.variables.len()..].to_vec();

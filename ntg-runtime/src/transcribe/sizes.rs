@@ -134,12 +134,16 @@ impl Transcription<'_> {
             *largest = largest.max(slope);
         };
         for (block, values) in self.elements.blocks.iter().zip(&at.blocks) {
+            let slots = block.jacobian.iter().map(|(_, slot)| slot + 1).max().unwrap_or(0);
+            let group_of: Vec<Vec<Option<usize>>> = (0..slots)
+                .map(|slot| (0..block.elements).map(|e| slot_group(block, e, slot, balance)).collect())
+                .collect();
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 // Elements of one block mostly have the same constraint and group.
                 let mut run: Option<((usize, usize), f64)> = None;
                 for e in 0..block.elements {
                     let Target::Row(target) = block.target[row * block.elements + e] else { continue };
-                    let Some(group) = slot_group(block, e, slot, balance) else { continue };
+                    let Some(group) = group_of[slot][e] else { continue };
                     let weight = block.weight[row * block.elements + e];
                     let slope = (weight * values.jacobian[entry * block.elements + e]).abs();
                     let key = (constraint_of[target as usize], group);
