@@ -29,7 +29,7 @@ def binary(is_built):
 
 def specs(only):
     """Specs by name, those of the gallery after the others."""
-    found = sorted((ROOT / "specs").glob("*.ntg")) + sorted((ROOT / "specs" / "gallery").rglob("*.ntg"))
+    found = sorted((ROOT / "specs").glob("*.ntg")) + sorted((ROOT / "specs" / "gallery").glob("*.ntg"))
     return [path for path in found if not only or path.stem in only]
 
 

@@ -16,6 +16,11 @@
 use ntg_runtime::nlp::{Assembly, Limits, Nlp, NotFinite};
 use ntg_runtime::status::Bounded;
 
+/// How far beside a point the size of an objective is looked for: a part of the variables' typical sizes.
+const BESIDE: f64 = 0.01;
+/// The golden ratio, whose multiples are spread evenly.
+const GOLDEN: f64 = 1.618_033_988_749_895;
+
 /// A violated row or bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Missed {
@@ -79,10 +84,30 @@ pub fn judge<N: Nlp>(nlp: &N, point: Point<'_>) -> Result<Judgement, NotFinite> 
     each(&assembly, |i, j, slope| sizes[i] = sizes[i].max((slope * nlp.limits().scale[j]).abs()));
     let missed = missed(nlp, point.x, &at.rows, &sizes);
     let optimality = point.multipliers.map(|y| {
-        let judged = Optimality { limits: nlp.limits(), assembly: &assembly, x: point.x, rows: &at.rows };
+        let size = objective_size(nlp, point.x);
+        let judged = Optimality { limits: nlp.limits(), assembly: &assembly, x: point.x, rows: &at.rows, size };
         judged.residuals(y, at.objective)
     });
     Ok(Judgement { objective: at.objective, missed, optimality })
+}
+
+/// The largest term of the objective's gradient beside a point; 0 where that is not finite.
+fn objective_size<N: Nlp>(nlp: &N, x: &[f64]) -> f64 {
+    // Fractions of 1 that repeat nowhere, so that what is symmetric at the point is not so here.
+    let part = |j: usize| (GOLDEN * (j + 1) as f64).fract() - 0.5;
+    let sizes = &nlp.limits().scale;
+    let beside: Vec<f64> = x.iter().zip(sizes).enumerate().map(|(j, (x, size))| x + BESIDE * size * part(j)).collect();
+    let (mut work, mut at) = nlp.workspace();
+    if nlp.derivatives(&beside, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).is_err() {
+        return 0.0;
+    }
+    let mut assembly = Assembly::new(x.len(), nlp.rows(), nlp.blocks());
+    assembly.first(nlp.blocks(), &at);
+    largest_term(&assembly.gradient, sizes)
+}
+
+fn largest_term(gradient: &[f64], sizes: &[f64]) -> f64 {
+    gradient.iter().zip(sizes).map(|(g, size)| (g * size).abs()).fold(0.0, f64::max)
 }
 
 /// Calls `visit` with row, column and value of each entry of the Jacobian.
@@ -123,13 +148,18 @@ struct Optimality<'a> {
     assembly: &'a Assembly,
     x: &'a [f64],
     rows: &'a [f64],
+    /// The objective's size beside the point.
+    size: f64,
 }
 
 impl Optimality<'_> {
     fn residuals(&self, y: &[f64], objective: f64) -> [Residual; 2] {
         let limits = self.limits;
         let mut left = self.assembly.gradient.clone();
-        let mut largest = left.iter().zip(&limits.scale).map(|(g, size)| (g * size).abs()).fold(0.0, f64::max);
+        let mut largest = largest_term(&left, &limits.scale).max(self.size);
+        if largest == 0.0 {
+            return [Residual::default(); 2];
+        }
         each(self.assembly, |i, j, slope| {
             left[j] -= slope * y[i];
             largest = largest.max((slope * y[i] * limits.scale[j]).abs());

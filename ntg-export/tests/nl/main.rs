@@ -1,5 +1,6 @@
 //! What is written as .nl is the program that is solved: values, bounds, start, order, and the way back.
 
+mod judged;
 mod reader;
 
 use ntg_compiler::Compiled;

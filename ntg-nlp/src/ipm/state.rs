@@ -14,7 +14,7 @@ use crate::kkt::System;
 use crate::options::Options;
 use crate::outcome::IterationRecord;
 use crate::reductions::{largest, sum};
-use crate::residuals::{LARGE_MULTIPLIER, Residual, Residuals};
+use crate::residuals::{Residual, Residuals, divisor};
 use crate::status::Status;
 use crate::stopping::Stage;
 use std::time::Instant;
@@ -185,7 +185,8 @@ impl<N: Nlp> State<'_, N> {
     pub(super) fn compute_residuals(&mut self) {
         self.system.transposed_product(&self.multipliers, &mut self.negative_gradient);
         self.add_proximity_gradient();
-        self.s_d = self.multiplier_scale();
+        let (sum, count) = self.slacks.multiplier_sum();
+        self.s_d = divisor(sum, count);
         let scaled = Residual {
             primal: self.slacks.violation(&self.values),
             dual: self.dual_residual(),
@@ -206,12 +207,6 @@ impl<N: Nlp> State<'_, N> {
     fn dual_residual(&self) -> f64 {
         let finite = sum([&self.negative_gradient], |[g]| g).is_finite();
         if finite { largest([&self.negative_gradient], |[g]| g.abs()) } else { f64::INFINITY }
-    }
-
-    /// Equation (6.5).
-    fn multiplier_scale(&self) -> f64 {
-        let (sum, count) = self.slacks.multiplier_sum();
-        if count > 0.0 { (sum / count / LARGE_MULTIPLIER).max(1.0) } else { 1.0 }
     }
 
     /// Why the solve is over at the present point; none where it goes on.
