@@ -4,7 +4,8 @@ use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::Outcome;
 use crate::remeasure;
-use crate::residuals::{self, Residuals};
+use crate::residuals::{self, ROUNDING, Residuals};
+use crate::scaling::Scales;
 use crate::status::{Bounded, Status, Violation};
 use crate::stopping::ACCEPTABLE;
 
@@ -95,12 +96,11 @@ impl<N: Nlp> State<'_, N> {
     /// Ends the solve at the present point.
     pub(super) fn outcome(mut self, status: Status) -> Outcome {
         self.history.push(self.record);
-        let (n, m) = (self.nlp.variables(), self.nlp.rows());
+        let n = self.nlp.variables();
         let objective = self.system.scales.objective;
         let first = self.system.first_variable();
         self.slacks.multipliers(self.system.objective(), &mut self.multipliers);
-        let row_multipliers: Vec<f64> =
-            (0..m).map(|i| self.multipliers[i] * self.system.scales.rows[i] / objective).collect();
+        let row_multipliers = self.row_multipliers();
         let bound_multipliers: Vec<f64> =
             (0..n).map(|j| self.multipliers[first + j] / self.system.scales.variables[j] / objective).collect();
         let x = self.system.unscaled(self.nlp, &self.x).to_vec();
@@ -124,6 +124,19 @@ impl<N: Nlp> State<'_, N> {
         }
     }
 
+    /// The multipliers of the rows in the program's own units.
+    fn row_multipliers(&self) -> Vec<f64> {
+        let Scales { rows, objective, .. } = &self.system.scales;
+        self.multipliers.iter().zip(rows).map(|(y, factor)| y * factor / objective).collect()
+    }
+
+    /// What rounding leaves of the gradient of the Lagrangian at the present point, equation (6.5a). Allocates.
+    pub(super) fn rounding(&mut self) -> f64 {
+        let (blocks, rows, x) =
+            (self.nlp.blocks(), self.row_multipliers(), self.system.unscaled(self.nlp, &self.x).to_vec());
+        ROUNDING * residuals::largest_term(blocks, self.system.latest(), (&x, &rows), &self.system.scales)
+    }
+
     /// The residuals of the last point, scaled and unscaled.
     fn residuals(&self, x: &[f64], rows: &[f64], bounds: &[f64]) -> Residuals {
         let latest = self.system.latest();
@@ -135,6 +148,7 @@ impl<N: Nlp> State<'_, N> {
             lagrangian: &lagrangian,
             row_multipliers: rows,
             bound_multipliers: bounds,
+            largest_term: residuals::largest_term(self.nlp.blocks(), latest, (x, rows), &self.system.scales),
         };
         residuals::residuals(self.nlp.limits(), &self.system.scales, &point)
     }

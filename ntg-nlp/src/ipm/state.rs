@@ -16,7 +16,7 @@ use crate::outcome::IterationRecord;
 use crate::reductions::{largest, sum};
 use crate::residuals::{Residual, Residuals, divisor};
 use crate::status::Status;
-use crate::stopping::Stage;
+use crate::stopping::{ACCEPTABLE, Stage};
 use std::time::Instant;
 
 /// Everything that one solve needs, allocated once. All vectors are scaled.
@@ -187,12 +187,16 @@ impl<N: Nlp> State<'_, N> {
         self.add_proximity_gradient();
         let (sum, count) = self.slacks.multiplier_sum();
         self.s_d = divisor(sum, count);
-        let scaled = Residual {
+        let mut scaled = Residual {
             primal: self.slacks.violation(&self.values),
             dual: self.dual_residual(),
             complementarity: self.slacks.complementarity(),
             worth: self.slacks.worth(&self.values),
+            rounding: 0.0,
         };
+        if self.is_dual_alone(&scaled.relative_to(self.s_d)) {
+            scaled.rounding = self.rounding();
+        }
         let residuals = Residuals { scaled: scaled.relative_to(self.s_d), ..Residuals::default() };
         self.record = IterationRecord {
             objective: self.values[self.system.objective()] / self.system.scales.objective,
@@ -201,6 +205,16 @@ impl<N: Nlp> State<'_, N> {
             barrier: self.mu,
             ..IterationRecord::default()
         };
+    }
+
+    /// Whether a small dual residual alone keeps the point from being a solution.
+    fn is_dual_alone(&self, found: &Residual) -> bool {
+        let Options { constraint_tolerance, tolerance, .. } = *self.options;
+        let but_for_dual = Residual { dual: 0.0, ..*found };
+        found.dual > tolerance
+            && found.dual <= ACCEPTABLE
+            && but_for_dual.is_solved(constraint_tolerance, tolerance)
+            && self.mode.has_own_multipliers()
     }
 
     /// The largest entry of the Lagrangian's gradient; infinite where an entry is not finite.

@@ -154,6 +154,7 @@ impl<'a, N: Nlp> Program<'a, N> {
             lagrangian: &self.lagrangian,
             row_multipliers: &self.weights,
             bound_multipliers: &self.mu,
+            largest_term: residuals::largest_term(self.nlp.blocks(), &self.at, (&self.x, &self.weights), &self.scales),
         };
         residuals::residuals(self.nlp.limits(), &self.scales, &point)
     }
