@@ -14,7 +14,6 @@
 
 use crate::contract::{Block, Evaluation, Limits, Target};
 use crate::scaling::Scales;
-use crate::stopping::ACCEPTABLE;
 
 /// Where the mean size of the multipliers exceeds this, residuals are measured relative to it.
 const LARGE_MULTIPLIER: f64 = 100.0;
@@ -23,6 +22,10 @@ const LARGE_MULTIPLIER: f64 = 100.0;
 /// more than WB, equation (5), and of 716 solves of the gallery and the specs from four starts as many are solved as
 /// without a limit. Without one, two of them end 0.07 % from their optimum, as solved.
 const LARGEST_DIVISOR: f64 = 100.0;
+
+/// All residuals of an acceptable end are within this (or within the tolerances, where these are looser): the acceptable
+/// tolerance of IPOPT.
+pub(crate) const ACCEPTABLE: f64 = 1e-6;
 
 /// What rounding leaves of a sum, relative to its largest term, equation (6.5a). A law: a term has a few roundings of its
 /// own, sums of hundreds of terms have some ten times those of one.
@@ -78,6 +81,8 @@ pub struct Point<'a> {
     pub bound_multipliers: &'a [f64],
     /// The largest scaled term of the gradient of the Lagrangian: [`largest_term`].
     pub largest_term: f64,
+    /// The largest scaled term of each component of `J^T lambda`: [`terms_by_variable`].
+    pub terms: &'a [f64],
 }
 
 /// Elements that are worked on side by side.
@@ -138,28 +143,40 @@ fn add_slope(block: &Block, element: usize, slot: usize, slope: f64, out: &mut [
     }
 }
 
+/// Of each slot of an element the largest coefficient by sizes, and the sum of the terms that the slot is the sum of.
+pub(crate) type SlotTerms = Vec<(f64, f64)>;
+
+/// Memory for the slots of any element.
+pub(crate) fn slot_terms(blocks: &[Block]) -> SlotTerms {
+    vec![(0.0, 0.0); blocks.iter().map(|block| block.slots).max().unwrap_or(0)]
+}
+
 /// The largest term of the gradient of the Lagrangian, scaled: of the sum over elements, rows and slots, and of what those
-/// slots are sums of themselves. `x` and the multipliers are in the program's own units, second derivatives are those of
-/// the scaled objective.
-pub(crate) fn largest_term(blocks: &[Block], at: &Evaluation, (x, y): (&[f64], &[f64]), scales: &Scales) -> f64 {
+/// slots are sums of themselves. Variables and multipliers by number are in the program's own units, second derivatives are
+/// those of the scaled objective.
+pub(crate) fn largest_term(
+    (blocks, at): (&[Block], &Evaluation),
+    (x, y): (impl Fn(usize) -> f64, impl Fn(usize) -> f64),
+    scales: &Scales,
+    slots: &mut SlotTerms,
+) -> f64 {
     let (mut first, mut second) = (0.0_f64, 0.0_f64);
     for (block, values) in blocks.iter().zip(&at.blocks) {
-        // Of each slot the largest coefficient by sizes, and the sum of the terms that it is the sum of.
-        let mut slots = vec![(0.0_f64, 0.0_f64); block.slots];
+        slots.fill((0.0, 0.0));
         for e in 0..block.elements {
             let variables = block.variables(e);
             let coefficients = block.map(e).chunks_exact(variables.len().max(1));
             for (slot, coefficients) in slots.iter_mut().zip(coefficients) {
                 *slot = variables.iter().zip(coefficients).fold((0.0, 0.0), |(width, terms), (&j, c)| {
                     let j = j as usize;
-                    (width.max((c * scales.variables[j]).abs()), terms + (c * x[j]).abs())
+                    (width.max((c * scales.variables[j]).abs()), terms + (c * x(j)).abs())
                 });
             }
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 let lane = row * block.elements + e;
                 let factor = match block.target[lane] {
                     Target::Objective => 1.0,
-                    Target::Row(row) => y[row as usize],
+                    Target::Row(row) => y(row as usize),
                 };
                 let slope = block.weight[lane] * factor * values.jacobian[entry * block.elements + e];
                 first = first.max((slope * slots[slot].0).abs());
@@ -171,6 +188,30 @@ pub(crate) fn largest_term(blocks: &[Block], at: &Evaluation, (x, y): (&[f64], &
         }
     }
     (scales.objective * first).max(second)
+}
+
+/// Writes the largest term of each component of `J^T lambda`, scaled.
+pub(crate) fn terms_by_variable(
+    (blocks, at): (&[Block], &Evaluation),
+    y: impl Fn(usize) -> f64,
+    scales: &Scales,
+    out: &mut [f64],
+) {
+    out.fill(0.0);
+    for (block, values) in blocks.iter().zip(&at.blocks) {
+        for e in 0..block.elements {
+            let (variables, map) = (block.variables(e), block.map(e));
+            for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                let lane = row * block.elements + e;
+                let Target::Row(target) = block.target[lane] else { continue };
+                let slope = block.weight[lane] * y(target as usize) * values.jacobian[entry * block.elements + e];
+                for (&j, c) in variables.iter().zip(&map[slot * variables.len()..]) {
+                    let term = (scales.objective * slope * c * scales.variables[j as usize]).abs();
+                    out[j as usize] = out[j as usize].max(term);
+                }
+            }
+        }
+    }
 }
 
 /// The violation of `lower <= value <= upper`.
@@ -201,11 +242,12 @@ fn complementarity(multiplier: f64, value: f64, lower: f64, upper: f64) -> Optio
 /// The residuals (6.2) to (6.4) of a point. Allocates nothing.
 pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residuals {
     let mut found = Residuals::default();
+    let s_d = multiplier_divisor(scales, point);
     for (j, &size) in scales.variables.iter().enumerate() {
         let dual = point.lagrangian[j] - point.bound_multipliers[j];
         let (value, mu) = (point.x[j], point.bound_multipliers[j]);
         found.primal(violation(value, limits.lower[j], limits.upper[j]), 1.0 / size);
-        found.dual(dual, scales.objective * size);
+        found.dual(dual, scales.objective * size / (point.terms[j] / s_d).max(1.0));
         let [lower, upper] = [limits.lower[j], limits.upper[j]];
         match complementarity(mu, value, lower, upper) {
             Some(product) if is_equality(lower / size, upper / size) => found.worth(product, scales.objective),
@@ -224,7 +266,7 @@ pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residua
         }
     }
     found.scaled.rounding = ROUNDING * point.largest_term;
-    found.scaled = found.scaled.relative_to(multiplier_divisor(scales, point));
+    found.scaled = found.scaled.relative_to(s_d);
     found
 }
 
@@ -353,6 +395,7 @@ mod tests {
             row_multipliers: &[1e14],
             bound_multipliers: &[0.0],
             largest_term: 0.0,
+            terms: &[0.0],
         };
         residuals(&limits, &scales, &point).scaled
     }
@@ -384,6 +427,7 @@ mod tests {
             row_multipliers: &[1e14],
             bound_multipliers: &[0.0, 0.0],
             largest_term: 0.0,
+            terms: &[0.0, 0.0],
         };
         let found = residuals(&limits, &scales, &point).scaled;
         assert!(!found.is_acceptable(1e-8, 1e-6), "{found:?}");

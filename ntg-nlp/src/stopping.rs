@@ -9,10 +9,6 @@ use std::time::Instant;
 /// variables, mean that there is no minimum.
 const UNBOUNDED: f64 = 1e10;
 
-/// All residuals of an acceptable end are within this (or within the tolerances, where these are looser): the acceptable
-/// tolerance of IPOPT.
-pub(crate) const ACCEPTABLE: f64 = 1e-6;
-
 /// How far a solve has come.
 pub(crate) struct Stage<'a> {
     pub(crate) options: &'a Options,

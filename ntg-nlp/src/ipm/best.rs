@@ -6,8 +6,8 @@ use super::slacks::Slacks;
 use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::IterationRecord;
+use crate::residuals::ACCEPTABLE;
 use crate::residuals::Residual;
-use crate::stopping::ACCEPTABLE;
 
 /// A point with its slacks, multipliers and residuals.
 #[derive(Clone, Debug, Default)]

@@ -4,10 +4,9 @@ use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::Outcome;
 use crate::remeasure;
-use crate::residuals::{self, ROUNDING, Residuals};
+use crate::residuals::{self, ACCEPTABLE, ROUNDING, Residuals, slot_terms};
 use crate::scaling::Scales;
 use crate::status::{Bounded, Status, Violation};
-use crate::stopping::ACCEPTABLE;
 
 impl<N: Nlp> State<'_, N> {
     /// Counts the iteration and computes derivatives at the new point.
@@ -130,11 +129,23 @@ impl<N: Nlp> State<'_, N> {
         self.multipliers.iter().zip(rows).map(|(y, factor)| y * factor / objective).collect()
     }
 
-    /// What rounding leaves of the gradient of the Lagrangian at the present point, equation (6.5a). Allocates.
+    /// What rounding leaves of the gradient of the Lagrangian at the present point, equation (6.5a).
     pub(super) fn rounding(&mut self) -> f64 {
-        let (blocks, rows, x) =
-            (self.nlp.blocks(), self.row_multipliers(), self.system.unscaled(self.nlp, &self.x).to_vec());
-        ROUNDING * residuals::largest_term(blocks, self.system.latest(), (&x, &rows), &self.system.scales)
+        let Self { nlp, system, x, multipliers, slot_terms, .. } = self;
+        let scales = &system.scales;
+        let point = (|j| scales.variables[j] * x[j], |i| multipliers[i] * scales.rows[i] / scales.objective);
+        ROUNDING * residuals::largest_term((nlp.blocks(), system.latest()), point, scales, slot_terms)
+    }
+
+    /// The largest entry of the Lagrangian's gradient, each divided by the largest term of the rows in it over `s_d` where
+    /// that is more than 1, equation (6.5b).
+    pub(super) fn dual_by_terms(&mut self) -> f64 {
+        let Self { nlp, system, multipliers, terms, s_d, negative_gradient, .. } = self;
+        let scales = &system.scales;
+        let y = |i: usize| multipliers[i] * scales.rows[i] / scales.objective;
+        residuals::terms_by_variable((nlp.blocks(), system.latest()), y, scales, terms);
+        let relative = terms.iter().zip(negative_gradient).map(|(term, g)| g.abs() / (term / *s_d).max(1.0));
+        relative.fold(0.0, |most, g| if g.is_finite() { most.max(g) } else { f64::INFINITY })
     }
 
     /// The residuals of the last point, scaled and unscaled.
@@ -142,13 +153,21 @@ impl<N: Nlp> State<'_, N> {
         let latest = self.system.latest();
         let mut lagrangian = vec![0.0; x.len()];
         residuals::lagrangian(self.nlp.blocks(), latest, rows, &mut lagrangian);
+        let mut terms = vec![0.0; x.len()];
+        residuals::terms_by_variable((self.nlp.blocks(), latest), |i| rows[i], &self.system.scales, &mut terms);
         let point = residuals::Point {
+            terms: &terms,
             x,
             rows: &latest.rows,
             lagrangian: &lagrangian,
             row_multipliers: rows,
             bound_multipliers: bounds,
-            largest_term: residuals::largest_term(self.nlp.blocks(), latest, (x, rows), &self.system.scales),
+            largest_term: residuals::largest_term(
+                (self.nlp.blocks(), latest),
+                (|j| x[j], |i| rows[i]),
+                &self.system.scales,
+                &mut slot_terms(self.nlp.blocks()),
+            ),
         };
         residuals::residuals(self.nlp.limits(), &self.system.scales, &point)
     }

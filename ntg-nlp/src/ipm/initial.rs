@@ -15,6 +15,7 @@ use crate::contract::{Limits, Nlp, NotFinite};
 use crate::kkt::System;
 use crate::options::{Method, Options};
 use crate::outcome::{IterationRecord, Start};
+use crate::residuals::slot_terms;
 use crate::scaling::Scales;
 use crate::status::Status;
 use std::time::Instant;
@@ -70,6 +71,8 @@ impl<'a, N: Nlp> State<'a, N> {
             multipliers: vec![0.0; functions],
             mu: FIRST_BARRIER * barrier_unit,
             s_d: 1.0,
+            slot_terms: slot_terms(nlp.blocks()),
+            terms: vec![0.0; nlp.variables()],
             barrier_unit,
             filter: Filter::with_capacity(options.max_iterations.min(HISTORY)),
             best: Point::new(&x, &slacks),

@@ -14,9 +14,9 @@ use crate::kkt::System;
 use crate::options::Options;
 use crate::outcome::IterationRecord;
 use crate::reductions::{largest, sum};
-use crate::residuals::{Residual, Residuals, divisor};
+use crate::residuals::{ACCEPTABLE, Residual, Residuals, SlotTerms, divisor};
 use crate::status::Status;
-use crate::stopping::{ACCEPTABLE, Stage};
+use crate::stopping::Stage;
 use std::time::Instant;
 
 /// Everything that one solve needs, allocated once. All vectors are scaled.
@@ -41,6 +41,9 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) mu: f64,
     /// The divisor of dual residuals, equation (6.5).
     pub(super) s_d: f64,
+    /// Memory for what rounding leaves of the dual residual, and for the terms of its components.
+    pub(super) slot_terms: SlotTerms,
+    pub(super) terms: Vec<f64>,
     /// The unit `u` of barrier parameters, equation (11.6).
     pub(super) barrier_unit: f64,
     pub(super) filter: Filter,
@@ -194,8 +197,11 @@ impl<N: Nlp> State<'_, N> {
             worth: self.slacks.worth(&self.values),
             rounding: 0.0,
         };
-        if self.is_dual_alone(&scaled.relative_to(self.s_d)) {
-            scaled.rounding = self.rounding();
+        if self.is_dual_alone(&scaled.relative_to(self.s_d), f64::INFINITY) {
+            scaled.dual = self.dual_by_terms();
+            if self.is_dual_alone(&scaled.relative_to(self.s_d), ACCEPTABLE) {
+                scaled.rounding = self.rounding();
+            }
         }
         let residuals = Residuals { scaled: scaled.relative_to(self.s_d), ..Residuals::default() };
         self.record = IterationRecord {
@@ -207,12 +213,12 @@ impl<N: Nlp> State<'_, N> {
         };
     }
 
-    /// Whether a small dual residual alone keeps the point from being a solution.
-    fn is_dual_alone(&self, found: &Residual) -> bool {
+    /// Whether a dual residual above the tolerance, but not above `most`, alone keeps the point from being a solution.
+    fn is_dual_alone(&self, found: &Residual, most: f64) -> bool {
         let Options { constraint_tolerance, tolerance, .. } = *self.options;
         let but_for_dual = Residual { dual: 0.0, ..*found };
         found.dual > tolerance
-            && found.dual <= ACCEPTABLE
+            && found.dual <= most
             && but_for_dual.is_solved(constraint_tolerance, tolerance)
             && self.mode.has_own_multipliers()
     }

@@ -148,13 +148,21 @@ impl<'a, N: Nlp> Program<'a, N> {
     pub(super) fn residuals(&mut self, rows: &[f64], bounds: &[f64]) -> Residuals {
         self.unscale_multipliers(rows, bounds);
         residuals::lagrangian(self.nlp.blocks(), &self.at, &self.weights, &mut self.lagrangian);
+        let mut terms = vec![0.0; self.x.len()];
+        residuals::terms_by_variable((self.nlp.blocks(), &self.at), |i| self.weights[i], &self.scales, &mut terms);
         let point = residuals::Point {
+            terms: &terms,
             x: &self.x,
             rows: &self.at.rows,
             lagrangian: &self.lagrangian,
             row_multipliers: &self.weights,
             bound_multipliers: &self.mu,
-            largest_term: residuals::largest_term(self.nlp.blocks(), &self.at, (&self.x, &self.weights), &self.scales),
+            largest_term: residuals::largest_term(
+                (self.nlp.blocks(), &self.at),
+                (|j| self.x[j], |i| self.weights[i]),
+                &self.scales,
+                &mut residuals::slot_terms(self.nlp.blocks()),
+            ),
         };
         residuals::residuals(self.nlp.limits(), &self.scales, &point)
     }

@@ -59,7 +59,8 @@ pub fn refine(
     };
     let Run { mut report, best, rounds, .. } = run;
     let mut status = status;
-    if is_better(&best, &report, wanted.tolerance) {
+    // A solve that met the tolerance is the answer, whatever a coarser mesh made of the objective.
+    if status != RefineStatus::Met && is_better(&best, &report, wanted.tolerance) {
         report = best;
         status = RefineStatus::Worse;
     }
@@ -84,7 +85,7 @@ impl Run<'_> {
     /// Measures the last solve, and solves on a finer mesh unless that is the end.
     fn round(&mut self, spent: Duration) -> Result<Option<RefineStatus>, Error> {
         let nlp = Transcription::new(&self.mesh)?;
-        let found = round(&nlp, &self.report, self.rounds.last());
+        let found = round(&nlp, &self.report, &self.rounds);
         let met = found.within(self.wanted.tolerance);
         self.rounds.push(found);
         if !self.report.has_solution() {
@@ -119,7 +120,7 @@ impl Run<'_> {
             (self.report, self.mesh) = (next, finer);
             return Ok(None);
         }
-        self.rounds.push(round(&Transcription::new(&finer)?, &next, self.rounds.last()));
+        self.rounds.push(round(&Transcription::new(&finer)?, &next, &self.rounds));
         Ok(Some(ended(&next)))
     }
 }
@@ -154,10 +155,11 @@ fn ended(report: &Report) -> RefineStatus {
     }
 }
 
-fn round(nlp: &Transcription, report: &Report, before: Option<&Round>) -> Round {
-    let size = report.objective_fine.abs().max(f64::MIN_POSITIVE);
+/// Changes are relative to the largest objective of all rounds, because the last one may be 0.
+fn round(nlp: &Transcription, report: &Report, before: &[Round]) -> Round {
     let fine = report.objective_fine;
-    let change = before.map_or(f64::NAN, |before| (fine - before.fine).abs() / size);
+    let size = before.iter().fold(fine.abs(), |most, round| most.max(round.fine.abs())).max(f64::MIN_POSITIVE);
+    let change = before.last().map_or(f64::NAN, |before| (fine - before.fine).abs() / size);
     Round {
         intervals: nlp.model.layout.phases.iter().map(|phase| phase.breakpoints.len() - 1).sum(),
         variables: nlp.variables(),

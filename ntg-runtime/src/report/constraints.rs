@@ -2,14 +2,15 @@
 
 use super::fine::{Plan, Wanted};
 use super::{ConstraintReport, Worst, multipliers};
+use crate::transcribe::elements::GroupBatch;
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
 use crate::transcribe::{SetupError, Transcription, names};
-use ntg_nlp::Evaluation;
-use ntg_nlp::Outcome;
+use ntg_nlp::{Evaluation, Outcome, Target};
+use ntg_structure::Domain;
 
 /// One entry for each constraint of the spec, and the terms on the finer grid.
-/// `at` holds the program's values at the last point.
+/// `at` holds the program's values and first derivatives at the last point.
 pub(super) fn constraints(
     nlp: &Transcription,
     (outcome, at): (&Outcome, &Evaluation),
@@ -30,7 +31,7 @@ pub(super) fn constraints(
             sensitivity: 0.0,
         })
         .collect();
-    set_sizes(nlp, outcome, &mut reports);
+    set_sizes(nlp, (outcome, at), &mut reports);
     for (row, info) in nlp.elements.rows.iter().enumerate() {
         let RowKind::Constraint(constraint) = info.kind else { continue };
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
@@ -69,18 +70,51 @@ fn keep(
     }
 }
 
-/// Sets what violations of bounds of 0 are relative to: the largest slope of the constraint's rows.
-fn set_sizes(nlp: &Transcription, outcome: &Outcome, reports: &mut [ConstraintReport]) {
-    let mut slopes = vec![0.0_f64; reports.len()];
+/// Sets what violations of bounds of 0 are relative to: the largest term of a trajectory constraint along the solution,
+/// equation (9.3a); where all terms are 0, and elsewhere than along a trajectory, the largest slope of the rows. `at` holds first derivatives where they are finite.
+fn set_sizes(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation), reports: &mut [ConstraintReport]) {
+    let (mut terms, mut slopes) = (vec![0.0_f64; reports.len()], vec![0.0_f64; reports.len()]);
+    let of_paths = |batch: &GroupBatch| matches!(nlp.model.structure.groups[batch.group].domain, Domain::Path { .. });
+    let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
+    for (_, (block, values)) in blocks.filter(|(batch, _)| of_paths(batch)) {
+        for e in 0..block.elements {
+            let variables = block.variables(e);
+            let slots: Vec<f64> = block
+                .map(e)
+                .chunks_exact(variables.len().max(1))
+                .map(|map| {
+                    let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
+                    let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
+                    value.abs().max(typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
+                })
+                .collect();
+            for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                let lane = row * block.elements + e;
+                let Target::Row(target) = block.target[lane] else { continue };
+                let RowKind::Constraint(constraint) = nlp.elements.rows[target as usize].kind else { continue };
+                let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
+                let term = (slope * slots[slot]).abs();
+                if term.is_finite() {
+                    terms[constraint] = terms[constraint].max(term);
+                }
+            }
+        }
+    }
     for (info, factor) in nlp.elements.rows.iter().zip(&outcome.row_factors) {
         if let (RowKind::Constraint(constraint), true) = (info.kind, factor.is_finite() && *factor > 0.0) {
             slopes[constraint] = slopes[constraint].max(1.0 / factor);
         }
     }
-    for (report, slope) in reports.iter_mut().zip(slopes).filter(|(_, slope)| *slope > 0.0) {
-        report.size = slope;
+    for (report, (term, slope)) in reports.iter_mut().zip(terms.into_iter().zip(slopes)) {
+        if let Some(size) = [term, slope].into_iter().find(|size| *size > 0.0) {
+            report.size = size;
+        }
     }
 }
+
+/// What is below this part of its typical size all along the solution is noise, and no size. A law: what the tolerance of
+/// 1e-8 leaves of it is then at most a thousandth.
+const SMALL: f64 = 1e-5;
 
 /// A bound that is smaller than this part of the size of its terms is what rounding left of 0: `sin(pi)` is 1.2e-16.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;

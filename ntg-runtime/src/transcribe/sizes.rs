@@ -141,9 +141,9 @@ impl Transcription<'_> {
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 // Elements of one block mostly have the same constraint and group.
                 let mut run: Option<((usize, usize), f64)> = None;
-                for e in 0..block.elements {
+                for (e, group) in group_of[slot].iter().enumerate() {
                     let Target::Row(target) = block.target[row * block.elements + e] else { continue };
-                    let Some(group) = group_of[slot][e] else { continue };
+                    let Some(group) = *group else { continue };
                     let weight = block.weight[row * block.elements + e];
                     let slope = (weight * values.jacobian[entry * block.elements + e]).abs();
                     let key = (constraint_of[target as usize], group);
