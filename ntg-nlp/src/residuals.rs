@@ -341,6 +341,14 @@ impl Residual {
             && self.complementarity <= tolerance
     }
 
+    /// Whether these residuals are better than others: less violation first, down to the acceptable one, then less of the
+    /// dual residual and of complementarity.
+    pub(crate) fn is_better_than(&self, other: &Self) -> bool {
+        let [own, others] = [self.primal, other.primal].map(|primal| primal.max(ACCEPTABLE));
+        let rest = |of: &Self| of.dual.max(of.complementarity);
+        own < others || (own == others && rest(self) < rest(other))
+    }
+
     /// The largest of the four.
     pub fn largest(&self) -> f64 {
         self.primal.max(self.dual).max(self.complementarity).max(self.worth)

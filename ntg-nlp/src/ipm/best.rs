@@ -7,7 +7,6 @@ use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::IterationRecord;
 use crate::residuals::ACCEPTABLE;
-use crate::residuals::Residual;
 
 /// A point with its slacks, multipliers and residuals.
 #[derive(Clone, Debug, Default)]
@@ -39,14 +38,6 @@ impl Point {
     }
 }
 
-/// Whether some residuals are better than others: less violation first, down to the acceptable one, then less of the
-/// other two.
-fn is_better(new: &Residual, old: &Residual) -> bool {
-    let [new_primal, old_primal] = [new.primal, old.primal].map(|primal| primal.max(ACCEPTABLE));
-    let rest = |of: &Residual| of.dual.max(of.complementarity);
-    new_primal < old_primal || (new_primal == old_primal && rest(new) < rest(old))
-}
-
 impl<N: Nlp> State<'_, N> {
     /// Keeps the present point where it is the best one so far. In restoration and penalty mode the gradient is not that
     /// of the program, and only violations count.
@@ -57,7 +48,7 @@ impl<N: Nlp> State<'_, N> {
         }
         let Self { nearest, x, slacks, .. } = self;
         let found = &record.residuals.scaled;
-        if found.primal.is_finite() && (!nearest.is_held || is_better(found, &nearest.record.residuals.scaled)) {
+        if found.primal.is_finite() && (!nearest.is_held || found.is_better_than(&nearest.record.residuals.scaled)) {
             nearest.keep(x, slacks, &record);
         }
     }

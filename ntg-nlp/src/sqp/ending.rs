@@ -2,12 +2,37 @@
 
 use super::run::Run;
 use crate::contract::{Nlp, NotFinite};
+use crate::options::Options;
 use crate::outcome::{IterationRecord, Outcome};
-use crate::residuals;
+use crate::residuals::{self, ACCEPTABLE};
 use crate::status::{Bounded, Status, Violation};
 use crate::stopping::Stage;
 
+/// The best acceptable point of a solve, with its multipliers and its record.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Best {
+    is_held: bool,
+    x: Vec<f64>,
+    row_multipliers: Vec<f64>,
+    bound_multipliers: Vec<f64>,
+    record: IterationRecord,
+}
+
 impl<N: Nlp> Run<'_, N> {
+    /// Keeps the present point where it is the best acceptable one so far.
+    fn keep_best(&mut self) {
+        let found = self.record.residuals.scaled;
+        let Options { constraint_tolerance, tolerance, .. } = *self.options;
+        let is_acceptable = found.is_acceptable(constraint_tolerance.max(ACCEPTABLE), tolerance.max(ACCEPTABLE));
+        let Self { best, x, row_multipliers, bound_multipliers, record, .. } = self;
+        if is_acceptable && (!best.is_held || found.is_better_than(&best.record.residuals.scaled)) {
+            best.x.clone_from(x);
+            best.row_multipliers.clone_from(row_multipliers);
+            best.bound_multipliers.clone_from(bound_multipliers);
+            (best.record, best.is_held) = (*record, true);
+        }
+    }
+
     /// Computes the residuals of the present point, (6.2) to (6.5).
     pub(super) fn measure(&mut self) {
         self.record = IterationRecord {
@@ -15,6 +40,7 @@ impl<N: Nlp> Run<'_, N> {
             residuals: self.program.residuals(&self.row_multipliers, &self.bound_multipliers),
             ..IterationRecord::default()
         };
+        self.keep_best();
     }
 
     /// Whether the solve is over, and why.
@@ -51,9 +77,14 @@ impl<N: Nlp> Run<'_, N> {
         found.into_iter().map(|(_, violation)| violation).collect()
     }
 
-    /// Ends the solve.
-    pub(super) fn outcome(mut self, status: Status) -> Outcome {
+    /// Ends the solve: at the best acceptable point where there is one and the present point is no solution.
+    pub(super) fn outcome(mut self, mut status: Status) -> Outcome {
         self.history.push(self.record);
+        if self.best.is_held && !matches!(status, Status::Solved | Status::Cancelled | Status::Unbounded) {
+            let Best { x, row_multipliers, bound_multipliers, record, .. } = std::mem::take(&mut self.best);
+            (self.x, self.row_multipliers, self.bound_multipliers) = (x, row_multipliers, bound_multipliers);
+            (self.record, status) = (record, Status::Acceptable);
+        }
         let (row_multipliers, bound_multipliers) =
             self.program.multipliers(&self.row_multipliers, &self.bound_multipliers);
         Outcome {

@@ -3,6 +3,7 @@
 
 use super::clarabel::Verdict;
 use super::elastic::{Elastic, Found};
+use super::ending::Best;
 use super::exact::ExactStep;
 use super::globalise::Merit;
 use super::scaled::Program;
@@ -77,6 +78,8 @@ pub(super) struct Run<'a, N: Nlp> {
     pub(super) falls: bool,
     pub(super) proximal: f64,
     pub(super) record: IterationRecord,
+    /// The best acceptable point so far.
+    pub(super) best: Best,
     pub(super) history: Vec<IterationRecord>,
     pub(super) iterations: usize,
     pub(super) qps: usize,
@@ -127,6 +130,7 @@ impl<'a, N: Nlp> Run<'a, N> {
             falls: false,
             proximal: LEAST_PROXIMAL,
             record: IterationRecord::default(),
+            best: Best::default(),
             history: Vec::with_capacity(options.max_iterations.min(HISTORY) + 1),
             iterations: 0,
             qps: 0,
