@@ -7,9 +7,9 @@ use super::tables::{multiplier_words, number, place_words, prose, with_unit};
 use crate::run::{Constraint, Independent, Run, Spec};
 
 /// Relative violations at points above this are violations.
-const VIOLATED: f64 = 1e-6;
+pub(super) const VIOLATED: f64 = 1e-6;
 /// Relative violations between points above this are worth a mark.
-const BETWEEN: f64 = 1e-4;
+pub(super) const BETWEEN: f64 = 1e-4;
 
 /// How a constraint ended, from bad to good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
