@@ -4,13 +4,14 @@
 //! small one of ours for maps) and its data.
 
 mod data;
+mod ending;
 mod estimate;
 mod extremes;
 mod spec;
 mod study;
 mod tables;
 
-pub use spec::ending;
+pub use ending::ending;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -90,7 +91,7 @@ fn head(run: &Run) -> Markup {
         header {
             div.bar {
                 h1 { (run.problem) }
-                (spec::status(run))
+                (ending::status(run))
                 button #theme type="button" title="light or dark" { "◐" }
             }
             @let doc = run.doc.split("\n\n").next().unwrap_or("");
@@ -109,7 +110,8 @@ fn summary(run: &Run) -> Markup {
     let unit = &run.objective_unit;
     html! {
         section #summary {
-            (spec::missed(run))
+            (ending::cost(run))
+            (ending::missed(run))
             @if !run.advice.is_empty() { p.advice { "Try: " (tables::prose(&run.advice)) } }
             dl.cards {
                 (card("objective", &tables::with_unit(run.objective, unit), "as discretised"))
