@@ -12,7 +12,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use crate::figure::{Kind, Line, Panel, Shape};
+use crate::figure::{Kind, Line, Panel, Shape, least_span};
 
 /// A rectangle of a picture to draw in.
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -265,12 +265,18 @@ fn ranges(panel: &Panel) -> (Range<f64>, Range<f64>) {
     let points = || panel.lines.iter().flat_map(|line| &line.points).filter(|(x, y)| x.is_finite() && y.is_finite());
     let beneath = || panel.shapes.iter().filter(|shape| shape.kind == Kind::Place).flat_map(|shape| &shape.points);
     let xs = span(points().map(|p| p.0), 0.0);
-    let values = span(points().map(|p| p.1), 0.0);
+    // What is nearly constant has room around it, for its limits, too.
+    let least = least_span(panel);
+    let level = |range: Range<f64>| {
+        let (middle, half) = (0.5 * (range.start + range.end), 0.5 * least.max(range.end - range.start));
+        middle - half..middle + half
+    };
+    let values = level(span(points().map(|p| p.1), 0.0));
     let reach = 3.0 * (values.end - values.start);
     // A limit that is far away would flatten what there is to see.
     let near = panel.limits.iter().map(|limit| limit.0);
     let near = near.filter(|limit| *limit > values.start - reach && *limit < values.end + reach);
-    let ys = span(points().map(|p| p.1).chain(near), 0.06);
+    let ys = level(span(points().map(|p| p.1).chain(near), 0.06));
     if !panel.equal {
         return (xs, ys);
     }

@@ -33,7 +33,8 @@ function NtgMap(place, chart, { colour, dash, number }) {
   const home = () => {
     const xs = all.map((p) => p[0]), ys = all.map((p) => p[1]);
     const grow = (low, high) => { const pad = 0.06 * (high - low) || Math.max(1e-3, 0.1 * Math.abs(low)); return [low - pad, high + pad]; };
-    return { x: grow(Math.min(...xs), Math.max(...xs)), y: grow(Math.min(...ys), Math.max(...ys)) };
+    const flat = (low, high) => { const lack = Math.max(0, chart.least - (high - low)) / 2; return [low - lack, high + lack]; };
+    return { x: grow(Math.min(...xs), Math.max(...xs)), y: grow(...flat(Math.min(...ys), Math.max(...ys))) };
   };
   let view = home(), width = 0, height = 0, movers = [], now = null;
 

@@ -56,7 +56,11 @@ pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
                         }
                     } }
                 } }
-                p.quiet { "Of equally spaced samples; of what has limits, also of the finer grid on which they are checked. Angles are unwrapped, but for their limits." }
+                p.quiet {
+                    "Of equally spaced samples; of what has limits, also of the finer grids on which they are checked. "
+                    "Such a sample may lie further beyond a limit than any point of the check, whose violations stand elsewhere. "
+                    "Angles are unwrapped, but for their limits."
+                }
             }
         }
     }
@@ -134,9 +138,12 @@ fn quantity(run: &Run, path: &str, series: &Series, used: &mut Vec<(usize, usize
     used.extend(limits.iter().map(|limit| limit.place));
     let shown = unwrapped(series);
     let mut points: Vec<(f64, f64)> = series.t.iter().copied().zip(shown.iter().copied()).collect();
-    let members = || limits.iter().map(|limit| &run.constraints[limit.place.0].members[limit.place.1]);
     if shown == series.value {
-        points.extend(members().flat_map(|member| member.t.iter().copied().zip(member.value.iter().copied())));
+        let of = |limit: &Limit| {
+            let constraint = &run.constraints[limit.place.0];
+            limits::points(constraint, &constraint.members[limit.place.1])
+        };
+        points.extend(limits.iter().flat_map(of));
     }
     let [least, most] = range(&points)?;
     let held = |t: f64| limits.iter().any(|limit| limit.phase.is_empty()) || during(run, &limits, path, t);
@@ -158,12 +165,11 @@ fn own(run: &Run, places: &[(usize, usize)]) -> Option<Extremes> {
     let limits = places.iter().filter(|place| limits::is_limit(constraint, member(place)));
     let nearest = limits.map(|place| Limit::new(run, *place, &[])).min_by(|a, b| a.room.total_cmp(&b.room))?;
     let member = member(&nearest.place);
-    let points: Vec<(f64, f64)> = member.t.iter().copied().zip(member.value.iter().copied()).collect();
+    let points = limits::points(constraint, member);
     let [least, most] = range(&points)?;
-    let name = match member.name.as_str() {
-        "" => constraint.name.clone(),
-        member => format!("{} {member}", constraint.name),
-    };
+    // A template's name begins with its phase.
+    let said = member.name.is_empty() || constraint.name.starts_with(&format!("{}.", member.name));
+    let name = if said { constraint.name.clone() } else { format!("{} {}", constraint.name, member.name) };
     Some(Extremes { name, unit: constraint.unit.clone(), least, most, limits: vec![nearest], always: true })
 }
 
@@ -227,11 +233,13 @@ mod tests {
         };
         let members = vec![fine(&[-4.0, 4.0, 4.1, 0.0], "[1]"), fine(&[-0.5, 0.5, 0.51, 0.0], "[2]")];
         let mut declared = about("a[2] in -4 .. 4 [m/s^2]", members);
-        declared.between = Some(Worst { violation: 0.1, relative: 0.025, ..Worst::default() });
+        // The check has a grid of its own.
+        declared.between =
+            Some(Worst { violation: 0.125, relative: 0.025, value: 4.125, t: Some(1.05), ..Worst::default() });
         run.constraints = vec![declared];
         let rows = extremes(&run, false);
         assert_eq!(rows.len(), 2);
-        assert_eq!((rows[0].most.0, words(&rows[0]).1.as_str()), (4.1, "between: 0.1 beyond"));
+        assert_eq!((rows[0].most.0, words(&rows[0]).1.as_str()), (4.125, "between: 0.125 beyond"));
         assert_eq!((rows[1].most.0, words(&rows[1]).1.as_str()), (0.51, "inactive: 3.49 away"));
     }
 

@@ -31,7 +31,8 @@ impl Limit {
     pub(super) fn new(run: &Run, place: (usize, usize), more: &[f64]) -> Self {
         let constraint = &run.constraints[place.0];
         let member = &constraint.members[place.1];
-        let finite = || member.value.iter().chain(more).copied().filter(|value| value.is_finite());
+        let known: Vec<f64> = points(constraint, member).into_iter().map(|(_, value)| value).collect();
+        let finite = || known.iter().chain(more).copied().filter(|value| value.is_finite());
         let below = member.lower.map(|bound| finite().fold(f64::INFINITY, f64::min) - bound);
         let above = member.upper.map(|bound| bound - finite().fold(f64::NEG_INFINITY, f64::max));
         let room = below.into_iter().chain(above).fold(f64::INFINITY, f64::min);
@@ -39,6 +40,33 @@ impl Limit {
         let phase = split(&member.name).0.to_owned();
         Self { place, phase, lower, upper, room, state: member_state(constraint, member, room) }
     }
+}
+
+/// Times and values of a member: its grid, and the worst of its constraint where that is this member's. That is checked
+/// on a grid of its own.
+pub(super) fn points(constraint: &Constraint, member: &Member) -> Vec<(f64, f64)> {
+    let mut found: Vec<(f64, f64)> = member.t.iter().copied().zip(member.value.iter().copied()).collect();
+    let (phase, own) =
+        (split(&member.name).0, Series { t: member.t.clone(), value: member.value.clone(), ..Series::default() });
+    for worst in [&constraint.points, &constraint.between].into_iter().flatten().filter(|worst| worst.phase == phase) {
+        let Some(t) = worst.t else { continue };
+        let beyond = member
+            .lower
+            .map_or(0.0, |bound| bound - worst.value)
+            .max(member.upper.map_or(0.0, |bound| worst.value - bound));
+        let is_violation = worst.violation > 0.0 && (beyond - worst.violation).abs() <= ROUNDED * beyond.abs();
+        let single = constraint.members.len() == 1;
+        if is_violation && (single || (at(&own, t) - worst.value).abs() <= ALIKE * size(&member.value)) {
+            found.push((t, worst.value));
+        }
+    }
+    found
+}
+
+/// The range of finite values.
+fn size(values: &[f64]) -> f64 {
+    let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().filter(|v| v.is_finite()).reduce(pick);
+    fold(f64::max).zip(fold(f64::min)).map_or(f64::NAN, |(high, low)| high - low)
 }
 
 /// How one member ended; the state of its constraint is that of the worst of them.
@@ -131,10 +159,9 @@ fn is_member(own: Option<i64>, bracket: &str, (indices, members): (&[i64], usize
 fn is_alike(series: &Series, member: &Member) -> bool {
     let pairs = member.t.iter().zip(&member.value).map(|(t, value)| (at(series, *t), *value));
     let pairs: Vec<(f64, f64)> = pairs.filter(|(own, value)| own.is_finite() && value.is_finite()).collect();
-    let fold = |pick: fn(f64, f64) -> f64| series.value.iter().copied().filter(|v| v.is_finite()).reduce(pick);
-    let (Some(low), Some(high)) = (fold(f64::min), fold(f64::max)) else { return false };
+    let most = series.value.iter().copied().filter(|value| value.is_finite()).map(f64::abs).fold(0.0, f64::max);
     let apart = pairs.iter().map(|(own, value)| (own - value).abs()).sum::<f64>() / pairs.len() as f64;
-    apart <= ALIKE * (high - low) + ROUNDED * low.abs().max(high.abs())
+    apart <= ALIKE * size(&series.value) + ROUNDED * most
 }
 
 /// The value of a quantity between its samples.
