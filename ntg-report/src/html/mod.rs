@@ -161,3 +161,16 @@ fn charts(anchor: &str, title: &str, ids: &[usize], independent: &Independent) -
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_users_write_wraps_wherever_it_may_be_longer_than_a_narrow_page() {
+        for selector in [".u-legend th, .u-legend td {", "p, li, h2 {", ".status {", "td.name {", "h1 {"] {
+            let rule = STYLE.split(selector).nth(1).and_then(|rest| rest.split('}').next());
+            assert!(rule.is_some_and(|rule| rule.contains("overflow-wrap: anywhere")), "{selector} {rule:?}");
+        }
+    }
+}
