@@ -57,9 +57,9 @@ pub(super) fn cost(run: &Run) -> Markup {
     html! {
         p.advice {
             "Finely integrated, the objective is " (with_unit(run.objective_fine, unit)) " instead of "
-            (with_unit(run.objective, unit)) ": the two differ by " (number((1e3 * apart).round() / 10.0)) " % of the larger. "
-            "The points are too few for its integrals, and the optimum may be one of these points alone. More points or "
-            "intervals help: " code { "ntg solve --refine " (REFINED) } " adds intervals until both agree."
+            (with_unit(run.objective, unit)) ": the two differ by "
+            (number((1e3 * apart).round() / 10.0)) " % of the larger. The points are too few for its integrals, and the "
+            "optimum may be one of these points alone. More points or intervals help: " code { "ntg solve --refine " (REFINED) } " adds intervals until both agree."
         }
     }
 }
@@ -73,9 +73,12 @@ pub(super) fn missed(run: &Run) -> Markup {
         @if let (true, Some(worst)) = (run.has_solution(), missed.first()) {
             p.advice {
                 @if missed.len() == 1 { code { (worst.name) } " is missed between the points" }
-                @else { (missed.len()) " constraints are missed between the points, most of all " code { (worst.name) } }
+                @else {
+                    (missed.len()) " constraints are missed between the points, most of all " code { (worst.name) }
+                }
                 @if let Some(between) = &worst.between {
-                    " by " (with_unit(between.violation, &worst.unit)) (place_words(between.t, &between.phase, &run.independent))
+                    " by " (with_unit(between.violation, &worst.unit))
+                    (place_words(between.t, &between.phase, &run.independent))
                 }
                 ". " code { "ntg solve --between refine --between-tolerance " (tolerance(relative(worst))) }
                 " adds intervals until that is small."
