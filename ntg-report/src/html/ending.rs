@@ -58,8 +58,9 @@ pub(super) fn cost(run: &Run) -> Markup {
         p.advice {
             "Finely integrated, the objective is " (with_unit(run.objective_fine, unit)) " instead of "
             (with_unit(run.objective, unit)) ": the two differ by "
-            (number((1e3 * apart).round() / 10.0)) " % of the larger. The points are too few for its integrals, and the "
-            "optimum may be one of these points alone. More points or intervals help: " code { "ntg solve --refine " (REFINED) } " adds intervals until both agree."
+            (number((1e3 * apart).round() / 10.0)) " % of the larger. The points are too few for its "
+            "integrals, and the optimum may be one of these points alone. More points or intervals help: "
+            code { "ntg solve --refine " (REFINED) } " adds intervals until both agree."
         }
     }
 }

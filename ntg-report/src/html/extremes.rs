@@ -58,7 +58,8 @@ pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
                 } }
                 p.quiet {
                     "Of equally spaced samples; of what has limits, also of the two finer grids on which "
-                    "limits are drawn and checked. Violations elsewhere on this page are those of the check alone, and may be a little smaller. "
+                    "limits are drawn and checked. Violations elsewhere on this page are those of the check alone, "
+                    "and may be a little smaller. "
                     "Angles are unwrapped, but for their limits."
                 }
             }
