@@ -12,11 +12,13 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use crate::figure::{Kind, Line, Panel, Shape};
+use crate::figure::{Kind, Line, Panel, Shape, least_span};
 
 /// A rectangle of a picture to draw in.
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+/// A place in tenths of a pixel, from the left and from the top.
+type Pixel = (i32, i32);
 type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
 /// How many units of the drawing a pixel is.
@@ -206,10 +208,25 @@ fn draw_shape(chart: &mut Chart<'_>, shape: &Shape, (xs, ys): (&Range<f64>, &Ran
     if let Some(at) = at {
         // Above the middle of an area, where a place may have its own name.
         let offset = if shape.kind == Kind::Area { (-200, -400) } else { (100, -80) };
-        let label = Text::new(shape.name.clone(), offset, font(200).color(&colour));
-        chart.draw_series([EmptyElement::at(at) + label])?;
+        let style = font(200).color(&colour);
+        let size = style.font.box_size(&shape.name)?;
+        let size = (i32::try_from(size.0)?, i32::try_from(size.1)?);
+        let corner = |x: f64, y: f64| chart.backend_coord(&(x, y));
+        let (least, most) = (corner(xs.start, ys.end), corner(xs.end, ys.start));
+        let offset = within(corner(at.0, at.1), offset, size, (least, most));
+        chart.draw_series([EmptyElement::at(at) + Text::new(shape.name.clone(), offset, style)])?;
     }
     Ok(())
+}
+
+/// How far from a point a name of a size stands, so that the frame does not cut it.
+fn within(at: Pixel, offset: Pixel, size: Pixel, (least, most): (Pixel, Pixel)) -> Pixel {
+    /// Between a name and the frame.
+    const GAP: i32 = 40;
+    let one = |at: i32, offset: i32, size: i32, (least, most): (i32, i32)| {
+        (at + offset).min(most - GAP - size).max(least + GAP) - at
+    };
+    (one(at.0, offset.0, size.0, (least.0, most.0)), one(at.1, offset.1, size.1, (least.1, most.1)))
 }
 
 fn draw_line(chart: &mut Chart<'_>, index: usize, line: &Line) -> Drawn {
@@ -265,12 +282,18 @@ fn ranges(panel: &Panel) -> (Range<f64>, Range<f64>) {
     let points = || panel.lines.iter().flat_map(|line| &line.points).filter(|(x, y)| x.is_finite() && y.is_finite());
     let beneath = || panel.shapes.iter().filter(|shape| shape.kind == Kind::Place).flat_map(|shape| &shape.points);
     let xs = span(points().map(|p| p.0), 0.0);
-    let values = span(points().map(|p| p.1), 0.0);
+    // What is nearly constant has room around it, for its limits, too.
+    let least = least_span(panel);
+    let level = |range: Range<f64>| {
+        let (middle, half) = (0.5 * (range.start + range.end), 0.5 * least.max(range.end - range.start));
+        middle - half..middle + half
+    };
+    let values = level(span(points().map(|p| p.1), 0.0));
     let reach = 3.0 * (values.end - values.start);
     // A limit that is far away would flatten what there is to see.
     let near = panel.limits.iter().map(|limit| limit.0);
     let near = near.filter(|limit| *limit > values.start - reach && *limit < values.end + reach);
-    let ys = span(points().map(|p| p.1).chain(near), 0.06);
+    let ys = level(span(points().map(|p| p.1).chain(near), 0.06));
     if !panel.equal {
         return (xs, ys);
     }
@@ -319,4 +342,34 @@ fn number(x: f64, length: f64) -> String {
     let decimals = (1.0 - (length / 10.0).log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{x:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_frame_cuts_no_name_of_a_map() {
+        let frame = ((100, 100), (1000, 900));
+        assert_eq!(within((500, 500), (20, -30), (200, 50), frame), (20, -30), "there is room");
+        assert_eq!(within((980, 110), (20, -30), (200, 50), frame), (-220, 30), "above and to the right there is none");
+        let shape =
+            |kind, name: &str, points: &[(f64, f64)]| Shape { kind, name: name.to_owned(), points: points.to_vec() };
+        let panel = Panel {
+            equal: true,
+            lines: vec![Line { points: vec![(0.0, 0.0), (10.0, 10.0)], times: vec![0.0, 1.0], ..Line::default() }],
+            shapes: vec![
+                shape(Kind::Place, "a landing place with a long name", &[(10.0, 10.0)]),
+                shape(Kind::Area, "an area with a long name", &[(9.5, 4.0), (10.5, 4.0), (10.5, 5.0), (9.5, 4.0)]),
+            ],
+            ..Panel::default()
+        };
+        let picture = svg("title", "sentence", &[panel]).expect("a picture");
+        for name in ["a landing place with a long name", "an area with a long name"] {
+            let before = picture.split(name).next().and_then(|before| before.rsplit("<text x=\"").next());
+            let x: u32 = before.and_then(|text| text.split('"').next()).and_then(|x| x.parse().ok()).expect("a place");
+            let (width, _) = font(200).box_size(name).expect("a width");
+            assert!(x + width < WIDTH - 400, "{name} ends at {}", x + width);
+        }
+    }
 }

@@ -176,6 +176,13 @@ pub fn unwrapped(series: &Series) -> Vec<f64> {
     moved.collect()
 }
 
+/// What an ordinate spans at least. Seven digits are printed and no one is to read the last three of them off a picture:
+/// what changes by less than a part in 10^4 is constant but for what a solve leaves of it.
+pub fn least_span(panel: &Panel) -> f64 {
+    let values = panel.lines.iter().flat_map(|line| &line.points).map(|(_, y)| y.abs());
+    1e-4 * values.filter(|size| size.is_finite()).fold(0.0, f64::max)
+}
+
 /// What is proved of a quantity: a line that no value is below, and one that none is above.
 fn bands(runs: &Runs<'_>, run: usize, (path, series): (&str, &Series)) -> Vec<Line> {
     if series.bands.is_empty() {
@@ -327,6 +334,16 @@ pub fn convergence(runs: &Runs<'_>) -> Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_nearly_constant_has_a_least_span_and_other_curves_their_own() {
+        let line = |values: &[f64]| Line { points: values.iter().map(|y| (0.0, *y)).collect(), ..Line::default() };
+        let panel = Panel { lines: vec![line(&[249.9999, 250.0, f64::NAN])], ..Panel::default() };
+        assert_eq!(least_span(&panel), 0.025);
+        let panel = Panel { lines: vec![line(&[-0.5, 1.0]), line(&[0.0])], ..Panel::default() };
+        assert_eq!(least_span(&panel), 1e-4);
+        assert_eq!(least_span(&Panel::default()), 0.0);
+    }
 
     #[test]
     fn a_wrapped_angle_goes_on_and_what_was_not_wrapped_stays() {

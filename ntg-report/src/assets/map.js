@@ -33,7 +33,8 @@ function NtgMap(place, chart, { colour, dash, number }) {
   const home = () => {
     const xs = all.map((p) => p[0]), ys = all.map((p) => p[1]);
     const grow = (low, high) => { const pad = 0.06 * (high - low) || Math.max(1e-3, 0.1 * Math.abs(low)); return [low - pad, high + pad]; };
-    return { x: grow(Math.min(...xs), Math.max(...xs)), y: grow(Math.min(...ys), Math.max(...ys)) };
+    const flat = (low, high) => { const lack = Math.max(0, chart.least - (high - low)) / 2; return [low - lack, high + lack]; };
+    return { x: grow(Math.min(...xs), Math.max(...xs)), y: grow(...flat(Math.min(...ys), Math.max(...ys))) };
   };
   let view = home(), width = 0, height = 0, movers = [], now = null;
 
@@ -59,6 +60,13 @@ function NtgMap(place, chart, { colour, dash, number }) {
     for (let v = Math.ceil(low / step) * step; v <= high; v += step) found.push(Math.abs(v) < step * 1e-9 ? 0 : v);
     return found;
   };
+  // A name beside a point, moved as far as it takes to lie within the frame.
+  const named = (f, kind, name, [x, y, anchor], parent) => {
+    const text = make("text", { class: `${kind}name`, y: Math.min(Math.max(y, margin.top + 12), margin.top + f.h - 4) }, parent);
+    text.textContent = name;
+    const size = text.getComputedTextLength(), share = { start: 0, middle: 0.5, end: 1 }[anchor];
+    text.setAttribute("x", Math.max(Math.min(x - share * size, margin.left + f.w - 4 - size), margin.left + 4));
+  };
   // Beneath the tracks: areas and borders that limit them, lines of equal height, the ground, and places.
   const beneath = (f, inside, names) => {
     for (const [kind, name, x, y] of chart.shapes) {
@@ -67,8 +75,8 @@ function NtgMap(place, chart, { colour, dash, number }) {
         make("path", { class: "place", d: `M${px} ${py - 5}l4.5 8h-9z` }, inside);
         // Before its mark where the picture ends too soon.
         const ends = px + 10 + 6.5 * name.length > margin.left + f.w;
-        const text = make("text", { class: "placename", x: px + (ends ? -7 : 7), y: py + 4, "text-anchor": ends ? "end" : "start" }, names);
-        text.textContent = name;
+        const within = px > margin.left && px < margin.left + f.w && py > margin.top && py < margin.top + f.h;
+        if (within) named(f, kind, name, [px + (ends ? -7 : 7), py + 4, ends ? "end" : "start"], names);
         continue;
       }
       let d = path({ x, y }, f);
@@ -82,8 +90,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
       const middle = (k) => seen.reduce((sum, p) => sum + p[k], 0) / seen.length;
       // An area's name is above its middle, where a place may have its own.
       const [px, py] = kind === "area" ? [middle(0), middle(1) - 14] : seen[Math.floor(seen.length / 3)];
-      const text = make("text", { class: `${kind}name`, x: px, y: py, "text-anchor": kind === "area" ? "middle" : "start" }, names);
-      text.textContent = name;
+      named(f, kind, name, [px, py, kind === "area" ? "middle" : "start"], names);
     }
   };
   const path = (line, f) => {

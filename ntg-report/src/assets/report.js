@@ -66,10 +66,13 @@
   // Limits that are near enough to the values belong into the picture.
   const spanned = (chart) => (u, low, high) => {
     if (low == null) return [0, 1];
+    const flat = high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high));
+    // What is nearly constant is drawn so: its last digits are no signal.
+    const lack = flat ? 0 : Math.max(0, chart.least - (high - low)) / 2;
+    [low, high] = [low - lack, high + lack];
     const reach = 3 * (high - low);
     for (const [at] of chart.limits) if (at > low - reach && at < high + reach) { low = Math.min(low, at); high = Math.max(high, at); }
-    const flat = high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high));
-    const pad = flat ? Math.max(0.1 * Math.abs(low), 1e-3) : 0.06 * (high - low);
+    const pad = high > low && !(flat && high - low <= chart.least) ? 0.06 * (high - low) : Math.max(0.1 * Math.abs(low), 1e-3);
     return [low - pad, high + pad];
   };
 

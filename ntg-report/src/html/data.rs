@@ -10,8 +10,10 @@ const BUDGET: usize = 60_000;
 /// Points of a line at most, and at least.
 const MOST: usize = 401;
 const LEAST: usize = 24;
-/// Significant digits that a screen can show.
+/// Digits after the first one that a screen can show of a curve that begins near zero,
 const DIGITS: usize = 6;
+/// and at most of one that is nearly constant: its axis spans a part in 10^4.
+const MOST_DIGITS: usize = 10;
 
 /// Which charts there are, by section, and their data.
 pub(super) struct Charts {
@@ -77,6 +79,7 @@ fn chart(panel: &Panel, points: usize) -> Value {
         "x": panel.x,
         "y": panel.y,
         "equal": panel.equal,
+        "least": figure::least_span(panel),
         "lines": panel.lines.iter().map(|line| self::line(line, points)).collect::<Vec<_>>(),
         "limits": panel.limits.iter().map(|(at, name)| json!([short(*at), name])).collect::<Vec<_>>(),
         "shapes": panel.shapes.iter().map(shape).collect::<Vec<_>>(),
@@ -142,11 +145,12 @@ fn space(space: &Space, points: usize) -> Value {
 fn line(line: &Line, points: usize) -> Value {
     let keep = kept(line.points.len(), points);
     let of = |pick: &dyn Fn(usize) -> f64| keep.iter().map(|i| short(pick(*i))).collect::<Vec<_>>();
+    let digits = digits(line.points.iter().map(|point| point.1));
     let mut value = json!({
         "name": line.name,
         "run": line.run,
         "x": of(&|i| line.points[i].0),
-        "y": of(&|i| line.points[i].1),
+        "y": keep.iter().map(|i| rounded(line.points[*i].1, digits)).collect::<Vec<_>>(),
     });
     if !line.times.is_empty() {
         value["t"] = json!(of(&|i| line.times[i]));
@@ -163,12 +167,41 @@ fn kept(count: usize, most: usize) -> Vec<usize> {
     (0..most).map(|i| i * (count - 1) / (most - 1)).collect()
 }
 
+/// Digits after the first one so that rounding is no step of a curve: as many more as its values have in common.
+fn digits(values: impl Iterator<Item = f64>) -> usize {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let common = (low.abs().max(high.abs()) / (high - low)).log10();
+    // NaN, of a constant as of nothing, is no digit.
+    DIGITS + (common.max(0.0).ceil() as usize).min(MOST_DIGITS - DIGITS)
+}
+
 /// A number with as many digits as a screen can show; null where it is not finite.
 fn short(value: f64) -> Value {
-    let text = format!("{value:.digits$e}", digits = DIGITS);
+    rounded(value, DIGITS)
+}
+
+fn rounded(value: f64, digits: usize) -> Value {
+    let text = format!("{value:.digits$e}");
     let rounded: f64 = text.parse().unwrap_or(f64::NAN);
     if rounded.is_finite() && rounded == rounded.trunc() && rounded.abs() < 1e9 {
         return json!(rounded as i64);
     }
     json!(rounded)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_is_no_step_of_a_nearly_constant_curve() {
+        let points: Vec<(f64, f64)> = (0..100).map(|k| (f64::from(k), 250.0 - 1e-8 * f64::from(k))).collect();
+        let drawn = line(&Line { points: points.clone(), ..Line::default() }, MOST);
+        let values: Vec<f64> = drawn["y"].as_array().expect("numbers").iter().filter_map(Value::as_f64).collect();
+        // A thousandth of what the axis spans at least.
+        assert!(values.iter().zip(&points).all(|(drawn, (_, exact))| (drawn - exact).abs() < 1e-3 * 0.025 * 1e-2));
+        assert_eq!((digits([0.0, 1.0].into_iter()), digits([250.0, 250.0].into_iter())), (DIGITS, MOST_DIGITS));
+        assert_eq!((digits([9.0, 10.0].into_iter()), digits([].into_iter())), (DIGITS + 1, DIGITS));
+    }
 }

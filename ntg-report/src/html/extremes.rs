@@ -2,10 +2,14 @@
 
 use maud::{Markup, html};
 
-use super::spec::{State, state};
+mod limits;
+
+use limits::Limit;
+
+use super::spec::State;
 use super::tables::{number, with_unit};
-use crate::figure::{Runs, base, unwrapped};
-use crate::run::{Constraint, Member, Run, Series};
+use crate::figure::{Runs, unwrapped};
+use crate::run::{Run, Series};
 
 /// One quantity of one run.
 struct Extremes {
@@ -13,9 +17,9 @@ struct Extremes {
     unit: String,
     least: (f64, f64),
     most: (f64, f64),
-    lower: Option<f64>,
-    upper: Option<f64>,
-    state: State,
+    limits: Vec<Limit>,
+    /// Whether the limits together hold at all times.
+    always: bool,
 }
 
 /// The table; nothing where nothing is over time.
@@ -52,31 +56,55 @@ pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
                         }
                     } }
                 } }
-                p.quiet { "Of equally spaced samples, and on the finer grid for constraints. Angles are unwrapped." }
+                p.quiet {
+                    "Of equally spaced samples; of what has limits, also of the two finer grids on which "
+                    "limits are drawn and checked. Violations elsewhere on this page are those of the check alone, "
+                    "and may be a little smaller. "
+                    "Angles are unwrapped, but for their limits."
+                }
             }
         }
     }
 }
 
+/// Lower and upper bound in words; with the phase where they do not hold at all times.
 fn limits(row: &Extremes) -> String {
-    match (row.lower, row.upper) {
-        (Some(lower), Some(upper)) => format!("{} .. {}", number(lower), number(upper)),
-        (Some(lower), None) => format!("≥ {}", number(lower)),
-        (None, Some(upper)) => format!("≤ {}", number(upper)),
-        (None, None) => String::new(),
+    let mut phases: Vec<(&str, Option<f64>, Option<f64>)> = vec![];
+    for limit in &row.limits {
+        match phases.iter_mut().find(|(phase, ..)| *phase == limit.phase) {
+            Some((_, lower, upper)) => {
+                *lower = lower.iter().copied().chain(limit.lower).reduce(f64::max);
+                *upper = upper.iter().copied().chain(limit.upper).reduce(f64::min);
+            }
+            None => phases.push((&limit.phase, limit.lower, limit.upper)),
+        }
+    }
+    let words = |(phase, lower, upper): &(&str, Option<f64>, Option<f64>), told: bool| {
+        let bounds = match (lower, upper) {
+            (Some(lower), Some(upper)) => format!("{} .. {}", number(*lower), number(*upper)),
+            (Some(lower), None) => format!("≥ {}", number(*lower)),
+            (None, Some(upper)) => format!("≤ {}", number(*upper)),
+            (None, None) => String::new(),
+        };
+        if told && !phase.is_empty() { format!("{bounds} in {phase}") } else { bounds }
+    };
+    match phases.first() {
+        Some(first) if row.always && phases.iter().all(|own| (own.1, own.2) == (first.1, first.2)) => {
+            words(first, false)
+        }
+        _ => phases.iter().map(|own| words(own, true)).collect::<Vec<_>>().join(", "),
     }
 }
 
 fn nearest(row: &Extremes) -> Markup {
-    let below = row.lower.map(|lower| row.least.0 - lower);
-    let above = row.upper.map(|upper| upper - row.most.0);
-    let Some(room) = [below, above].into_iter().flatten().min_by(f64::total_cmp) else { return html! {} };
+    let finite = row.limits.iter().filter(|limit| limit.room.is_finite());
+    let Some(limit) = finite.min_by(|a, b| a.room.total_cmp(&b.room)) else { return html! {} };
     html! {
-        mark class=(row.state.class()) {
-            @match row.state {
-                State::Violated | State::Between if room < 0.0 => { (with_unit(-room, &row.unit)) " beyond" }
-                State::Active | State::Violated | State::Between => { "reached" }
-                _ => { (with_unit(room, &row.unit)) " away" }
+        mark class=(limit.state.class()) {
+            @match limit.state {
+                State::Violated | State::Between => { (with_unit(-limit.room, &row.unit)) " beyond" }
+                State::Active => { "reached" }
+                _ => { (with_unit(limit.room, &row.unit)) " away" }
             }
         }
     }
@@ -87,99 +115,148 @@ fn extremes(run: &Run, all: bool) -> Vec<Extremes> {
     let quantities = run.outputs.iter().chain(&run.lets).filter(|(_, series)| all || !series.helper);
     let mut rows: Vec<Extremes> =
         quantities.filter_map(|(path, series)| quantity(run, path, series, &mut used)).collect();
-    let others = run.constraints.iter().enumerate().filter(|(index, _)| !used.contains(index));
-    rows.extend(others.filter_map(|(_, constraint)| own(constraint)));
+    let unused = |index: usize| {
+        let members = 0..run.constraints[index].members.len();
+        members.map(|number| (index, number)).filter(|place| !used.contains(place)).collect::<Vec<_>>()
+    };
+    rows.extend((0..run.constraints.len()).filter_map(|index| own(run, &unused(index))));
     rows
 }
 
 /// The least and the greatest with their times; none where nothing is finite.
-fn range(t: &[f64], values: &[f64]) -> Option<[(f64, f64); 2]> {
-    let finite = || values.iter().zip(t).filter(|(value, _)| value.is_finite());
-    let least = finite().min_by(|a, b| a.0.total_cmp(b.0))?;
-    let most = finite().max_by(|a, b| a.0.total_cmp(b.0))?;
+fn range(points: &[(f64, f64)]) -> Option<[(f64, f64); 2]> {
+    let finite = || points.iter().filter(|(_, value)| value.is_finite()).map(|(t, value)| (*value, *t));
+    let least = finite().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let most = finite().max_by(|a, b| a.0.total_cmp(&b.0))?;
     // What rounding has left of a zero is zero.
     let size = least.0.abs().max(most.0.abs());
     let shown = |value: f64| if value.abs() < 1e-10 * size { 0.0 } else { value };
-    Some([(shown(*least.0), *least.1), (shown(*most.0), *most.1)])
+    Some([(shown(least.0), least.1), (shown(most.0), most.1)])
 }
 
-fn quantity(run: &Run, path: &str, series: &Series, used: &mut Vec<usize>) -> Option<Extremes> {
-    let [least, most] = range(&series.t, &unwrapped(series))?;
-    let mut row = Extremes {
-        name: path.to_owned(),
-        unit: series.unit.clone(),
-        least,
-        most,
-        lower: None,
-        upper: None,
-        state: State::Inactive,
-    };
-    for (index, constraint) in run.constraints.iter().enumerate().filter(|(_, c)| is_limit(c)) {
-        if constraint.unit != series.unit || !is_about(&constraint.text, base(path)) {
-            continue;
-        }
-        // Of a family, the member that has these values.
-        let size = (most.0 - least.0).max(1e-6 * most.0.abs().max(least.0.abs())).max(f64::MIN_POSITIVE);
-        let same = |member: &&Member| {
-            let found = range(&member.t, &member.value);
-            found.is_some_and(|[low, high]| (low.0 - least.0).abs() + (high.0 - most.0).abs() < 0.02 * size)
+fn quantity(run: &Run, path: &str, series: &Series, used: &mut Vec<(usize, usize)>) -> Option<Extremes> {
+    let limits = limits::of(run, path, series);
+    used.extend(limits.iter().map(|limit| limit.place));
+    let shown = unwrapped(series);
+    let mut points: Vec<(f64, f64)> = series.t.iter().copied().zip(shown.iter().copied()).collect();
+    if shown == series.value {
+        let of = |limit: &Limit| {
+            let constraint = &run.constraints[limit.place.0];
+            limits::points(constraint, &constraint.members[limit.place.1])
         };
-        let Some(member) = constraint.members.iter().find(same) else { continue };
-        let tighter = |a: Option<f64>, b: Option<f64>, pick: fn(f64, f64) -> f64| match (a, b) {
-            (Some(a), Some(b)) => Some(pick(a, b)),
-            (a, b) => a.or(b),
-        };
-        row.lower = tighter(row.lower, member.lower, f64::max);
-        row.upper = tighter(row.upper, member.upper, f64::min);
-        row.state = row.state.min(state(&Constraint { members: vec![member.clone()], ..constraint.clone() }));
-        used.push(index);
+        points.extend(limits.iter().flat_map(of));
     }
-    Some(row)
+    let [least, most] = range(&points)?;
+    let held = |t: f64| limits.iter().any(|limit| limit.phase.is_empty()) || during(run, &limits, path, t);
+    let always = series.t.iter().all(|t| held(*t));
+    Some(Extremes { name: path.to_owned(), unit: series.unit.clone(), least, most, limits, always })
 }
 
-/// An inequality along a trajectory.
-fn is_limit(constraint: &Constraint) -> bool {
-    constraint.block == "trajectory"
-        && constraint.members.iter().any(|member| member.t.len() > 1 && member.lower != member.upper)
+/// Whether one of the limits holds at a time.
+fn during(run: &Run, limits: &[Limit], path: &str, t: f64) -> bool {
+    let agent = path.rsplit_once('.').map_or_else(String::new, |(agent, _)| format!("{agent}."));
+    let mut phases = limits.iter().map(|limit| format!("{agent}{}", limit.phase));
+    phases.any(|name| run.phases.iter().any(|phase| phase.name == name && phase.start <= t && t <= phase.end))
 }
 
-/// Whether one side of a constraint is this quantity and nothing else: `speed` of `lim: v_min <= speed <= v_max`.
-fn is_about(text: &str, name: &str) -> bool {
-    let text =
-        text.split_once(':').filter(|(label, _)| !label.contains(['<', '>', '='])).map_or(text, |(_, rest)| rest);
-    let sides = text.split("<=").flat_map(|part| part.split(">=")).flat_map(|part| part.split(" in "));
-    sides.map(str::trim).any(|side| {
-        let bare = side.split('[').next().unwrap_or(side).trim();
-        bare == name && (bare == side || side.ends_with(']'))
-    })
-}
-
-/// A constraint that is about more than one quantity, over all of its members.
-fn own(constraint: &Constraint) -> Option<Extremes> {
-    if !is_limit(constraint) {
-        return None;
-    }
-    let ranges = constraint.members.iter().filter_map(|member| Some((member, range(&member.t, &member.value)?)));
-    let room = |(member, [least, most]): &(&Member, [(f64, f64); 2])| {
-        let below = member.lower.map_or(f64::INFINITY, |lower| least.0 - lower);
-        below.min(member.upper.map_or(f64::INFINITY, |upper| upper - most.0))
-    };
-    let (member, [least, most]) = ranges.min_by(|a, b| room(a).total_cmp(&room(b)))?;
-    let name = match member.name.as_str() {
-        "" => constraint.name.clone(),
-        member => format!("{} {member}", constraint.name),
-    };
-    let (unit, lower, upper) = (constraint.unit.clone(), member.lower, member.upper);
-    Some(Extremes { name, unit, least, most, lower, upper, state: state(constraint) })
+/// Members of a constraint that are about more than one quantity: the one that comes nearest to its bounds.
+fn own(run: &Run, places: &[(usize, usize)]) -> Option<Extremes> {
+    let constraint = &run.constraints[places.first()?.0];
+    let member = |place: &(usize, usize)| &constraint.members[place.1];
+    let limits = places.iter().filter(|place| limits::is_limit(constraint, member(place)));
+    let nearest = limits.map(|place| Limit::new(run, *place, &[])).min_by(|a, b| a.room.total_cmp(&b.room))?;
+    let member = member(&nearest.place);
+    let points = limits::points(constraint, member);
+    let [least, most] = range(&points)?;
+    // A template's name begins with its phase.
+    let said = member.name.is_empty() || constraint.name.starts_with(&format!("{}.", member.name));
+    let name = if said { constraint.name.clone() } else { format!("{} {}", constraint.name, member.name) };
+    Some(Extremes { name, unit: constraint.unit.clone(), least, most, limits: vec![nearest], always: true })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::{Constraint, Member, Phase, Worst};
 
     fn member(value: &[f64], lower: Option<f64>, upper: Option<f64>) -> Member {
         let t = (0..value.len()).map(|t| t as f64).collect();
         Member { t, value: value.to_vec(), lower, upper, ..Member::default() }
+    }
+
+    fn about(text: &str, members: Vec<Member>) -> Constraint {
+        let (name, text, block) = (text.to_owned(), text.to_owned(), "trajectory".to_owned());
+        Constraint { name, text, block, members, ..Constraint::default() }
+    }
+
+    fn named(name: &str, member: Member) -> Member {
+        Member { name: name.to_owned(), ..member }
+    }
+
+    fn series(value: &[f64]) -> Series {
+        Series { t: (0..value.len()).map(|t| t as f64).collect(), value: value.to_vec(), ..Series::default() }
+    }
+
+    fn words(row: &Extremes) -> (String, String) {
+        (
+            limits(row),
+            nearest(row).into_string().replace("<mark class=\"", "").replace("\">", ": ").replace("</mark>", ""),
+        )
+    }
+
+    #[test]
+    fn an_element_has_the_limits_of_its_own_index_whatever_the_values() {
+        let mut run = Run::default();
+        run.outputs.insert("x[1]".to_owned(), series(&[0.0, 1.0]));
+        run.outputs.insert("x[2]".to_owned(), series(&[0.0, 1.0]));
+        let upper = |name: &str, bound: f64| named(name, member(&[0.0, 1.0], None, Some(bound)));
+        run.constraints = vec![about("cap: x[i] <= top[i]", vec![upper("[1]", 1.5), upper("[2]", 5.0)])];
+        let rows = extremes(&run, false);
+        assert_eq!(words(&rows[0]), ("≤ 1.5".to_owned(), "inactive: 0.5 away".to_owned()));
+        assert_eq!(words(&rows[1]), ("≤ 5".to_owned(), "inactive: 4 away".to_owned()));
+        for (text, whose) in [("x[2] <= 3", 1), ("x[1] <= 3", 0)] {
+            run.constraints = vec![about(text, vec![upper("", 3.0)])];
+            let rows = extremes(&run, false);
+            assert_eq!((rows[whose].limits.len(), rows[1 - whose].limits.len()), (1, 0), "{text}");
+        }
+    }
+
+    #[test]
+    fn each_member_has_its_own_state_and_reaches_as_far_as_the_finer_grid() {
+        let mut run = Run::default();
+        run.outputs.insert("a[1]".to_owned(), series(&[-4.0, 4.0, 0.0]));
+        run.outputs.insert("a[2]".to_owned(), series(&[-0.5, 0.5, 0.0]));
+        // On the finer grid there is one more peak.
+        let fine = |values: &[f64], name: &str| {
+            let mut member = named(name, member(values, Some(-4.0), Some(4.0)));
+            member.t = vec![0.0, 1.0, 1.1, 2.0];
+            member
+        };
+        let members = vec![fine(&[-4.0, 4.0, 4.1, 0.0], "[1]"), fine(&[-0.5, 0.5, 0.51, 0.0], "[2]")];
+        let mut declared = about("a[2] in -4 .. 4 [m/s^2]", members);
+        // The check has a grid of its own.
+        declared.between =
+            Some(Worst { violation: 0.125, relative: 0.025, value: 4.125, t: Some(1.05), ..Worst::default() });
+        run.constraints = vec![declared];
+        let rows = extremes(&run, false);
+        assert_eq!(rows.len(), 2);
+        assert_eq!((rows[0].most.0, words(&rows[0]).1.as_str()), (4.125, "between: 0.125 beyond"));
+        assert_eq!((rows[1].most.0, words(&rows[1]).1.as_str()), (0.51, "inactive: 3.49 away"));
+    }
+
+    #[test]
+    fn a_limit_of_one_phase_is_told_with_it_and_that_of_a_difference_is_no_limit_of_a_side() {
+        let mut run = Run::default();
+        run.lets.insert("v".to_owned(), series(&[9.0, 1.0, 2.0, 5.0]));
+        let phase = |name: &str, start, end| Phase { name: name.to_owned(), start, end };
+        run.phases = vec![phase("beat", 0.0, 1.0), phase("run", 1.0, 3.0)];
+        let mut limit = named("run", member(&[1.0, 2.0, 5.0], None, Some(6.0)));
+        limit.t = vec![1.0, 2.0, 3.0];
+        let difference = named("run", Member { value: vec![-6.0, -7.0, -9.0], upper: Some(0.0), ..limit.clone() });
+        run.constraints = vec![about("v <= 6", vec![limit]), about("v <= polar(heading)", vec![difference])];
+        let rows = extremes(&run, false);
+        assert_eq!(words(&rows[0]), ("≤ 6 in run".to_owned(), "inactive: 1 away".to_owned()));
+        assert_eq!((rows.len(), rows[1].name.as_str()), (2, "v <= polar(heading) run"));
     }
 
     #[test]
@@ -187,23 +264,16 @@ mod tests {
         let mut run = Run::default();
         let series = Series { t: vec![0.0, 1.0, 2.0], value: vec![3.0, 5.0, 1.0], ..Series::default() };
         run.outputs.insert("v".to_owned(), series);
-        let about = |text: &str, member: Member| Constraint {
-            name: text.to_owned(),
-            text: text.to_owned(),
-            block: "trajectory".to_owned(),
-            members: vec![member],
-            ..Constraint::default()
-        };
         run.constraints = vec![
-            about("fast: v <= 8", member(&[3.0, 5.0, 1.0], None, Some(8.0))),
-            about("v in 1 .. 9", member(&[3.0, 5.0, 1.0], Some(1.0), Some(9.0))),
-            about("v^2 <= 30", member(&[9.0, 25.0, 1.0], None, Some(30.0))),
+            about("fast: v <= 8", vec![member(&[3.0, 5.0, 1.0], None, Some(8.0))]),
+            about("v in 1 .. 9", vec![member(&[3.0, 5.0, 1.0], Some(1.0), Some(9.0))]),
+            about("v^2 <= 30", vec![member(&[9.0, 25.0, 1.0], None, Some(30.0))]),
         ];
         let rows = extremes(&run, false);
         assert_eq!(rows.iter().map(|row| row.name.as_str()).collect::<Vec<_>>(), ["v", "v^2 <= 30"]);
         assert_eq!((rows[0].least, rows[0].most), ((1.0, 2.0), (5.0, 1.0)));
-        assert_eq!((rows[0].lower, rows[0].upper), (Some(1.0), Some(8.0)));
-        assert!(rows[0].state == State::Active, "its lower limit is reached");
+        assert_eq!(limits(&rows[0]), "1 .. 8");
+        assert_eq!(nearest(&rows[0]).into_string(), "<mark class=\"active\">reached</mark>", "its lower limit");
         assert_eq!(nearest(&rows[1]).into_string(), "<mark class=\"inactive\">5 away</mark>");
     }
 }

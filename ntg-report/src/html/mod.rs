@@ -4,13 +4,14 @@
 //! small one of ours for maps) and its data.
 
 mod data;
+mod ending;
 mod estimate;
 mod extremes;
 mod spec;
 mod study;
 mod tables;
 
-pub use spec::ending;
+pub use ending::ending;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -90,7 +91,7 @@ fn head(run: &Run) -> Markup {
         header {
             div.bar {
                 h1 { (run.problem) }
-                (spec::status(run))
+                (ending::status(run))
                 button #theme type="button" title="light or dark" { "◐" }
             }
             @let doc = run.doc.split("\n\n").next().unwrap_or("");
@@ -109,7 +110,8 @@ fn summary(run: &Run) -> Markup {
     let unit = &run.objective_unit;
     html! {
         section #summary {
-            (spec::missed(run))
+            (ending::cost(run))
+            (ending::missed(run))
             @if !run.advice.is_empty() { p.advice { "Try: " (tables::prose(&run.advice)) } }
             dl.cards {
                 (card("objective", &tables::with_unit(run.objective, unit), "as discretised"))
@@ -156,6 +158,19 @@ fn charts(anchor: &str, title: &str, ids: &[usize], independent: &Independent) -
                 @if anchor == "tracks" { div #clock data-name=(independent.name) data-unit=(independent.unit) {} }
                 div.charts { @for id in ids { figure.chart data-chart=(id) {} } }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_users_write_wraps_wherever_it_may_be_longer_than_a_narrow_page() {
+        for selector in [".u-legend th, .u-legend td {", "p, li, h2 {", ".status {", "td.name {", "h1 {"] {
+            let rule = STYLE.split(selector).nth(1).and_then(|rest| rest.split('}').next());
+            assert!(rule.is_some_and(|rule| rule.contains("overflow-wrap: anywhere")), "{selector} {rule:?}");
         }
     }
 }

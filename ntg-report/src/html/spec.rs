@@ -7,9 +7,9 @@ use super::tables::{multiplier_words, number, place_words, prose, with_unit};
 use crate::run::{Constraint, Independent, Run, Spec};
 
 /// Relative violations at points above this are violations.
-const VIOLATED: f64 = 1e-6;
+pub(super) const VIOLATED: f64 = 1e-6;
 /// Relative violations between points above this are worth a mark.
-const BETWEEN: f64 = 1e-4;
+pub(super) const BETWEEN: f64 = 1e-4;
 
 /// How a constraint ended, from bad to good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,47 +58,6 @@ pub(super) fn state(constraint: &Constraint) -> State {
         return State::Equality;
     }
     if constraint.reaches_a_bound() { State::Active } else { State::Inactive }
-}
-
-/// Constraints that are met at the points and missed between them.
-fn missed_between(run: &Run) -> Vec<&Constraint> {
-    run.constraints.iter().filter(|constraint| state(constraint) == State::Between).collect()
-}
-
-/// How the solve ended, in words: `solved at the points` where something is missed between them.
-pub fn ending(run: &Run) -> String {
-    let between = run.is_solved() && !missed_between(run).is_empty();
-    if between { format!("{} at the points", run.status) } else { run.status.clone() }
-}
-
-/// How the solve ended. What is missed between the points is no good end.
-pub(super) fn status(run: &Run) -> Markup {
-    let between = run.is_solved() && !missed_between(run).is_empty();
-    let good = run.is_sound() && !between;
-    html! {
-        span.status.good[good].warned[run.has_solution() && !good].bad[!run.has_solution()] {
-            (ending(run))
-        }
-    }
-}
-
-/// Which constraints are missed between the points, the worst first; nothing where none is.
-pub(super) fn missed(run: &Run) -> Markup {
-    let mut missed = missed_between(run);
-    let relative = |c: &Constraint| c.between.as_ref().map_or(0.0, |worst| worst.relative);
-    missed.sort_by(|a, b| relative(b).total_cmp(&relative(a)));
-    html! {
-        @if let (true, Some(worst)) = (run.has_solution(), missed.first()) {
-            p.advice {
-                @if missed.len() == 1 { code { (worst.name) } " is missed between the points" }
-                @else { (missed.len()) " constraints are missed between the points, most of all " code { (worst.name) } }
-                @if let Some(between) = &worst.between {
-                    " by " (with_unit(between.violation, &worst.unit)) (place_words(between.t, &between.phase, &run.independent))
-                }
-                ". " code { "ntg solve --between refine" } " adds intervals until that is small."
-            }
-        }
-    }
 }
 
 /// The spec of one run; nothing where the file does not hold it.

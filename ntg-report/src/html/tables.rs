@@ -231,7 +231,7 @@ pub(super) fn comparison(runs: &Runs<'_>) -> Markup {
                 tbody { @for (name, run) in runs {
                     tr {
                         td.name { (name) }
-                        td { (super::spec::status(run)) }
+                        td { (super::ending::status(run)) }
                         td.n { (number(run.objective)) } td { (run.objective_unit) } td.n { (number(run.objective_fine)) }
                         td.n { (small(run.violation.points)) } td.n { (small(run.violation.between)) }
                         td.n { (run.iterations) } td.n { (seconds(run.seconds)) }

@@ -9,6 +9,8 @@ use super::contour::Rectangle;
 const LINES: usize = 61;
 /// Heights that are tried where the function is not linear in the height.
 const HEIGHTS: usize = 49;
+/// Halvings of a bracket: what is left is a part in 10^9 of it, which no picture shows.
+const HALVINGS: usize = 30;
 
 /// Heights over a grid.
 pub(super) struct Heights {
@@ -29,63 +31,148 @@ pub(super) fn heights(
     (plane, (low, high)): (Rectangle, (f64, f64)),
     level: f64,
 ) -> Option<Heights> {
-    let spaced = |(first, last): (f64, f64), count: usize| {
-        (0..count).map(move |k| first + (last - first) * k as f64 / (count - 1) as f64)
-    };
     let (x, y): (Vec<f64>, Vec<f64>) = (spaced(plane[0], LINES).collect(), spaced(plane[1], LINES).collect());
-    let over = |count: usize| {
-        let tried: Vec<f64> = spaced((low, high), count).collect();
-        let columns = x.iter().flat_map(|a| y.iter().map(move |b| (*a, *b)));
-        let points: Vec<[f64; 3]> = columns.flat_map(|(a, b)| tried.iter().map(move |h| [a, b, *h])).collect();
-        let values = function(&points);
-        values.chunks_exact(count).map(|column| crossing(column, &tried, level)).collect::<Vec<_>>()
-    };
-    // Three heights tell where it is linear in the height; most limits are everywhere.
-    let quick = over(3);
-    let found = if quick.iter().all(|column| matches!(column, Crossing::Linear(..))) { quick } else { over(HEIGHTS) };
+    let columns = x.iter().flat_map(|a| y.iter().map(move |b| Column { at: [*a, *b], low, high }));
+    let search = Search { function, level, middle: 0.5 * (low + high) };
     let (mut rising, mut falling) = (0, 0);
     let mut height = |crossing: Crossing| match crossing {
-        Crossing::Linear(height, grows) | Crossing::Bracketed(height, grows) => {
+        Crossing::Linear(height, grows) | Crossing::Bracketed { low: height, grows, .. } => {
             *(if grows { &mut rising } else { &mut falling }) += 1;
             height
         }
-        Crossing::None => f64::NAN,
+        Crossing::Missed { low, high, touches: true } => 0.5 * (low + high),
+        Crossing::Missed { .. } | Crossing::None => f64::NAN,
     };
-    let z: Vec<f64> = found.into_iter().map(&mut height).collect();
+    let z: Vec<f64> = search.all(&columns.collect::<Vec<_>>()).into_iter().map(&mut height).collect();
     // Where it both rises and falls through the level, the level is no height.
     let alike = rising.min(falling) * 20 < rising + falling;
     (rising + falling > 0 && alike).then_some(Heights { x, y, z, grows: rising > falling })
 }
 
+fn spaced((first, last): (f64, f64), count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |k| first + (last - first) * k as f64 / (count - 1) as f64)
+}
+
+/// A stretch of heights over a point of the plane.
+#[derive(Clone, Copy)]
+struct Column {
+    at: [f64; 2],
+    low: f64,
+    high: f64,
+}
+
 /// Where a function along a line of heights reaches a level, and whether it grows there.
+#[derive(Clone, Copy)]
 enum Crossing {
     /// It is linear: also beyond the heights.
     Linear(f64, bool),
-    /// Between two heights.
-    Bracketed(f64, bool),
+    /// Between two heights; the larger distance from the level at them.
+    Bracketed {
+        low: f64,
+        high: f64,
+        distance: f64,
+        grows: bool,
+    },
+    /// On one side of the level at all heights that were tried, and nearest to it between these two. It touches the
+    /// level, as at the apex of a cone, as far as the heights tell.
+    Missed {
+        low: f64,
+        high: f64,
+        touches: bool,
+    },
     None,
 }
 
-fn crossing(column: &[f64], heights: &[f64], level: f64) -> Crossing {
-    let count = column.len();
-    let (first, last) = (column[0], column[count - 1]);
+/// A function of the place, the level that is looked for, and the height around which the tracks are.
+struct Search<F> {
+    function: F,
+    level: f64,
+    middle: f64,
+}
+
+impl<F: Fn(&[[f64; 3]]) -> Vec<f64>> Search<F> {
+    fn all(&self, columns: &[Column]) -> Vec<Crossing> {
+        // Three heights tell where it is linear in the height; most limits are everywhere.
+        let quick = self.scan(columns, 3);
+        if quick.iter().all(|crossing| matches!(crossing, Crossing::Linear(..))) {
+            return quick;
+        }
+        let mut found = self.scan(columns, HEIGHTS);
+        // Two crossings between neighbouring heights are seen by a closer look alone.
+        let closer = |(index, crossing): (usize, &Crossing)| match crossing {
+            Crossing::Missed { low, high, .. } => Some((index, Column { low: *low, high: *high, ..columns[index] })),
+            _ => None,
+        };
+        let (missed, again): (Vec<usize>, Vec<Column>) = found.iter().enumerate().filter_map(closer).unzip();
+        for (index, crossing) in missed.into_iter().zip(self.scan(&again, HEIGHTS)) {
+            found[index] = if let Crossing::Linear(..) = crossing { Crossing::None } else { crossing };
+        }
+        self.halve(columns, &mut found);
+        found
+    }
+
+    fn scan(&self, columns: &[Column], count: usize) -> Vec<Crossing> {
+        let along = |column: &Column| spaced((column.low, column.high), count).collect::<Vec<f64>>();
+        let tried: Vec<Vec<f64>> = columns.iter().map(along).collect();
+        let points = columns.iter().zip(&tried).flat_map(|(column, tried)| tried.iter().map(|h| column.point(*h)));
+        let values = (self.function)(&points.collect::<Vec<_>>());
+        let each = values.chunks_exact(count).zip(&tried);
+        each.map(|(values, tried)| crossing(values, tried, (self.level, self.middle))).collect()
+    }
+
+    /// Halves all brackets, so that their lower end is the height.
+    fn halve(&self, columns: &[Column], found: &mut [Crossing]) {
+        for last in (0..=HALVINGS).map(|step| step == HALVINGS) {
+            let brackets = found.iter_mut().enumerate().filter_map(|(index, crossing)| match crossing {
+                Crossing::Bracketed { low, high, .. } => Some((columns[index].point(0.5 * (*low + *high)), crossing)),
+                _ => None,
+            });
+            let (points, brackets): (Vec<[f64; 3]>, Vec<&mut Crossing>) = brackets.unzip();
+            for ((value, at), crossing) in (self.function)(&points).into_iter().zip(&points).zip(brackets) {
+                let Crossing::Bracketed { low, high, distance, grows } = crossing else { continue };
+                let end = if (value > self.level) == *grows { high } else { low };
+                *end = at[2];
+                // Through a pole it changes sides without reaching the level.
+                let reached = (value - self.level).abs() <= *distance;
+                if last && !reached {
+                    *crossing = Crossing::None;
+                }
+            }
+        }
+    }
+}
+
+impl Column {
+    fn point(&self, height: f64) -> [f64; 3] {
+        [self.at[0], self.at[1], height]
+    }
+}
+
+fn crossing(values: &[f64], heights: &[f64], (level, around): (f64, f64)) -> Crossing {
+    let count = values.len();
+    let (first, last) = (values[0], values[count - 1]);
     let (low, high) = (heights[0], heights[count - 1]);
     let slope = (last - first) / (high - low);
     let size = first.abs().max(last.abs()).max(level.abs());
-    let middle = column[count / 2];
+    let middle = values[count / 2];
     let straight = (middle - 0.5 * (first + last)).abs() <= 1e-9 * size && slope.abs() * (high - low) > 1e-12 * size;
     if straight {
         return Crossing::Linear(low + (level - first) / slope, slope > 0.0);
     }
     // Of several crossings, as of a cone with two halves, the one that is nearest to the tracks.
-    let crossed = column.windows(2).enumerate().filter(|(_, pair)| (pair[0] > level) != (pair[1] > level));
-    let heights = crossed.map(|(found, pair)| {
-        let share = (level - pair[0]) / (pair[1] - pair[0]);
-        (heights[found] + share * (heights[found + 1] - heights[found]), pair[1] > pair[0])
-    });
-    let off = |height: f64| (height - 0.5 * (low + high)).abs();
-    let nearest = heights.filter(|(height, _)| height.is_finite()).min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
-    nearest.map_or(Crossing::None, |(height, grows)| Crossing::Bracketed(height, grows))
+    let distance = |k: usize| (values[k] - level).abs();
+    let crossed = (1..count).filter(|k| (values[k - 1] > level) != (values[*k] > level));
+    let off = |k: &usize| (0.5 * (heights[k - 1] + heights[*k]) - around).abs();
+    let finite = crossed.filter(|k| distance(k - 1).max(distance(*k)).is_finite());
+    if let Some(k) = finite.min_by(|a, b| off(a).total_cmp(&off(b))) {
+        let (distance, grows) = (distance(k - 1).max(distance(k)), values[k] > values[k - 1]);
+        return Crossing::Bracketed { low: heights[k - 1], high: heights[k], distance, grows };
+    }
+    let inner = (1..count - 1).filter(|k| distance(*k) <= distance(k - 1) && distance(*k) <= distance(k + 1));
+    let Some(k) = inner.min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else { return Crossing::None };
+    // Half a step from where a parabola touches the level, its distance is a quarter of that a step away at most.
+    let touches = distance(k) <= 0.25 * distance(k - 1).max(distance(k + 1));
+    Crossing::Missed { low: heights[k - 1], high: heights[k + 1], touches }
 }
 
 #[cfg(test)]
@@ -107,6 +194,29 @@ mod tests {
                 assert!((heights.z[i * heights.y.len() + j] - wanted).abs() < 1e-12, "beyond the heights, too");
             }
         }
+    }
+
+    #[test]
+    fn a_nonlinear_height_is_right_to_less_than_a_picture_shows() {
+        // A glide slope: the cone over the origin, and what is below it the same upside down.
+        let slope = |below: f64| move |[x, y, h]: &[f64; 3]| x * x + y * y - 200.0 * (h + below).powi(2);
+        let plane = [(-900.0, 900.0), (-300.0, 1500.0)];
+        // The apex lies at one of the heights that are tried, and between two.
+        for below in [0.0, 17.0, -31.0] {
+            let all = |points: &[[f64; 3]]| points.iter().map(slope(below)).collect();
+            let cone = heights(all, (plane, (-300.0, 1500.0)), 0.0).expect("it is a height");
+            assert!(!cone.grows);
+            for (index, height) in cone.z.iter().enumerate() {
+                let (x, y) = (cone.x[index / LINES], cone.y[index % LINES]);
+                let wanted = x.hypot(y) / 200_f64.sqrt() - below;
+                assert!((height - wanted).abs() < if wanted + below > 0.0 { 1e-5 } else { 1.0 }, "{height}, {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_pole_is_no_height() {
+        assert!(found(|x, _, z| 1.0 / (z - 5.1 - 0.01 * x), 0.15).is_none(), "it is at the level above all heights");
     }
 
     #[test]

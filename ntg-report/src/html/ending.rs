@@ -1,0 +1,142 @@
+//! How a solve ended, in a word and in advice: what is missed between the points of the transcription is no good end,
+//! neither of a constraint nor of the objective.
+
+use maud::{Markup, html};
+
+use super::spec::{State, state};
+use super::tables::{number, place_words, prose, with_unit};
+use crate::run::{Constraint, Run};
+
+/// Difference of the objective and its finer integral, relative to the larger of both, that is worth a warning. A fit:
+/// the specs beside the gallery stay below 0.5 %, and 1 % is more than a comparison of runs may hide.
+const OFF: f64 = 0.01;
+/// An objective below this, in its unit, is what a solve to tolerances of 1e-8 leaves of zero. A fit, too.
+const ZERO: f64 = 1e-9;
+/// What `ntg solve --refine` is told where the objective is off: an error that nobody would see.
+const REFINED: &str = "1e-3";
+
+/// Constraints that are met at the points and missed between them.
+fn missed_between(run: &Run) -> Vec<&Constraint> {
+    run.constraints.iter().filter(|constraint| state(constraint) == State::Between).collect()
+}
+
+/// The relative difference of the objective and its finer integral, where it is worth a warning.
+fn off(run: &Run) -> Option<f64> {
+    let size = run.objective.abs().max(run.objective_fine.abs());
+    let apart = (run.objective_fine - run.objective).abs() / size;
+    (run.has_solution() && size > ZERO && apart > OFF).then_some(apart)
+}
+
+/// Whether what holds at the points holds between them.
+fn holds_between(run: &Run) -> bool {
+    missed_between(run).is_empty() && off(run).is_none()
+}
+
+/// How the solve ended, in words: `solved at the points` where something is missed between them.
+pub fn ending(run: &Run) -> String {
+    if run.is_solved() && !holds_between(run) { format!("{} at the points", run.status) } else { run.status.clone() }
+}
+
+/// How the solve ended. What is missed between the points is no good end.
+pub(super) fn status(run: &Run) -> Markup {
+    let good = run.is_sound() && holds_between(run);
+    html! {
+        span.status.good[good].warned[run.has_solution() && !good].bad[!run.has_solution()] {
+            @match ending(run).split_once(": ") {
+                Some((word, why)) => { b { (word) } ": " (prose(why)) }
+                None => { b { (ending(run)) } }
+            }
+        }
+    }
+}
+
+/// By how much the objective differs from its finer integral; nothing where that is little.
+pub(super) fn cost(run: &Run) -> Markup {
+    let Some(apart) = off(run) else { return html! {} };
+    let unit = &run.objective_unit;
+    html! {
+        p.advice {
+            "Finely integrated, the objective is " (with_unit(run.objective_fine, unit)) " instead of "
+            (with_unit(run.objective, unit)) ": the two differ by "
+            (number((1e3 * apart).round() / 10.0)) " % of the larger. The points are too few for its "
+            "integrals, and the optimum may be one of these points alone. More points or intervals help: "
+            code { "ntg solve --refine " (REFINED) } " adds intervals until both agree."
+        }
+    }
+}
+
+/// Which constraints are missed between the points, the worst first; nothing where none is.
+pub(super) fn missed(run: &Run) -> Markup {
+    let mut missed = missed_between(run);
+    let relative = |c: &Constraint| c.between.as_ref().map_or(0.0, |worst| worst.relative);
+    missed.sort_by(|a, b| relative(b).total_cmp(&relative(a)));
+    html! {
+        @if let (true, Some(worst)) = (run.has_solution(), missed.first()) {
+            p.advice {
+                @if missed.len() == 1 { code { (worst.name) } " is missed between the points" }
+                @else {
+                    (missed.len()) " constraints are missed between the points, most of all " code { (worst.name) }
+                }
+                @if let Some(between) = &worst.between {
+                    " by " (with_unit(between.violation, &worst.unit))
+                    (place_words(between.t, &between.phase, &run.independent))
+                }
+                ". " code { "ntg solve --between refine --between-tolerance " (tolerance(relative(worst))) }
+                " adds intervals until that is small."
+            }
+        }
+    }
+}
+
+/// A tolerance that what was found does not meet: a tenth of it, rounded down to a power of ten; at most what holds
+/// without one.
+fn tolerance(found: f64) -> String {
+    /// Ten's power of `Settings::between_tolerance` without a word.
+    const DEFAULT: f64 = -2.0;
+    // Rounding must not make 1e-3 a little less than a power of ten.
+    format!("1e{}", (found.log10() - 1.0 + 1e-9).floor().min(DEFAULT))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Worst;
+
+    fn solved(objective: f64, objective_fine: f64) -> Run {
+        Run { status: "solved".to_owned(), objective, objective_fine, ..Run::default() }
+    }
+
+    #[test]
+    fn an_objective_that_its_finer_integral_does_not_bear_out_is_no_good_end() {
+        let run = solved(11.0458, 12.8027);
+        assert_eq!(ending(&run), "solved at the points");
+        assert!(status(&run).into_string().contains("status warned"));
+        let words = cost(&run).into_string();
+        assert!(words.contains("12.8027 instead of 11.0458: the two differ by 13.7 % of the larger"), "{words}");
+        assert!(words.contains("<code>ntg solve --refine 1e-3</code>"), "{words}");
+        for near in [solved(1.702, 1.694), solved(1e-12, 3e-12), solved(f64::NAN, f64::NAN), solved(0.0, 0.0)] {
+            assert!(status(&near).into_string().contains("status good") && cost(&near).into_string().is_empty());
+        }
+    }
+
+    #[test]
+    fn the_command_refines_what_is_missed() {
+        for (found, told) in [(5e-4, "1e-5"), (1e-3, "1e-4"), (0.0123, "1e-3"), (9.9, "1e-2"), (1.2e-4, "1e-5")] {
+            assert_eq!(tolerance(found), told);
+            let mut run = solved(1.0, 1.0);
+            let between = Some(Worst { violation: found, relative: found, ..Worst::default() });
+            run.constraints = vec![Constraint { between, ..Constraint::default() }];
+            let words = missed(&run).into_string();
+            assert!(
+                words.contains(&format!("ntg solve --between refine --between-tolerance {told}</code>")),
+                "{words}"
+            );
+        }
+    }
+
+    #[test]
+    fn code_in_a_status_is_code() {
+        let run = Run { status: "infeasible: `goal` cannot hold".to_owned(), ..Run::default() };
+        assert!(status(&run).into_string().contains("<b>infeasible</b>: <code>goal</code> cannot hold"));
+    }
+}
