@@ -28,7 +28,9 @@ impl<'a> Elaborator<'a> {
         let agent = Some(self.phases[phase].agent);
         let site = Site { block: Block::Trajectory, agent, phase: Some(phase), part: Part::WHOLE };
         let before = self.problem.constraints.len();
+        self.noted.equations_of = Some(phase);
         self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
+        self.noted.equations_of = None;
         let rows: i64 = self.problem.constraints[before..]
             .iter()
             .map(|row| members(&row.loops[around.min(row.loops.len())..]))
@@ -116,7 +118,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What is declared as output, state or input in a phase; a phase's own declaration replaces that of its agent.
-    fn declared_outputs(&self, phase: usize) -> Vec<(Role, &'a DeclaredName)> {
+    pub(super) fn declared_outputs(&self, phase: usize) -> Vec<(Role, &'a DeclaredName)> {
         let (scope, agent) = (self.phases[phase].scope, self.phases[phase].agent);
         let common = self.agents[agent].scope;
         let mut all: Vec<(Role, &'a DeclaredName)> = Vec::new();

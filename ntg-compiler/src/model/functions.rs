@@ -223,6 +223,7 @@ impl<'a> Elaborator<'a> {
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
         let standard = || self.in_standard(name, APPLIED).filter(|_| HABITS.iter().all(|(habit, _)| *habit != name));
         if let Some(help) = self.library_help(cx.names(), name).or_else(standard) {
+            self.tell_library_once(cx.names(), name);
             let help = behind_near(nearest(name, own), help);
             return self.refuse(finding.help(help), call.span);
         }
@@ -299,6 +300,7 @@ impl<'a> Elaborator<'a> {
                 Value::new(node, Dimension::NONE, span)
             }
             Rule::Root => {
+                self.note_root(first, span, Ratio::new(1, 2));
                 let node = self.problem.dag.sqrt(first.node);
                 first.map(node, first.dimension.map(|d| d.power(Ratio::new(1, 2))), span)
             }
@@ -484,6 +486,7 @@ impl<'a> Elaborator<'a> {
 
     /// Findings inside a function's body say in which use of it they were made.
     pub(super) fn tell_use(&mut self, before: usize, call: &Call) {
+        let taken = self.taken_help(call.span);
         for finding in &mut self.found[before..] {
             // What a library finds is told at every use on the way to the spec's own text.
             let in_library = self.main.is_some_and(|end| finding.span.start > end);
@@ -498,6 +501,11 @@ impl<'a> Elaborator<'a> {
             let is_told = finding.severity == Severity::Error || in_library;
             if !told && is_told && !call.span.contains(finding.span) {
                 finding.labels.push((call.span, format!("in this use of `{}`", call.function.text)));
+                if finding.code == Code::DimensionMismatch
+                    && let Some(help) = &taken
+                {
+                    finding.help = Some(help.clone());
+                }
             }
         }
     }

@@ -43,7 +43,7 @@ pub(super) struct Libraries {
     pub(super) main: u32,
     pub(super) files: Vec<File>,
     /// For each `use` of the spec, which file that is.
-    uses: Vec<Option<usize>>,
+    pub(super) uses: Vec<Option<usize>>,
     found: Vec<Diagnostic>,
 }
 
@@ -243,6 +243,17 @@ impl Libraries {
             places.push((file, finding.span, None));
             let used = labels.iter().find(|(_, text)| text.starts_with("in this use")).map(|(span, _)| *span);
             finding.span = used.or_else(|| uses_here.first().copied()).unwrap_or(self.files[file].used);
+            // A library of the language is right: the place to mend is the call.
+            if used.is_some()
+                && self.files[file].is_standard
+                && finding.code == Code::DimensionMismatch
+                && let Some(last) = places.last_mut()
+            {
+                last.2 = Some("told of here".to_owned());
+                if !finding.help.as_deref().is_some_and(|help| help.contains("` took [")) {
+                    finding.help = Some("give this function arguments of the units that its body needs".to_owned());
+                }
+            }
             if used.is_none() && !labels.iter().any(|(span, _)| *span == finding.span) {
                 labels.push((finding.span, "used here".to_owned()));
             }
@@ -374,6 +385,15 @@ impl<'a> Elaborator<'a> {
         }
         let library = name.rsplit_once("::").and_then(|(library, _)| library_named(&self.scopes, scope, library));
         library.is_some_and(|library| self.scopes[library].is_broken)
+    }
+
+    /// Keeps a library that no `use` names from being told of again.
+    pub(super) fn tell_library_once(&mut self, scope: ScopeId, name: &'a str) {
+        if let Some((library, _)) = name.rsplit_once("::")
+            && library_named(&self.scopes, scope, library).is_none()
+        {
+            self.lost.push(library);
+        }
     }
 
     /// What to write for a name that no library has, or that a library has.

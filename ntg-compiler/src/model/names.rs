@@ -118,7 +118,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Tells of a name that nothing has.
-    pub(super) fn unknown(&mut self, cx: &Context<'a>, segment: &Segment, outwards: bool) -> Value {
+    pub(super) fn unknown(&mut self, cx: &Context<'a>, segment: &'a Segment, outwards: bool) -> Value {
         let (scope, text) = (cx.names(), &segment.name.text);
         let names: Vec<&str> = if outwards {
             visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
@@ -131,6 +131,7 @@ impl<'a> Elaborator<'a> {
         }
         let near = nearest(text, names.iter().copied());
         if let Some(help) = self.library_help(scope, text) {
+            self.tell_library_once(scope, text);
             return self.refuse(finding.help(behind_near(near, help)), segment.span);
         }
         if let Some(bound) = self.index_names.get(text.as_str()) {

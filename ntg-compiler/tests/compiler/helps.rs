@@ -1,0 +1,150 @@
+//! Helps that can be followed: what a message proposes, the compiler takes, and it is what was meant.
+
+use crate::model_support::{Files, findings_with};
+
+/// A problem with a text in it.
+fn problem(text: &str) -> String {
+    format!("problem P {{\n{text}\n}}\n")
+}
+
+/// The findings of a problem with a text in it.
+#[track_caller]
+fn told(text: &str) -> String {
+    findings_with(&problem(text), &Files(vec![]))
+}
+
+/// How many errors are told.
+fn errors(told: &str) -> usize {
+    told.lines().filter(|line| line.starts_with("error[")).count()
+}
+
+/// Holds findings against their first line, the place of the first one and its help.
+#[track_caller]
+fn says(told: &str, message: &str, place: &str, help: &str) {
+    assert!(told.starts_with(message), "{told}");
+    let arrow = told.lines().find_map(|line| line.trim_start().strip_prefix("--> ")).unwrap_or_default();
+    assert_eq!(arrow, place, "{told}");
+    assert!(told.contains(&format!("= help: {help}\n")) || told.ends_with(&format!("= help: {help}")), "{told}");
+}
+
+const MOVING: &str =
+    "    duration T = 5 [s];\n    output x [m]: spline(order = 5, intervals = 4);\n    minimize integral(der(x, 2)^2);";
+
+#[test]
+fn a_unit_keeps_its_prefix() {
+    let pairs = [
+        ("mOhm", "mohm"),
+        ("MOhm", "Mohm"),
+        ("mΩ", "mohm"),
+        ("kΩ", "kohm"),
+        ("m\u{2126}", "mohm"),
+        ("Ω", "ohm"),
+        ("mHZ", "mHz"),
+        ("MHZ", "MHz"),
+        ("mpa", "mPa"),
+        ("Mpa", "MPa"),
+        ("mwh", "mWh"),
+        ("pWH", "pWh"),
+        ("KG", "kg"),
+        ("kNm", "kN*m"),
+        ("msec", "ms"),
+        ("hours", "h"),
+        ("minutes", "min"),
+        ("days", "day"),
+    ];
+    for (written, meant) in pairs {
+        let text = format!("{MOVING}\n    param a = 3 [{written}];");
+        let help = format!("did you mean `{meant}`?");
+        says(&told(&text), "error[E040]: unknown unit `", "spec.ntg:5:18", &help);
+        assert_eq!(told(&text.replace(&format!("[{written}]"), &format!("[{meant}]"))), "", "{meant}");
+    }
+}
+
+#[test]
+fn no_help_proposes_a_unit_with_a_root() {
+    let root = "what is raised to the power 1/7 has the unit [m]; without it write";
+    let text = format!("{MOVING}\n    let wind [m/s] = der(x) * (x / 10)^(1/7);");
+    let message = "error[E044]: `wind` is declared as a speed [m/s], but it is a quantity in [m^(8/7)/s]";
+    says(&told(&text), message, "spec.ntg:5:14", &format!("{root} `x / 10 [m]`"));
+    assert_eq!(told(&text.replace("x / 10", "x / 10 [m]")), "");
+    let roots = [
+        ("let a = x^(1/7) + 1;", format!("{root} `x / 1 [m]`")),
+        ("let a [m] = sqrt(x);", root.replace("1/7", "1/2") + " `x / 1 [m]`"),
+        ("let a = exp(x^(1/7));", format!("{root} `x / 1 [m]`")),
+        ("let b = x^(1/7);  let a [m] = 2 * b;", format!("{root} `x / 1 [m]`")),
+    ];
+    for (written, help) in roots {
+        let told = told(&format!("{MOVING}\n    {written}"));
+        assert!(told.ends_with(&format!("= help: {help}")), "{told}");
+    }
+}
+
+#[test]
+fn missing_nodes_are_as_many_as_columns() {
+    let table = |rows: &str| format!("{MOVING}\n    table polar(a [deg], w [m/s]) = linear {{ {rows} }}");
+    let few = told(&table("0: 1, 1, 1;  30: 2, 3, 3;"));
+    let help = "write them first, in a row of their own, one for each of 3 columns: `w_1, w_2, w_3;`";
+    says(&few, "error[E071]: the nodes of `w` are missing", "spec.ntg:5:44", help);
+    let many = told(&table("0: 1, 1, 1, 2, 2, 2;  30: 2, 3, 3, 4, 4, 4;"));
+    assert!(many.contains("one for each of 6 columns: `w_1, w_2, ..., w_6;`"), "{many}");
+}
+
+/// A body that turns, whose attitude took its unit from the rates.
+const TURNING: &str = "    duration T = 5 [s];\n    state q[4], w[3] [deg/s];\n    collocation gauss(points = 3, intervals = 4);
+    minimize integral(norm(w)^2);\n    dynamics { der(q) == 0.5 * q / 1 [s];  der(w) == 1 [deg/s^2] * q[1:3]; }
+    initial { q == (1, 0, 0, 0); }";
+
+#[test]
+fn a_unit_from_another_name_of_the_list_is_told() {
+    let help = "`q` took [deg/s] from `w`; write `q[4] [1], w[3] [deg/s]`";
+    let whole = TURNING.replace("q[1:3]", "(q[1], q[2], q[3])");
+    let found = told(&whole);
+    assert!(found.contains(&format!("= help: {help}")), "{found}");
+    assert!(!found.contains("* 1 [deg/s]`"), "{found}");
+    assert_eq!(told(&whole.replace("q[4],", "q[4] [1],")), "");
+    // Inside a library of the language the call is the place, and the library stands behind.
+    let with = whole.replace("initial { q == (1, 0, 0, 0); }", "trajectory { rotation::matrix(q)[1, 1] >= 0; }");
+    let with = with.replace("trajectory { rotation::matrix(q)[1, 1] >= 0; }", "let R = rotation::matrix(q);");
+    let spec = format!("use std::rotation;\n{}", problem(&with));
+    let found = findings_with(&spec, &Files(vec![]));
+    let first = found.split("\n\n").find(|one| one.contains("rotation::matrix")).unwrap_or_default();
+    says(first, "error[E041]: ", "spec.ntg:8:13", help);
+    assert!(first.contains("::: std::rotation:"), "{first}");
+}
+
+#[test]
+fn a_missing_library_is_told_once() {
+    let text = "    duration T = 5 [s];\n    state q[4] [1], w[3] [1/s];\n    collocation gauss(points = 3, intervals = 4);
+    minimize integral(norm(w)^2);\n    let b = transpose(rotation::matrix(q)) * w;\n    dynamics { der(q) == rotation::rate(q, w);  der(w) == b / 1 [s]; }";
+    let missing = told(text);
+    says(
+        &missing,
+        "error[E024]: unknown function `rotation::",
+        if missing.contains("matrix`") { "spec.ntg:6:23" } else { "spec.ntg:7:26" },
+        "write `use std::rotation;` before the problem",
+    );
+    assert_eq!(errors(&missing), 1, "{missing}");
+    let short = findings_with(&format!("use rotation;\n{}", problem(text)), &Files(vec![]));
+    says(&short, "error[E087]: there is no library `rotation`", "spec.ntg:1:5", "write `use std::rotation;`");
+    assert_eq!(errors(&short), 1, "{short}");
+    let right = findings_with(&format!("use std::rotation;\n{}", problem(text)), &Files(vec![]));
+    assert_eq!(right, "");
+    // What is not there has no size either.
+    let unknown = told(&format!("{MOVING}\n    let a = transpose(turned(x)) * norm(twisted(x));"));
+    assert!(!unknown.contains("E046"), "{unknown}");
+    let constants = told(&format!("{MOVING}\n    let a = constants::g0 * x;  let b = constants::g0 / x;"));
+    assert_eq!(errors(&constants), 1, "{constants}");
+}
+
+#[test]
+fn a_forgotten_derivative_is_told() {
+    let text = "    duration T = 5 [s];\n    state el [deg], v [m/s];\n    input a [m/s^2];\n    collocation gauss(points = 3, intervals = 4);
+    minimize integral(a^2);\n    dynamics { el == 2 [deg/s];  der(v) == a; }";
+    let help = "write the derivative of the state: `der(el) == ...`";
+    says(&told(text), "error[E041]: a pure number cannot be compared with a rate [1/s]", "spec.ntg:7:16", help);
+    let turned = told(&text.replace("el == 2 [deg/s]", "el == 2 [deg/s^2]"));
+    assert!(turned.contains("write the second derivative of the state: `der(el, 2) == ...`"), "{turned}");
+    // Of an input there is none to forget.
+    let input = told(&text.replace("der(v) == a", "a == v"));
+    assert!(!input.contains("der(a)"), "{input}");
+}
