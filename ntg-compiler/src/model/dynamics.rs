@@ -36,6 +36,7 @@ impl<'a> Elaborator<'a> {
             .map(|row| members(&row.loops[around.min(row.loops.len())..]))
             .sum();
         *self.equations.entry(phase).or_default() += rows;
+        self.note_moved(phase, before);
     }
 
     fn only_equations(&mut self, statements: &'a [Statement<ast::Constraint>]) {
@@ -86,8 +87,9 @@ impl<'a> Elaborator<'a> {
         let plural = |n: i64, word: &str| if n == 1 { format!("1 {word}") } else { format!("{n} {word}s") };
         let of = if elements == 1 { "1 element".to_owned() } else { format!("{elements} elements") };
         if equations < elements {
-            let (who, at) = match resting {
-                Some(name) => (format!(": `{}` has none", name.name.text), name.name.span),
+            let resting = resting.map(|name| (name.name.text.clone(), name.name.span));
+            let (who, at) = match resting.or_else(|| self.resting_element(phase, &states)) {
+                Some((name, at)) => (format!(": `{name}` has none"), at),
                 None => (String::new(), span),
             };
             let message = format!("{} for {of} of states{who}", plural(equations, "equation"));

@@ -82,6 +82,9 @@ pub(super) const BUILTINS: &[Builtin] = &[
 /// The function that takes an expression at a place in time; a declaration of its name in the spec wins.
 pub(super) const AT: &str = "at";
 
+/// How data are interpolated: declared, and applied.
+const TABLE: &str = "table f(x, y) = linear { ... }` in the problem, and here `f(x, y)";
+
 /// Names that people try, and how the language writes them.
 const HABITS: &[(&str, &str)] = &[
     ("ln", "log(x)"),
@@ -106,6 +109,19 @@ const HABITS: &[(&str, &str)] = &[
     ("trapz", "integral(x)"),
     ("cumtrapz", "integral(x)"),
     ("quad", "integral(x)"),
+    ("mean", "integral(x) / T"),
+    ("average", "integral(x) / T"),
+    ("avg", "integral(x) / T"),
+    ("rms", "sqrt(integral(x^2) / T)"),
+    ("interp", TABLE),
+    ("interp1", TABLE),
+    ("interp1d", TABLE),
+    ("interp2", TABLE),
+    ("interp2d", TABLE),
+    ("interpolate", TABLE),
+    ("interpolant", TABLE),
+    ("lookup", TABLE),
+    ("lookup_table", TABLE),
     ("sumsq", "dot(u, u)"),
     ("vertcat", "(x, y)"),
     ("horzcat", "((a, b), (c, d))"),
@@ -235,6 +251,12 @@ impl<'a> Elaborator<'a> {
                 own.chain(BUILTINS.iter().map(|b| b.name)).chain(VECTOR_FUNCTIONS.iter().map(|(name, _)| *name)),
             ),
         ) {
+            (Some(right), _) if right.contains("/ T") => {
+                let duration = names.iter().find(|(_, entity)| matches!(entity, Entity::Duration(_)));
+                let right =
+                    duration.map_or_else(|| right.to_owned(), |(name, _)| right.replace("/ T", &format!("/ {name}")));
+                finding.help(format!("over the whole time write `{right}`; of elements `sum(i in 1 .. n, x[i]) / n`"))
+            }
             (Some(right), _) => finding.help(format!("write `{right}`")),
             (None, Some(near)) if !matches!(name, "inv" | "det") => finding.help(format!("did you mean `{near}`?")),
             (None, _) if matches!(name, "inv" | "inverse" | "det" | "solve") => {

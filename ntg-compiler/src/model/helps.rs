@@ -4,12 +4,17 @@
 //! Takes findings and what was noted before, gives their help.
 //! Afterwards: no help proposes a unit that the language refuses.
 
+use std::collections::HashSet;
+use std::rc::Rc;
+
+use ntg_structure::Unit;
+
 use super::dimension::{Dimension, Ratio};
 use super::elaborator::Elaborator;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{DeclaredName, Role};
+use crate::syntax::ast::{DeclaredName, Role, ShapeAxis};
 
 /// What helps need to know about the spec.
 #[derive(Default)]
@@ -18,6 +23,12 @@ pub(super) struct Noted {
     roots: Vec<(Span, String)>,
     /// Names of another size than the one from which they took their unit: the name, and its help.
     taken: Vec<(String, String)>,
+    /// The unit of the first duration that has one.
+    pub(super) clock: Option<Rc<Unit>>,
+    /// Names that nothing has, and where they were told of.
+    unknown: Vec<(String, Span)>,
+    /// The elements of which an equation of motion holds a derivative: phase, output and place in it.
+    pub(super) moved: HashSet<(usize, usize, Option<i64>)>, // Asked, never iterated.
     /// The phase whose equations of motion are at hand.
     pub(super) equations_of: Option<usize>,
 }
@@ -88,6 +99,46 @@ impl<'a> Elaborator<'a> {
             }
         }
         finding
+    }
+
+    /// How a definition is written that has one value for each index.
+    pub(super) fn family_help(&self, definition: usize) -> Option<String> {
+        let declared = &self.definitions[definition];
+        let axes = &declared.shape?.axes;
+        let indices: &[&str] = if axes.len() == 1 { &["i"] } else { &["i", "j"] };
+        if axes.len() != indices.len() || axes.iter().any(|axis| axis.index.is_some()) {
+            return None;
+        }
+        let range = |(index, axis): (&&str, &ShapeAxis)| {
+            let first = axis.first.as_ref().map_or_else(|| "1".to_owned(), |first| self.text(first.span));
+            format!("{index} in {first} .. {}", self.text(axis.last.span))
+        };
+        let ranges: Vec<String> = indices.iter().zip(axes).map(range).collect();
+        let (name, value) = (&declared.name.text, self.text(declared.value.span));
+        Some(format!("a value for each index is written `let {name}[{}] = {value};`", ranges.join(", ")))
+    }
+
+    /// The unit in which times are told: that of the independent variable, else that of the first duration.
+    pub(super) fn clock(&self) -> Unit {
+        let written = self.noted.clock.as_ref().filter(|_| self.domain.is_none());
+        written.map_or_else(|| self.problem.independent.unit.clone(), |unit| (**unit).clone())
+    }
+
+    /// Notes the unit of a duration.
+    pub(super) fn note_clock(&mut self, time: &Value) {
+        let unit = time.unit.as_ref().filter(|_| time.dimension == Some(self.time));
+        self.noted.clock = self.noted.clock.take().or_else(|| unit.cloned());
+    }
+
+    /// Whether a name that nothing has was told of in the same statement.
+    pub(super) fn is_told_in_statement(&mut self, name: &str, span: Span) -> bool {
+        let between = |other: Span| Span { start: other.end.min(span.end), end: other.start.max(span.start) };
+        let same = |other: Span| other != span && !self.source.slice(between(other)).contains([';', '{', '}']);
+        let told = self.noted.unknown.iter().any(|(known, other)| known == name && same(*other));
+        if !told {
+            self.noted.unknown.push((name.to_owned(), span));
+        }
+        told
     }
 
     /// What to write where an equation of motion sets a state equal to what has the unit of its derivative.

@@ -52,6 +52,7 @@ mod rates;
 mod reductions;
 mod rename;
 mod repeat;
+mod resting;
 mod route;
 mod rows;
 mod scenarios;

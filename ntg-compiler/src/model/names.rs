@@ -126,7 +126,7 @@ impl<'a> Elaborator<'a> {
             self.scopes[scope].order.clone()
         };
         let finding = Diagnostic::new(Code::UnknownName, segment.name.span, format!("unknown name `{text}`"));
-        if self.is_of_broken_library(scope, text) {
+        if self.is_of_broken_library(scope, text) || self.is_told_in_statement(text, segment.name.span) {
             return self.poison(segment.span);
         }
         let near = nearest(text, names.iter().copied());
