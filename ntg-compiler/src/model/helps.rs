@@ -4,7 +4,7 @@
 //! Takes findings and what was noted before, gives their help.
 //! Afterwards: no help proposes a unit that the language refuses.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use ntg_structure::Unit;
@@ -25,8 +25,8 @@ pub(super) struct Noted {
     taken: Vec<(String, String)>,
     /// The unit of the first duration that has one.
     pub(super) clock: Option<Rc<Unit>>,
-    /// Names that nothing has, and where they were told of.
-    unknown: Vec<(String, Span)>,
+    /// Names that nothing has, and where they were told of last.
+    unknown: HashMap<String, Span>, // Looked up, never iterated.
     /// The elements of which an equation of motion holds a derivative: phase, output and place in it.
     pub(super) moved: HashSet<(usize, usize, Option<i64>)>, // Asked, never iterated.
     /// The phase whose equations of motion are at hand.
@@ -134,9 +134,9 @@ impl<'a> Elaborator<'a> {
     pub(super) fn is_told_in_statement(&mut self, name: &str, span: Span) -> bool {
         let between = |other: Span| Span { start: other.end.min(span.end), end: other.start.max(span.start) };
         let same = |other: Span| other != span && !self.source.slice(between(other)).contains([';', '{', '}']);
-        let told = self.noted.unknown.iter().any(|(known, other)| known == name && same(*other));
+        let told = self.noted.unknown.get(name).is_some_and(|other| same(*other));
         if !told {
-            self.noted.unknown.push((name.to_owned(), span));
+            self.noted.unknown.insert(name.to_owned(), span);
         }
         told
     }

@@ -47,6 +47,9 @@ pub(super) struct Libraries {
     found: Vec<Diagnostic>,
 }
 
+/// What stands beside the place in a library of the language that does not take the arguments of a call.
+const MET: &str = "met here";
+
 /// The folder of a path, with its slash.
 fn folder(path: &str) -> &str {
     path.rfind('/').map_or("", |slash| &path[..=slash])
@@ -211,7 +214,16 @@ impl Libraries {
     /// Notes about libraries are told where those are checked.
     pub(super) fn told(&self, found: Vec<Diagnostic>, home: Option<usize>) -> Vec<Diagnostic> {
         let all = self.found.iter().cloned().chain(found);
-        all.filter_map(|finding| self.told_one(finding, home)).collect()
+        let mut told: Vec<Diagnostic> = all.filter_map(|finding| self.told_one(finding, home)).collect();
+        // One call of a library of the language is one mistake, however often its body meets it.
+        let mut calls: Vec<Span> = vec![];
+        told.retain(|finding| {
+            let is_call = finding.libraries.iter().any(|library| library.labels.iter().any(|(_, text)| text == MET));
+            let is_known = is_call && calls.contains(&finding.span);
+            calls.extend(is_call.then_some(finding.span));
+            !is_known
+        });
+        told
     }
 
     fn told_one(&self, mut finding: Diagnostic, home: Option<usize>) -> Option<Diagnostic> {
@@ -246,10 +258,10 @@ impl Libraries {
             // A library of the language is right: the place to mend is the call.
             if used.is_some()
                 && self.files[file].is_standard
-                && finding.code == Code::DimensionMismatch
+                && matches!(finding.code, Code::DimensionMismatch | Code::NotPure | Code::WildExponent)
                 && let Some(last) = places.last_mut()
             {
-                last.2 = Some("told of here".to_owned());
+                last.2 = Some(MET.to_owned());
                 if !finding.help.as_deref().is_some_and(|help| help.contains("` took [")) {
                     finding.help = Some("give this function arguments of the units that its body needs".to_owned());
                 }

@@ -115,6 +115,16 @@ fn a_unit_from_another_name_of_the_list_is_told() {
 }
 
 #[test]
+fn a_library_of_the_language_is_not_to_be_mended() {
+    let spec = format!("use std::rotation;\n{}", problem(&format!("{MOVING}\n    let R = rotation::about_x(x);")));
+    let found = findings_with(&spec, &Files(vec![]));
+    let help = "give this function arguments of the units that its body needs";
+    says(&found, "error[E042]: `cos` takes a pure number, this is a length [m]", "spec.ntg:6:13", help);
+    assert!(found.contains("::: std::rotation:"), "{found}");
+    assert_eq!(errors(&found), 1, "{found}");
+}
+
+#[test]
 fn a_missing_library_is_told_once() {
     let text = "    duration T = 5 [s];\n    state q[4] [1], w[3] [1/s];\n    collocation gauss(points = 3, intervals = 4);
     minimize integral(norm(w)^2);\n    let b = transpose(rotation::matrix(q)) * w;\n    dynamics { der(q) == rotation::rate(q, w);  der(w) == b / 1 [s]; }";
