@@ -126,8 +126,10 @@ fn a_library_of_the_language_is_not_to_be_mended() {
 
 #[test]
 fn a_missing_library_is_told_once() {
-    let text = "    duration T = 5 [s];\n    state q[4] [1], w[3] [1/s];\n    collocation gauss(points = 3, intervals = 4);
-    minimize integral(norm(w)^2);\n    let b = transpose(rotation::matrix(q)) * w;\n    dynamics { der(q) == rotation::rate(q, w);  der(w) == b / 1 [s]; }";
+    let text = "    duration T = 5 [s];\n    state q[4] [1], w[3] [1/s];
+    collocation gauss(points = 3, intervals = 4);
+    minimize integral(norm(w)^2);\n    let b = transpose(rotation::matrix(q)) * w;
+    dynamics { der(q) == rotation::rate(q, w);  der(w) == b / 1 [s]; }";
     let missing = told(text);
     says(
         &missing,
@@ -150,7 +152,8 @@ fn a_missing_library_is_told_once() {
 
 #[test]
 fn a_forgotten_derivative_is_told() {
-    let text = "    duration T = 5 [s];\n    state el [deg], v [m/s];\n    input a [m/s^2];\n    collocation gauss(points = 3, intervals = 4);
+    let text = "    duration T = 5 [s];\n    state el [deg], v [m/s];\n    input a [m/s^2];
+    collocation gauss(points = 3, intervals = 4);
     minimize integral(a^2);\n    dynamics { el == 2 [deg/s];  der(v) == a; }";
     let help = "write the derivative of the state: `der(el) == ...`";
     says(&told(text), "error[E041]: a pure number cannot be compared with a rate [1/s]", "spec.ntg:7:16", help);
@@ -162,7 +165,8 @@ fn a_forgotten_derivative_is_told() {
 }
 
 /// A problem in hours, with states and an input, whose equations may be replaced.
-const DAY: &str = "    duration T = 10 [h];\n    state x [m], y[3] [m];\n    input u: held;\n    collocation gauss(points = 3, intervals = 20);
+const DAY: &str = "    duration T = 10 [h];\n    state x [m], y[3] [m];\n    input u: held;
+    collocation gauss(points = 3, intervals = 20);
     minimize integral(u^2);\n    dynamics { der(x) == 1 [m/h];  der(y) == (1, 1, 1) [m/h]; }";
 
 /// What is told of a day with a statement more, which stands on line 8.
@@ -253,7 +257,8 @@ fn means_and_interpolants_are_helped() {
 
 #[test]
 fn times_are_told_in_the_unit_of_the_spec() {
-    let scenario = "    collocation gauss(points = 3, intervals = 4);\n    scenario c[k in 1 .. 3] {\n        state x [m];\n        input u [m/s]: held;\n        shared u until 1.3 [h];
+    let scenario = "    collocation gauss(points = 3, intervals = 4);\n    scenario c[k in 1 .. 3] {
+        state x [m];\n        input u [m/s]: held;\n        shared u until 1.3 [h];
         dynamics { der(x) == u * k; }\n        initial { x == 0; }\n        minimize integral(u^2);\n    }";
     let found =
         told(&format!("    duration T = 10 [h];\n{}", scenario.replace("        minimize integral(u^2);\n", "")));
