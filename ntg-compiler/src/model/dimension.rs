@@ -75,6 +75,15 @@ impl Ratio {
     }
 }
 
+impl fmt::Display for Ratio {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.denominator {
+            1 => write!(f, "{}", self.numerator),
+            denominator => write!(f, "{}/{denominator}", self.numerator),
+        }
+    }
+}
+
 /// The largest exponent, and the least.
 const LARGEST: i64 = i32::MAX as i64;
 const MINUS_LARGEST: i64 = -LARGEST;

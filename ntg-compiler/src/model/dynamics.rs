@@ -28,12 +28,15 @@ impl<'a> Elaborator<'a> {
         let agent = Some(self.phases[phase].agent);
         let site = Site { block: Block::Trajectory, agent, phase: Some(phase), part: Part::WHOLE };
         let before = self.problem.constraints.len();
+        self.noted.equations_of = Some(phase);
         self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
+        self.noted.equations_of = None;
         let rows: i64 = self.problem.constraints[before..]
             .iter()
             .map(|row| members(&row.loops[around.min(row.loops.len())..]))
             .sum();
         *self.equations.entry(phase).or_default() += rows;
+        self.note_moved(phase, before);
     }
 
     fn only_equations(&mut self, statements: &'a [Statement<ast::Constraint>]) {
@@ -84,8 +87,9 @@ impl<'a> Elaborator<'a> {
         let plural = |n: i64, word: &str| if n == 1 { format!("1 {word}") } else { format!("{n} {word}s") };
         let of = if elements == 1 { "1 element".to_owned() } else { format!("{elements} elements") };
         if equations < elements {
-            let (who, at) = match resting {
-                Some(name) => (format!(": `{}` has none", name.name.text), name.name.span),
+            let resting = resting.map(|name| (name.name.text.clone(), name.name.span));
+            let (who, at) = match resting.or_else(|| self.resting_element(phase, &states)) {
+                Some((name, at)) => (format!(": `{name}` has none"), at),
                 None => (String::new(), span),
             };
             let message = format!("{} for {of} of states{who}", plural(equations, "equation"));
@@ -116,7 +120,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What is declared as output, state or input in a phase; a phase's own declaration replaces that of its agent.
-    fn declared_outputs(&self, phase: usize) -> Vec<(Role, &'a DeclaredName)> {
+    pub(super) fn declared_outputs(&self, phase: usize) -> Vec<(Role, &'a DeclaredName)> {
         let (scope, agent) = (self.phases[phase].scope, self.phases[phase].agent);
         let common = self.agents[agent].scope;
         let mut all: Vec<(Role, &'a DeclaredName)> = Vec::new();

@@ -18,6 +18,7 @@ use super::definitions::{Memo, MemoKey};
 use super::derivatives::{Jump, Lacking};
 use super::dimension::Dimension;
 use super::files::Contents;
+use super::helps::Noted;
 use super::kinds::Kinds;
 use super::known_shapes::KnownShapes;
 use super::problem::{Form, IndexId, Leaf, Loop, PhaseAt, Problem};
@@ -188,6 +189,8 @@ pub(super) struct Elaborator<'a> {
     /// An index that something settled must know.
     pub(super) opened: Option<OpenIndex>,
     pub(super) kinds: Kinds,
+    /// What helps need to know about the spec.
+    pub(super) noted: Noted,
     pub(super) found: Vec<Diagnostic>,
     /// Derivatives that splines do not have.
     pub(super) lacking: Vec<Lacking>,
@@ -275,6 +278,7 @@ impl<'a> Elaborator<'a> {
             squares: Map::default(),
             opened: None,
             kinds: Kinds::default(),
+            noted: Noted::default(),
             found: Vec::new(),
             lacking: Vec::new(),
             jumps: Vec::new(),
@@ -300,6 +304,7 @@ impl<'a> Elaborator<'a> {
     pub(super) fn report(&mut self, finding: Diagnostic) {
         let key = (finding.code, finding.span, finding.message.clone());
         if self.reported.insert(key) {
+            let finding = self.helped(finding);
             self.found.push(finding);
         }
     }

@@ -140,13 +140,16 @@ impl<'a> Elaborator<'a> {
         let finding = Diagnostic::new(Code::DimensionMismatch, whole, message)
             .label(a.span, format!("this is {this}"))
             .label(b.span, format!("this is {that}"));
-        let finding = finding.help(self.mend(a, b));
+        let finding = finding.help(self.mend(verb, a, b));
         self.report(finding);
         true
     }
 
     /// How to mend a clash of dimensions, as well as can be guessed.
-    fn mend(&self, a: &Value, b: &Value) -> String {
+    fn mend(&self, verb: &str, a: &Value, b: &Value) -> String {
+        if let Some(help) = self.forgotten_rate(a, b).filter(|_| verb == "compare") {
+            return help;
+        }
         let bare = |v: &Value| v.dimension == Some(Dimension::NONE) && self.problem.dag.is_constant(v.node).is_some();
         let unit_of = |v: &Value| match &v.unit {
             Some(unit) => unit.symbol.clone(),
@@ -250,7 +253,10 @@ impl<'a> Elaborator<'a> {
         }
         let dimension = match base.dimension {
             Some(dimension) if !dimension.is_none() => match self.rational(&exponent) {
-                Some(ratio) => Some(dimension.power(ratio)),
+                Some(ratio) => {
+                    self.note_root(&base, span, ratio);
+                    Some(dimension.power(ratio))
+                }
                 None => return self.wild_exponent(&base, &exponent, span),
             },
             other => other,

@@ -82,6 +82,9 @@ pub(super) const BUILTINS: &[Builtin] = &[
 /// The function that takes an expression at a place in time; a declaration of its name in the spec wins.
 pub(super) const AT: &str = "at";
 
+/// How data are interpolated: declared, and applied.
+const TABLE: &str = "table f(x, y) = linear { ... }` in the problem, and here `f(x, y)";
+
 /// Names that people try, and how the language writes them.
 const HABITS: &[(&str, &str)] = &[
     ("ln", "log(x)"),
@@ -106,6 +109,19 @@ const HABITS: &[(&str, &str)] = &[
     ("trapz", "integral(x)"),
     ("cumtrapz", "integral(x)"),
     ("quad", "integral(x)"),
+    ("mean", "integral(x) / T"),
+    ("average", "integral(x) / T"),
+    ("avg", "integral(x) / T"),
+    ("rms", "sqrt(integral(x^2) / T)"),
+    ("interp", TABLE),
+    ("interp1", TABLE),
+    ("interp1d", TABLE),
+    ("interp2", TABLE),
+    ("interp2d", TABLE),
+    ("interpolate", TABLE),
+    ("interpolant", TABLE),
+    ("lookup", TABLE),
+    ("lookup_table", TABLE),
     ("sumsq", "dot(u, u)"),
     ("vertcat", "(x, y)"),
     ("horzcat", "((a, b), (c, d))"),
@@ -223,6 +239,7 @@ impl<'a> Elaborator<'a> {
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
         let standard = || self.in_standard(name, APPLIED).filter(|_| HABITS.iter().all(|(habit, _)| *habit != name));
         if let Some(help) = self.library_help(cx.names(), name).or_else(standard) {
+            self.tell_library_once(cx.names(), name);
             let help = behind_near(nearest(name, own), help);
             return self.refuse(finding.help(help), call.span);
         }
@@ -234,6 +251,12 @@ impl<'a> Elaborator<'a> {
                 own.chain(BUILTINS.iter().map(|b| b.name)).chain(VECTOR_FUNCTIONS.iter().map(|(name, _)| *name)),
             ),
         ) {
+            (Some(right), _) if right.contains("/ T") => {
+                let duration = names.iter().find(|(_, entity)| matches!(entity, Entity::Duration(_)));
+                let right =
+                    duration.map_or_else(|| right.to_owned(), |(name, _)| right.replace("/ T", &format!("/ {name}")));
+                finding.help(format!("over the whole time write `{right}`; of elements `sum(i in 1 .. n, x[i]) / n`"))
+            }
             (Some(right), _) => finding.help(format!("write `{right}`")),
             (None, Some(near)) if !matches!(name, "inv" | "det") => finding.help(format!("did you mean `{near}`?")),
             (None, _) if matches!(name, "inv" | "inverse" | "det" | "solve") => {
@@ -299,6 +322,7 @@ impl<'a> Elaborator<'a> {
                 Value::new(node, Dimension::NONE, span)
             }
             Rule::Root => {
+                self.note_root(first, span, Ratio::new(1, 2));
                 let node = self.problem.dag.sqrt(first.node);
                 first.map(node, first.dimension.map(|d| d.power(Ratio::new(1, 2))), span)
             }
@@ -484,6 +508,7 @@ impl<'a> Elaborator<'a> {
 
     /// Findings inside a function's body say in which use of it they were made.
     pub(super) fn tell_use(&mut self, before: usize, call: &Call) {
+        let taken = self.taken_help(call.span);
         for finding in &mut self.found[before..] {
             // What a library finds is told at every use on the way to the spec's own text.
             let in_library = self.main.is_some_and(|end| finding.span.start > end);
@@ -498,6 +523,11 @@ impl<'a> Elaborator<'a> {
             let is_told = finding.severity == Severity::Error || in_library;
             if !told && is_told && !call.span.contains(finding.span) {
                 finding.labels.push((call.span, format!("in this use of `{}`", call.function.text)));
+                if finding.code == Code::DimensionMismatch
+                    && let Some(help) = &taken
+                {
+                    finding.help = Some(help.clone());
+                }
             }
         }
     }

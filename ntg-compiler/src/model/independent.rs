@@ -58,7 +58,7 @@ impl<'a> Elaborator<'a> {
 
     /// A number in the unit of the independent variable, as one would write it.
     pub(super) fn example_of_time(&self, number: &str) -> String {
-        match self.problem.independent.unit.symbol.as_str() {
+        match self.clock().symbol.as_str() {
             "" => number.to_owned(),
             unit => format!("{number} [{unit}]"),
         }
@@ -72,7 +72,10 @@ impl<'a> Elaborator<'a> {
                 let text = domain.unit.as_ref().map_or_else(String::new, |unit| format!(" {}", self.text(unit.span)));
                 (self.time.describe(), unit.symbol.clone(), Some(format!("domain {name}{text}")))
             }
-            None => ("a time".to_owned(), "s".to_owned(), None),
+            None => {
+                let unit = self.noted.clock.as_ref().map_or("s", |unit| unit.symbol.as_str());
+                ("a time".to_owned(), unit.to_owned(), None)
+            }
         }
     }
 }

@@ -43,9 +43,12 @@ pub(super) struct Libraries {
     pub(super) main: u32,
     pub(super) files: Vec<File>,
     /// For each `use` of the spec, which file that is.
-    uses: Vec<Option<usize>>,
+    pub(super) uses: Vec<Option<usize>>,
     found: Vec<Diagnostic>,
 }
+
+/// What stands beside the place in a library of the language that does not take the arguments of a call.
+const MET: &str = "met here";
 
 /// The folder of a path, with its slash.
 fn folder(path: &str) -> &str {
@@ -211,7 +214,16 @@ impl Libraries {
     /// Notes about libraries are told where those are checked.
     pub(super) fn told(&self, found: Vec<Diagnostic>, home: Option<usize>) -> Vec<Diagnostic> {
         let all = self.found.iter().cloned().chain(found);
-        all.filter_map(|finding| self.told_one(finding, home)).collect()
+        let mut told: Vec<Diagnostic> = all.filter_map(|finding| self.told_one(finding, home)).collect();
+        // One call of a library of the language is one mistake, however often its body meets it.
+        let mut calls: Vec<Span> = vec![];
+        told.retain(|finding| {
+            let is_call = finding.libraries.iter().any(|library| library.labels.iter().any(|(_, text)| text == MET));
+            let is_known = is_call && calls.contains(&finding.span);
+            calls.extend(is_call.then_some(finding.span));
+            !is_known
+        });
+        told
     }
 
     fn told_one(&self, mut finding: Diagnostic, home: Option<usize>) -> Option<Diagnostic> {
@@ -243,6 +255,17 @@ impl Libraries {
             places.push((file, finding.span, None));
             let used = labels.iter().find(|(_, text)| text.starts_with("in this use")).map(|(span, _)| *span);
             finding.span = used.or_else(|| uses_here.first().copied()).unwrap_or(self.files[file].used);
+            // A library of the language is right: the place to mend is the call.
+            if used.is_some()
+                && self.files[file].is_standard
+                && matches!(finding.code, Code::DimensionMismatch | Code::NotPure | Code::WildExponent)
+                && let Some(last) = places.last_mut()
+            {
+                last.2 = Some(MET.to_owned());
+                if !finding.help.as_deref().is_some_and(|help| help.contains("` took [")) {
+                    finding.help = Some("give this function arguments of the units that its body needs".to_owned());
+                }
+            }
             if used.is_none() && !labels.iter().any(|(span, _)| *span == finding.span) {
                 labels.push((finding.span, "used here".to_owned()));
             }
@@ -374,6 +397,15 @@ impl<'a> Elaborator<'a> {
         }
         let library = name.rsplit_once("::").and_then(|(library, _)| library_named(&self.scopes, scope, library));
         library.is_some_and(|library| self.scopes[library].is_broken)
+    }
+
+    /// Keeps a library that no `use` names from being told of again.
+    pub(super) fn tell_library_once(&mut self, scope: ScopeId, name: &'a str) {
+        if let Some((library, _)) = name.rsplit_once("::")
+            && library_named(&self.scopes, scope, library).is_none()
+        {
+            self.lost.push(library);
+        }
     }
 
     /// What to write for a name that no library has, or that a library has.

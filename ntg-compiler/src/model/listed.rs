@@ -34,6 +34,7 @@ impl Elaborator<'_> {
     /// Refuses names for which the unit in another name's bounds stands nearer than the unit that they take, and gives
     /// their places in the list: what they are measured in is not known.
     pub(super) fn units_in_doubt(&mut self, names: &[DeclaredName], measured: &[Measured]) -> Vec<usize> {
+        self.note_taken(names);
         let mut in_doubt = vec![];
         for (i, name) in names.iter().enumerate() {
             let Some(rival) = rival(names, i) else { continue };

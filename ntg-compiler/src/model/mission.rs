@@ -263,6 +263,7 @@ impl<'a> Elaborator<'a> {
         match extent {
             Extent::Fixed(expr) => match self.bound(cx, expr, what).and_then(|value| self.as_time(value, what)) {
                 Some(value) => {
+                    self.note_clock(&value);
                     self.positive(value.node, expr.span);
                     Duration::Fixed(value.node)
                 }
@@ -270,8 +271,8 @@ impl<'a> Elaborator<'a> {
             },
             Extent::Free(bounds) => {
                 let (nodes, joined) = self.bounds(cx, bounds, what);
-                if let Some(joined) = joined {
-                    self.as_time(joined.at(bounds.span), what);
+                if let Some(time) = joined.and_then(|joined| self.as_time(joined.at(bounds.span), what)) {
+                    self.note_clock(&time);
                 }
                 if let Some(upper) = nodes.upper {
                     self.positive(upper, bounds.upper.as_ref().map_or(span, |e| e.span));

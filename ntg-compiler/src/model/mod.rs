@@ -28,6 +28,7 @@ mod given;
 #[cfg(test)]
 mod growth;
 mod guess;
+mod helps;
 mod independent;
 mod kinds;
 mod known_shapes;
@@ -51,6 +52,7 @@ mod rates;
 mod reductions;
 mod rename;
 mod repeat;
+mod resting;
 mod route;
 mod rows;
 mod scenarios;
@@ -171,7 +173,7 @@ impl<'a> Elaborator<'a> {
         self.independent(&problem.items);
         self.declarations(problem);
         self.independent_named(&problem.items);
-        if !libraries.files.is_empty() {
+        if !libraries.uses.is_empty() {
             self.libraries(libraries, uses);
         }
         self.constants_from_outside(given);

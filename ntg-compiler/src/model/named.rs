@@ -80,8 +80,9 @@ impl<'a> Elaborator<'a> {
         };
         if !fits {
             let expr = self.definitions[definition].value;
-            let help = "state the size that the value has, or leave it out";
-            self.misfit_shapes((name.span, &Shape::Of(stated)), (expr.span, &value), help);
+            let family = self.family_help(definition).filter(|_| value.is_number());
+            let help = family.unwrap_or_else(|| "state the size that the value has, or leave it out".to_owned());
+            self.misfit_shapes((name.span, &Shape::Of(stated)), (expr.span, &value), &help);
             return None;
         }
         Some(axes)

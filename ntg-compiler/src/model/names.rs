@@ -118,7 +118,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Tells of a name that nothing has.
-    pub(super) fn unknown(&mut self, cx: &Context<'a>, segment: &Segment, outwards: bool) -> Value {
+    pub(super) fn unknown(&mut self, cx: &Context<'a>, segment: &'a Segment, outwards: bool) -> Value {
         let (scope, text) = (cx.names(), &segment.name.text);
         let names: Vec<&str> = if outwards {
             visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
@@ -126,11 +126,12 @@ impl<'a> Elaborator<'a> {
             self.scopes[scope].order.clone()
         };
         let finding = Diagnostic::new(Code::UnknownName, segment.name.span, format!("unknown name `{text}`"));
-        if self.is_of_broken_library(scope, text) {
+        if self.is_of_broken_library(scope, text) || self.is_told_in_statement(text, segment.name.span) {
             return self.poison(segment.span);
         }
         let near = nearest(text, names.iter().copied());
         if let Some(help) = self.library_help(scope, text) {
+            self.tell_library_once(scope, text);
             return self.refuse(finding.help(behind_near(near, help)), segment.span);
         }
         if let Some(bound) = self.index_names.get(text.as_str()) {

@@ -347,7 +347,7 @@ impl<'a> Elaborator<'a> {
         let name = self.problem.phases[phase].duration_name.as_deref().unwrap_or("duration");
         match (self.start_of(&at).as_number(), self.lasting(&at).as_number()) {
             (Some(start), Some(lasting)) => {
-                let shown = self.problem.independent.shown(start + tau * lasting);
+                let shown = (start + tau * lasting) / self.clock().factor;
                 self.example_of_time(&((shown * 1e6).round() / 1e6).to_string())
             }
             _ => format!("{} * {name}", (tau * 1e6).round() / 1e6),

@@ -9,6 +9,7 @@ use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::elaborator::Elaborator;
+use super::mention::mentions_time;
 use super::scope::{Allow, Context, Entity, ScopeId, look_up};
 use crate::syntax::ast::{self, BlockPlace, Expr, ExprKind, ItemKind, Statement};
 
@@ -244,6 +245,9 @@ impl<'a> Elaborator<'a> {
     fn quiet_whole(&mut self, scope: ScopeId, order: &'a Expr) -> Option<i64> {
         if let Some(number) = order.signed_literal() {
             return Some(number.value as i64);
+        }
+        if mentions_time(order, &self.problem.independent.name) {
+            return None;
         }
         self.whole(&Context::of(scope, Allow::Constants), order, "the order of a derivative")
     }

@@ -15,7 +15,8 @@ use crate::syntax::ast::Call;
 impl<'a> Elaborator<'a> {
     pub(super) fn call_shape(&mut self, cx: &Context<'a>, call: &'a Call) -> Option<Shape> {
         let name = call.function.text.as_str();
-        match look_up(&self.scopes, cx.names(), name).map(|(_, declared)| declared.entity) {
+        let entity = look_up(&self.scopes, cx.names(), name).map(|(_, declared)| declared.entity);
+        match entity {
             Some(Entity::Function(function)) => {
                 let shapes =
                     call.arguments.iter().map(|argument| self.shape(cx, argument)).collect::<Option<Vec<_>>>()?;
@@ -26,7 +27,14 @@ impl<'a> Elaborator<'a> {
                 (Some(builtin), _) => self.builtin_shape(cx, builtin, call),
                 (None, Some(function)) => self.vector_shape(cx, function, call),
                 (None, None) if name == AT => self.shape_at(cx, call),
-                (None, None) => Some(Shape::NUMBER),
+                // What cannot be resolved has no shape.
+                (None, None) => {
+                    for argument in call.arguments.iter().filter(|_| entity.is_none()) {
+                        self.shape(cx, argument);
+                    }
+                    self.no_function(cx, call, entity);
+                    None
+                }
             },
         }
     }

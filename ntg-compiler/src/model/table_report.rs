@@ -5,10 +5,11 @@
 //! gradient jumps because a table keeps an end value that it reaches with a slope.
 
 use ntg_splines::{Axis, Extrapolation, Method, Symmetry, TableError};
-use ntg_structure::{Table, TableExtrapolation, TableMethod, TableSymmetry};
+use ntg_structure::{Table, TableExtrapolation, TableMethod, TableSymmetry, Unit};
 
 use super::elaborator::Elaborator;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
 use crate::syntax::ast;
 
 /// The part of the range of a table's values that is not worth a note: rounding, mostly.
@@ -45,11 +46,11 @@ impl Elaborator<'_> {
                 self.fit_note(declared, table, &made);
                 self.end_slopes(declared, table, &made);
             }
-            Err(error) => self.wrong_table(declared, &error),
+            Err(error) => self.wrong_table(declared, table, &error),
         }
     }
 
-    fn wrong_table(&mut self, declared: &ast::Table, error: &TableError) {
+    fn wrong_table(&mut self, declared: &ast::Table, table: &Table, error: &TableError) {
         let axis = |k: usize| declared.axes.get(k).map(|axis| axis.span);
         let order = declared.method.order.as_ref().map(|order| order.span);
         let (span, help) = match *error {
@@ -64,8 +65,37 @@ impl Elaborator<'_> {
             }
             _ => (Some(declared.method.span), "choose another method, or other nodes"),
         };
-        let message = format!("`{}`: {error}", declared.name.text);
-        let finding = Diagnostic::new(Code::WrongTable, span.unwrap_or(declared.name.span), message);
+        let argument = |k: usize| declared.axes.get(k).map_or("", |axis| axis.name.text.as_str());
+        let in_unit = |value: f64, unit: &Unit| {
+            let shown = (value / unit.factor * 1e9).round() / 1e9;
+            if unit.symbol.is_empty() { shown.to_string() } else { format!("{shown} [{}]", unit.symbol) }
+        };
+        // Numbers as they stand in the spec, not in SI units.
+        let what = match *error {
+            TableError::EvenNegative { axis, node } => format!(
+                "`{}` is even, so its nodes must not be negative, but the first one is {}",
+                argument(axis),
+                in_unit(node, &table.axes[axis].unit)
+            ),
+            TableError::PeriodicNotClosed { axis, first, last } => format!(
+                "`{}` is periodic, so its last node must repeat the values of the first, but they are {} and {}",
+                argument(axis),
+                in_unit(first, &table.unit),
+                in_unit(last, &table.unit)
+            ),
+            _ => error.to_string(),
+        };
+        let message = format!("`{}`: {what}", declared.name.text);
+        let mut finding = Diagnostic::new(Code::WrongTable, span.unwrap_or(declared.name.span), message);
+        let (nodes, of): (&[usize], usize) = match *error {
+            TableError::EvenNegative { axis, .. } => (&[0], axis),
+            TableError::PeriodicNotClosed { axis, .. } => (&[0, table.axes[axis].nodes.len() - 1], axis),
+            _ => (&[], 0),
+        };
+        let places = nodes.iter().filter_map(|node| node_of(declared, of, *node));
+        for (place, label) in places.zip(["the first node", "the last node"]) {
+            finding = finding.label(place, label);
+        }
         self.report(finding.help(help));
     }
 
@@ -122,6 +152,15 @@ impl Elaborator<'_> {
         self.report(
             finding.help("the table keeps its end value there; `extrapolate = linear` goes on with the end slope"),
         );
+    }
+}
+
+/// Where a node of an argument stands in the spec, if it stands there.
+fn node_of(declared: &ast::Table, axis: usize, node: usize) -> Option<Span> {
+    let ast::TableData::Inline(rows) = &declared.data else { return None };
+    match axis {
+        0 => rows.rows.get(node).map(|row| row.node.span),
+        _ => rows.header.as_ref()?.get(node).map(|node| node.span),
     }
 }
 

@@ -121,7 +121,8 @@ impl<'a> Elaborator<'a> {
                     rows.span,
                     format!("the nodes of `{}` are missing", table.axes[1].name.text),
                 );
-                self.report(finding.help("write them first, in a row of their own: `0, 30, 31, 180;`"));
+                let columns = rows.rows.iter().map(|row| row.values.len()).max().unwrap_or_default();
+                self.report(finding.help(missing_nodes(&table.axes[1].name.text, columns)));
                 return None;
             }
             (_, Some(header)) => {
@@ -308,4 +309,17 @@ impl<'a> Elaborator<'a> {
             }
         }
     }
+}
+
+/// What to write where the nodes of the second argument are missing: one for each column.
+fn missing_nodes(name: &str, columns: usize) -> String {
+    // So many are written out.
+    const SHOWN: usize = 4;
+    let node = |k: usize| format!("{name}_{k}");
+    let nodes: Vec<String> = match columns {
+        0..=SHOWN => (1..=columns.max(1)).map(node).collect(),
+        _ => vec![node(1), node(2), "...".to_owned(), node(columns)],
+    };
+    let each = if columns > 1 { format!(", one for each of {columns} columns") } else { String::new() };
+    format!("write them first, in a row of their own{each}: `{};`", nodes.join(", "))
 }

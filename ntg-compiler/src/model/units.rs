@@ -156,6 +156,11 @@ const HABITS: &[(&str, &str)] = &[
     ("seconds", "s"),
     ("hr", "h"),
     ("hour", "h"),
+    ("hours", "h"),
+    ("hrs", "h"),
+    ("mins", "min"),
+    ("minutes", "min"),
+    ("days", "day"),
     ("minute", "min"),
     ("meter", "m"),
     ("meters", "m"),
@@ -172,6 +177,8 @@ const HABITS: &[(&str, &str)] = &[
     ("kmh", "km/h"),
     ("kph", "km/h"),
     ("Ohm", "ohm"),
+    ("ohms", "ohm"),
+    ("Ohms", "ohm"),
     ("Ω", "ohm"),
     ("Nm", "N*m"),
     ("ton", "t"),
@@ -258,19 +265,46 @@ fn unknown(text: &str, span: Span) -> Diagnostic {
         let help = format!("temperatures count from absolute zero: write `{in_kelvin} degrees; a unit has no offset");
         return found.help(help);
     }
-    let habit = HABITS.iter().find(|(wrong, _)| *wrong == text).map(|(_, right)| *right);
-    // Of symbols that differ by the size of letters alone, one in daily use.
-    let alike = |symbol: &String| symbol.eq_ignore_ascii_case(text);
-    let every =
-        PREFIXES.iter().flat_map(|(prefix, _)| PREFIXED.iter().map(move |(unit, ..)| format!("{prefix}{unit}")));
-    let near = offered().map(str::to_owned).chain(every).find(alike);
-    let near = habit.map(str::to_owned).or(near).or_else(|| nearest(text, offered()).map(str::to_owned));
+    let near = habit(text).or_else(|| alike(text));
+    let near = near.or_else(|| nearest(text, offered().filter(|unit| !another_prefix(text, unit))).map(str::to_owned));
     match near {
         Some(near) => found.help(format!("did you mean `{near}`?")),
         None => {
             found.help("units are combined from symbols such as `m`, `km`, `s`, `kg`, `N`, `deg` by `*`, `/` and `^`")
         }
     }
+}
+
+/// What to write for a symbol that people write for another, with its prefix if it has one.
+fn habit(text: &str) -> Option<String> {
+    let meant = |wrong: &str| HABITS.iter().find(|(habit, _)| *habit == wrong).map(|(_, right)| *right);
+    // `mΩ` is `mohm`; but `kton` is no `kt`, which is the knot.
+    let behind = |(prefix, _): &(&str, i32)| {
+        let right = meant(text.strip_prefix(prefix)?)?;
+        let first = right.split(['/', '*']).next()?;
+        let whole = PREFIXED.iter().chain(PLAIN).any(|(unit, ..)| format!("{prefix}{first}") == *unit);
+        let takes = PREFIXED.iter().any(|(unit, ..)| *unit == first);
+        (takes && !whole).then(|| format!("{prefix}{right}"))
+    };
+    meant(text).map(str::to_owned).or_else(|| PREFIXES.iter().find_map(behind))
+}
+
+/// Of symbols that differ by the size of letters alone: one that keeps the prefix, and of those one in daily use.
+fn alike(text: &str) -> Option<String> {
+    let every =
+        PREFIXES.iter().flat_map(|(prefix, _)| PREFIXED.iter().map(move |(unit, ..)| format!("{prefix}{unit}")));
+    let mut alike: Vec<String> = offered().map(str::to_owned).chain(every).collect();
+    alike.retain(|symbol| symbol.eq_ignore_ascii_case(text));
+    alike.sort_by_key(|symbol| another_prefix(text, symbol));
+    alike.into_iter().next()
+}
+
+/// Whether a symbol begins with another prefix than what was written, and the two differ by the size of the letter:
+/// milli and mega, pico and peta.
+fn another_prefix(text: &str, symbol: &str) -> bool {
+    let (Some(written), Some(offered)) = (text.chars().next(), symbol.chars().next()) else { return false };
+    let is_prefix = |letter: char| PREFIXES.iter().any(|(prefix, _)| prefix.starts_with(letter));
+    written != offered && written.eq_ignore_ascii_case(&offered) && is_prefix(written) && is_prefix(offered)
 }
 
 /// How a declared unit is shown: as the user wrote it, without the brackets and blanks.

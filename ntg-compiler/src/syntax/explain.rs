@@ -281,6 +281,15 @@ impl Here<'_> {
             Some("domain") => {
                 return Some("write the name of the independent variable and its unit: `domain s [m];`".into());
             }
+            Some("periodic") if this == ";" && before == "periodic" => {
+                return Some("write what ends as it begins: `periodic x, y;`".into());
+            }
+            Some("jump") if this == ";" && before == "jump" => {
+                return Some("write what may jump at the start of the phase: `jump x, y;`".into());
+            }
+            Some("continuous") if this == ";" && before == "continuous" => {
+                return Some("write what has no jumps, and up to which derivative: `continuous x up to 1;`".into());
+            }
             Some("shared") => return Some("write the inputs, and until when: `shared u until 1 [s];`".into()),
             _ => {}
         }
@@ -330,7 +339,7 @@ impl Here<'_> {
             return Some("functions of the language stand alone, `sin(x)`, those of a library behind `::`: `use std::rotation;`, `rotation::matrix(q)`".into());
         }
         if let Some(advice) = self.advice_on_conditions(this, before) {
-            return Some(advice.into());
+            return Some(advice);
         }
         if after_number && matches!(this, "(" | "{" | "<") && self.expected.has(Rule::operator) {
             return Some(format!(

@@ -8,6 +8,7 @@ mod codegen_problem;
 mod codegen_support;
 mod data;
 mod format;
+mod helps;
 mod libraries;
 mod mistakes;
 mod model_ambiguities;

@@ -10,16 +10,23 @@ const JOINING: [&str; 5] = ["and", "or", "not", "xor", "where"];
 /// How a whole conditional is written.
 const FORM: &str = "write `if a <= b { ... } else { ... }`";
 
+/// What constraints have in the place of a condition.
+const PART: &str = "over a part of the time write `trajectory from a to b { ... }`, or a phase";
+
 impl Here<'_> {
-    pub(super) fn advice_on_conditions(&self, this: &str, before: &str) -> Option<&'static str> {
+    pub(super) fn advice_on_conditions(&self, this: &str, before: &str) -> Option<String> {
         let has = |rule| self.expected.has(rule);
         let is_relation = matches!(this, "==" | "<=" | ">=" | "<" | ">" | "!=" | "=");
-        match (this, before) {
+        if matches!(this, "if") && has(Rule::semicolon) && has(Rule::operator) {
+            return Some(format!("a constraint has no condition: {PART}"));
+        }
+        if (is_relation || this == "in") && has(Rule::right_brace) && this != "=" && !self.opened_behind_if() {
+            let part = self.part_behind_if().unwrap_or_else(|| PART.to_owned());
+            return Some(format!("an `if` is a value and holds no constraints: {part}"));
+        }
+        let advice = match (this, before) {
             (_, word) | (word, _) if JOINING.contains(&word) && has(Rule::semicolon) => {
                 Some("write two statements: all of them hold")
-            }
-            ("if", _) if has(Rule::semicolon) && has(Rule::operator) => {
-                Some("what must hold at times only is written in a phase")
             }
             (_, word) | (word, _) if JOINING.contains(&word) && (has(Rule::relation) || has(Rule::left_brace)) => {
                 Some("a condition is one relation: write one `if` inside the other, or `a in lo .. hi`")
@@ -50,11 +57,25 @@ impl Here<'_> {
             _ if is_relation && self.opened_behind_if() => {
                 Some("a condition stands without parentheses: `if a <= b { ... }`")
             }
-            _ if is_relation && has(Rule::right_brace) => {
-                Some("an `if` is a value and holds no constraints: what must hold at times only is written in a phase")
-            }
             _ => None,
+        };
+        advice.map(str::to_owned)
+    }
+
+    /// The part of a trajectory that is meant by `if t >= 6 [h] {`, which is still open.
+    fn part_behind_if(&self) -> Option<String> {
+        let brace = (0..self.index).rev().find(|at| self.word(*at) == "{")?;
+        let start = (0..brace).rev().find(|at| self.word(*at) == "if")?;
+        if self.word(start + 1) != "t" {
+            return None;
         }
+        let bound = self.written(start + 3, brace);
+        let part = match self.word(start + 2) {
+            ">=" | ">" => format!("from {bound}"),
+            "<=" | "<" => format!("to {bound}"),
+            _ => return None,
+        };
+        Some(format!("write `trajectory {part} {{ ... }}`"))
     }
 
     /// Whether the statement has that word before the place.
