@@ -51,6 +51,29 @@ fn what_no_method_solves_is_not_called_infeasible_at_a_point_that_meets_everythi
     assert!(report.violation.points > 1e-6 || report.objective > 6_144_000.0_f64.powf(0.2), "{report}");
 }
 
+/// 400 m in 5 s from rest to rest, with at most 4 m/s^2: 25 m is the most. Without the limit on the acceleration the others
+/// hold, sixteen of its sizes away.
+#[test]
+fn a_limit_far_from_where_the_others_would_hold_is_part_of_the_conflict() {
+    let spec = Shipped::text(
+        "problem Hopeless {
+            duration T in 1 .. 5 [s];
+            state r [m], v [m/s];
+            input a in -4 .. 4 [m/s^2];
+            collocation gauss(points = 3, intervals = 10);
+            minimize T;
+            dynamics { der(r) == v;  der(v) == a; }
+            initial { r == 0;  v == 0; }
+            final { arrive: r == 400 [m];  v == 0; }
+        }",
+    );
+    let found = conflict(&spec, Method::Auto);
+    let named = names(&found);
+    for name in ["arrive", "a in -4 .. 4 [m/s^2]"] {
+        assert!(named.iter().any(|known| *known == name), "{found}");
+    }
+}
+
 #[test]
 fn a_signature_that_the_target_does_not_allow() {
     // At the target the radar stands 37 degrees below the horizon, where even nose-in shows 3.2.

@@ -35,6 +35,8 @@ const NOTHING: f64 = 1e-6;
 const IDLE: f64 = 1e-3;
 /// The price of a violation, in units of half the squared distance from the point before.
 const PRICE: f64 = 1e2;
+/// Prices of further rounds, where a violation seems to be least: its distance alone must not keep a point from it.
+const FARTHER: [f64; 2] = [1e4, 1e6];
 /// The barrier parameter at which a violation is believed, and the one at which it is measured.
 const ROUGH: f64 = 1.0;
 const FINE: f64 = 1e-6;
@@ -207,7 +209,7 @@ fn near(
         return Explanation::Consistent(near);
     }
     let (kept, relaxed, minimal) = search.smaller(all, relaxed);
-    let measured = search.round(&kept, &relaxed.outcome.x, FINE).filter(Relaxed::is_infeasible);
+    let measured = search.round(&kept, &relaxed.outcome.x, (PRICE, FINE)).filter(Relaxed::is_infeasible);
     let relaxed = measured.unwrap_or(relaxed);
     let parts = search.parts(&kept, &relaxed);
     Explanation::Conflict(Conflict { near, settled, parts, minimal, violation: relaxed.violation })
@@ -292,7 +294,7 @@ impl Search<'_> {
     /// The least violation of some constraints, without the others; none where it was not found in
     /// time. Below `enough` it is not looked for any further.
     fn least(&self, kept: &Constraints, x: &[f64], enough: f64) -> Option<Relaxed> {
-        let mut relaxed = self.round(kept, x, ROUGH)?;
+        let mut relaxed = self.round(kept, x, (PRICE, ROUGH))?;
         let mut fruitless = 0;
         for _ in 1..ROUNDS {
             if relaxed.violation <= enough {
@@ -303,16 +305,29 @@ impl Search<'_> {
                 return None;
             }
             let before = relaxed.violation;
-            relaxed = self.round(kept, &relaxed.outcome.x, ROUGH)?;
+            relaxed = self.round(kept, &relaxed.outcome.x, (PRICE, ROUGH))?;
             if relaxed.is_infeasible() && relaxed.violation >= (1.0 - LEAST) * before {
-                return Some(relaxed);
+                return self.far(kept, relaxed, enough);
             }
         }
-        None
+        self.far(kept, relaxed, enough).filter(|far| far.violation <= enough)
     }
 
-    /// The least violation as far as it lies near a point; none where time is up.
-    fn round(&self, kept: &Constraints, x: &[f64], barrier: f64) -> Option<Relaxed> {
+    /// Whether a violation that is least near its point goes down to `enough` further away; else it stays what it is.
+    fn far(&self, kept: &Constraints, near: Relaxed, enough: f64) -> Option<Relaxed> {
+        let mut x = near.outcome.x.clone();
+        for price in FARTHER {
+            let next = self.round(kept, &x, (price, ROUGH))?;
+            if next.violation <= enough {
+                return Some(next);
+            }
+            x = next.outcome.x;
+        }
+        Some(near)
+    }
+
+    /// The least violation as far as it lies near a point; none where time is up. Multipliers are those of [`PRICE`].
+    fn round(&self, kept: &Constraints, x: &[f64], (price, barrier): (f64, f64)) -> Option<Relaxed> {
         let remaining = self.until.saturating_duration_since(Instant::now());
         if remaining.is_zero() {
             return None;
@@ -334,7 +349,10 @@ impl Search<'_> {
             scaling: Scaling::Off,
             ..self.settings.solver_options()
         };
-        let outcome = ipm::solve_at_fixed_penalty(&near, x, FixedPenalty { parameter: PRICE, barrier }, &options);
+        let penalty = FixedPenalty { parameter: price, barrier: barrier * price / PRICE };
+        let mut outcome = ipm::solve_at_fixed_penalty(&near, x, penalty, &options);
+        let multipliers = outcome.row_multipliers.iter_mut().chain(&mut outcome.bound_multipliers);
+        multipliers.for_each(|y| *y *= PRICE / price);
         if matches!(outcome.status, End::Cancelled | End::TimeLimit | End::NotFinite { .. }) {
             return None;
         }
