@@ -70,7 +70,7 @@ fn a_limit_far_from_where_the_others_would_hold_is_part_of_the_conflict() {
     let found = conflict(&spec, Method::Auto);
     let named = names(&found);
     for name in ["arrive", "a in -4 .. 4 [m/s^2]"] {
-        assert!(named.iter().any(|known| *known == name), "{found}");
+        assert!(named.contains(&name), "{found}");
     }
 }
 
