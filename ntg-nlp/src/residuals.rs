@@ -79,9 +79,9 @@ pub struct Point<'a> {
     pub row_multipliers: &'a [f64],
     /// Multipliers of the bounds of the variables.
     pub bound_multipliers: &'a [f64],
-    /// The largest scaled term of the gradient of the Lagrangian: [`largest_term`].
+    /// The largest scaled term of the gradient of the Lagrangian: equation (6.5a).
     pub largest_term: f64,
-    /// The largest scaled term of each component of `J^T lambda`: [`terms_by_variable`].
+    /// The largest scaled term of each component of `J^T lambda`: equation (6.5b).
     pub terms: &'a [f64],
 }
 
