@@ -84,7 +84,16 @@ pub(crate) fn compile(
         Ok(compiled) => {
             let problem = Arc::new(Interpreted::new(&compiled.program));
             let tables = loader.found.into_inner().unwrap_or_else(PoisonError::into_inner);
-            Ok(Compiled { spec: Arc::new(Spec { source, notes: compiled.notes, tables, constants, differentiator: Mutex::default() }), problem })
+            Ok(Compiled {
+                spec: Arc::new(Spec {
+                    source,
+                    notes: compiled.notes,
+                    tables,
+                    constants,
+                    differentiator: Mutex::default(),
+                }),
+                problem,
+            })
         }
         Err(found) => {
             let data = errors::findings(py, found.iter(), &source)?;
