@@ -8,9 +8,12 @@
 //! Source of the published times: arXiv 2510.03932, `code/gpu-test.jl` of control-toolbox/OC-GPU-paper (commit 20a4f0e):
 //! MadNLP with ExaModels, tolerance 1e-7; MUMPS on the processor, cuDSS on an H100. They leave out modelling.
 
+mod timing;
+
 use cpu_time::ThreadTime;
 use ntg::prelude::*;
 use ntg::runtime::problem::WithStructure;
+use timing::{median, milliseconds};
 
 mod specs {
     pub(crate) mod goddard {
@@ -98,15 +101,4 @@ fn times(problem: &WithStructure<'_>) -> Result<(usize, f64, f64), Error> {
         first.push(milliseconds(|| solve(problem, &settings).map(drop))?);
     }
     Ok((report.iterations, median(kept), median(first)))
-}
-
-fn milliseconds(run: impl FnOnce() -> Result<(), Error>) -> Result<f64, Error> {
-    let began = ThreadTime::now();
-    run()?;
-    Ok(1e3 * began.elapsed().as_secs_f64())
-}
-
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }

@@ -4,10 +4,13 @@
 //! Run with `cargo run --release -p ntg-benches --example first_solve`; prints the table of `docs/performance.md`. Both are
 //! timed by turns, on generated code, on the processor.
 
+mod timing;
+
 use cpu_time::ThreadTime;
 use ntg::prelude::*;
 use ntg::runtime::problem::WithStructure;
 use ntg::runtime::structure::Points;
+use timing::{median, milliseconds};
 
 mod specs {
     pub(crate) mod oscillator {
@@ -74,15 +77,4 @@ fn row(name: &str, problem: &dyn Problem) -> Result<(), Error> {
     let (kept, first) = (median(kept), median(first));
     println!("| {name} | {iterations} | {kept:.3} | {first:.3} | {:.2} |", first / kept);
     Ok(())
-}
-
-fn milliseconds(run: impl FnOnce() -> Result<(), Error>) -> Result<f64, Error> {
-    let began = ThreadTime::now();
-    run()?;
-    Ok(1e3 * began.elapsed().as_secs_f64())
-}
-
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }

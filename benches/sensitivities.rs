@@ -4,6 +4,8 @@
 //! processor time. "First" makes everything that a kept solver and a kept differentiator have. The form in which parameters
 //! are variables is made once a program, before anything is timed.
 
+mod timing;
+
 use std::path::Path;
 
 use cpu_time::ThreadTime;
@@ -12,6 +14,7 @@ use ntg::runtime::sensitivity::Differentiator;
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
+use timing::{median, milliseconds};
 
 /// Everything is timed by turns for so many seconds in all, and at least so many times.
 const SECONDS: f64 = 1.0;
@@ -93,15 +96,4 @@ fn row(name: &str) -> Result<(), Box<dyn std::error::Error>> {
         by_one / kept_solve
     );
     Ok(())
-}
-
-fn milliseconds<T, E>(run: impl FnOnce() -> Result<T, E>) -> Result<f64, E> {
-    let began = ThreadTime::now();
-    run()?;
-    Ok(1e3 * began.elapsed().as_secs_f64())
-}
-
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }

@@ -91,19 +91,17 @@ pub fn judge<N: Nlp>(nlp: &N, point: Point<'_>) -> Result<Judgement, NotFinite> 
     Ok(Judgement { objective: at.objective, missed, optimality })
 }
 
-/// The largest term of the objective's gradient beside a point; 0 where that is not finite.
-fn objective_size<N: Nlp>(nlp: &N, x: &[f64]) -> f64 {
+/// The largest term of the objective's gradient beside a point; none where that is not finite.
+fn objective_size<N: Nlp>(nlp: &N, x: &[f64]) -> Option<f64> {
     // Fractions of 1 that repeat nowhere, so that what is symmetric at the point is not so here.
     let part = |j: usize| (GOLDEN * (j + 1) as f64).fract() - 0.5;
     let sizes = &nlp.limits().scale;
     let beside: Vec<f64> = x.iter().zip(sizes).enumerate().map(|(j, (x, size))| x + BESIDE * size * part(j)).collect();
     let (mut work, mut at) = nlp.workspace();
-    if nlp.derivatives(&beside, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).is_err() {
-        return 0.0;
-    }
+    nlp.derivatives(&beside, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
     let mut assembly = Assembly::new(x.len(), nlp.rows(), nlp.blocks());
     assembly.first(nlp.blocks(), &at);
-    largest_term(&assembly.gradient, sizes)
+    Some(largest_term(&assembly.gradient, sizes))
 }
 
 fn largest_term(gradient: &[f64], sizes: &[f64]) -> f64 {
@@ -148,16 +146,16 @@ struct Optimality<'a> {
     assembly: &'a Assembly,
     x: &'a [f64],
     rows: &'a [f64],
-    /// The objective's size beside the point.
-    size: f64,
+    /// The objective's size beside the point, where it is known.
+    size: Option<f64>,
 }
 
 impl Optimality<'_> {
     fn residuals(&self, y: &[f64], objective: f64) -> [Residual; 2] {
         let limits = self.limits;
         let mut left = self.assembly.gradient.clone();
-        let mut largest = largest_term(&left, &limits.scale).max(self.size);
-        if largest == 0.0 {
+        let mut largest = largest_term(&left, &limits.scale).max(self.size.unwrap_or(0.0));
+        if largest == 0.0 && self.size.is_some() {
             return [Residual::default(); 2];
         }
         each(self.assembly, |i, j, slope| {

@@ -164,7 +164,8 @@ fn equalities_that_say_nearly_the_same(method: Method) {
         let pairs = x.chunks(2).zip(DIFFERENCES).flat_map(|(pair, d)| [pair[0], pair[0] + pair[1] * d]);
         std::iter::once(squares).chain(pairs).collect()
     });
-    // Multipliers of up to 2e6 are made by a sub-solver that leaves 1e-14 of them, which is 1.04e-8 here.
+    // A fault: the sub-solver's multipliers of 2e6 are wrong by 5e-7 of themselves, which leaves a dual residual of
+    // 1.04e-8; later points are worse.
     let tolerance = if method == Method::Sqp { 2e-8 } else { 1e-8 };
     let options = Options { method, tolerance, conjugate_residuals: true, ..Options::default() };
     let found = solve(&p, &[0.0; 8], &options);

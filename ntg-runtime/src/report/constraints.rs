@@ -70,24 +70,30 @@ fn keep(
     }
 }
 
+/// Whether a row has no bound but 0, so that its violations are relative to its terms.
+pub(super) fn have_zero_bounds(nlp: &Transcription) -> bool {
+    let limits = &nlp.limits;
+    let is_zero = |(lower, upper): (&f64, &f64)| bound_size((*lower, *upper)) == 0.0;
+    limits.row_lower.iter().zip(&limits.row_upper).any(is_zero)
+}
+
 /// Sets what violations of bounds of 0 are relative to: the largest term of a trajectory constraint along the solution,
-/// equation (9.3a); where all terms are 0, and elsewhere than along a trajectory, the largest slope of the rows. `at` holds first derivatives where they are finite.
+/// equation (9.3a); where all terms are 0, and elsewhere than along a trajectory, the largest slope of the rows. `at` holds
+/// first derivatives where they are finite, and zeros elsewhere.
 fn set_sizes(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation), reports: &mut [ConstraintReport]) {
     let (mut terms, mut slopes) = (vec![0.0_f64; reports.len()], vec![0.0_f64; reports.len()]);
+    let mut slots = vec![];
     let of_paths = |batch: &GroupBatch| matches!(nlp.model.structure.groups[batch.group].domain, Domain::Path { .. });
     let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
     for (_, (block, values)) in blocks.filter(|(batch, _)| of_paths(batch)) {
         for e in 0..block.elements {
             let variables = block.variables(e);
-            let slots: Vec<f64> = block
-                .map(e)
-                .chunks_exact(variables.len().max(1))
-                .map(|map| {
-                    let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
-                    let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
-                    value.abs().max(typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
-                })
-                .collect();
+            slots.clear();
+            slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
+                let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
+                let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
+                value.abs().max(typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
+            }));
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 let lane = row * block.elements + e;
                 let Target::Row(target) = block.target[lane] else { continue };

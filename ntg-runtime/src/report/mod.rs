@@ -237,8 +237,12 @@ impl Report {
         let structure = &nlp.model.structure;
         // Where a value is not finite, the status says so; sums then show what there is, of this point alone.
         at.rows.fill(0.0);
-        at.blocks.iter_mut().for_each(|block| block.jacobian.fill(0.0));
-        _ = nlp.derivatives(&outcome.x, 1.0, &outcome.row_multipliers, work, at);
+        let wants_terms = constraints::have_zero_bounds(nlp);
+        if !wants_terms || nlp.derivatives(&outcome.x, 1.0, &outcome.row_multipliers, work, at).is_err() {
+            // Where slopes are not finite, sizes are those of the rows.
+            at.blocks.iter_mut().for_each(|block| block.jacobian.fill(0.0));
+            _ = nlp.values(&outcome.x, work, at);
+        }
         let (constraints, fine_terms) = constraints::constraints(nlp, (&outcome, at), fine)?;
         let terms = cost::terms(nlp, at, &fine_terms);
         let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
