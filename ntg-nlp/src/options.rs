@@ -121,9 +121,6 @@ pub struct Options {
     pub restoration: Violations,
     /// How the interior-point method corrects the inertia of its matrix. Default [`InertiaCorrection::ByElement`].
     pub inertia_correction: InertiaCorrection,
-    /// Whether the interior-point method goes on by conjugate residuals where the refinement of equalities stalls, which they
-    /// do where rows all but depend on each other (docs/maths.md, equation 11.4a). Default false.
-    pub conjugate_residuals: bool,
 }
 
 impl Default for Options {
@@ -141,7 +138,6 @@ impl Default for Options {
             exact_hessian: true,
             restoration: Violations::Absolute,
             inertia_correction: InertiaCorrection::ByElement,
-            conjugate_residuals: false,
         }
     }
 }
@@ -161,7 +157,6 @@ impl fmt::Debug for Options {
             .field("exact_hessian", &self.exact_hessian)
             .field("restoration", &self.restoration)
             .field("inertia_correction", &self.inertia_correction)
-            .field("conjugate_residuals", &self.conjugate_residuals)
             .finish()
     }
 }

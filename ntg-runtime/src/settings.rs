@@ -92,10 +92,6 @@ pub struct Settings {
     /// How the interior-point method corrects the inertia of its matrix. [`Method::Auto`] tries the other way where the
     /// first attempt fails. Default [`InertiaCorrection::ByElement`].
     pub inertia_correction: InertiaCorrection,
-    /// Whether the interior-point method goes on by conjugate residuals where the refinement of equalities stalls, which they
-    /// do where rows all but depend on each other (docs/maths.md, equation 11.4a). [`Method::Auto`] does so in a further
-    /// attempt where the first one fails. Default false.
-    pub conjugate_residuals: bool,
 }
 
 impl Default for Settings {
@@ -117,7 +113,6 @@ impl Default for Settings {
             exact_hessian: true,
             restoration: Violations::Absolute,
             inertia_correction: InertiaCorrection::ByElement,
-            conjugate_residuals: false,
         }
     }
 }
@@ -141,7 +136,6 @@ impl fmt::Debug for Settings {
             .field("exact_hessian", &self.exact_hessian)
             .field("restoration", &self.restoration)
             .field("inertia_correction", &self.inertia_correction)
-            .field("conjugate_residuals", &self.conjugate_residuals)
             .finish()
     }
 }
@@ -179,7 +173,6 @@ impl Settings {
             exact_hessian: self.exact_hessian,
             restoration: self.restoration,
             inertia_correction: self.inertia_correction,
-            conjugate_residuals: self.conjugate_residuals,
         }
     }
 

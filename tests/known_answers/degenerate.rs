@@ -6,14 +6,27 @@ use ntg::prelude::*;
 use crate::support::{Shipped, close};
 
 /// The fourth quaternion is an algebraic variable, and its value at the end is redundant up to the error of the
-/// collocation, which no refinement of the equalities removes. Optimum: Betts (2010), section 6.8.
+/// collocation: the program on the mesh has an optimum of its own, above that of Betts (2010), section 6.8, 28.6304, and the
+/// report says how far constraints are violated between the points. IPOPT finds 28.9136 to 29.0112 from nine starts.
 #[test]
-fn equalities_that_depend_on_each_other_up_to_the_discretisation_end_soon_and_acceptable() {
+fn equalities_that_depend_on_each_other_up_to_the_discretisation_are_met_and_told_of() {
     let spec = Shipped::spec("gallery/reorientation");
     let report = spec.solver().solve().expect("it can be set up");
-    assert!(matches!(report.status, Status::Acceptable | Status::Solved), "{report}");
-    close(report.objective, 28.63041, 5e-3);
+    assert_eq!(report.status, Status::Solved, "{report}");
+    close(report.objective, 28.894165, 1e-6);
+    assert!(report.violation.points <= 1e-9 && report.violation.between >= 1e-2, "{report}");
+    assert!(report.warnings().iter().any(|warning| warning.to_string().contains("between the points")), "{report}");
     assert!(report.iterations <= 100, "{} iterations", report.iterations);
+}
+
+/// A path equality of index 2 beside the motion that keeps it: multipliers that the proximal term alone finds at a linear
+/// rate. Optimum: CasADi and IPOPT on this mesh, 5549.687593.
+#[test]
+fn a_path_equality_of_index_two_is_met_at_the_rate_of_newton() {
+    let report = Shipped::spec("gallery/geodesic").solver().solve().expect("it can be set up");
+    assert_eq!(report.status, Status::Solved, "{report}");
+    close(report.objective, 5549.687593, 1e-9);
+    assert!(report.iterations <= 20, "{} iterations", report.iterations);
 }
 
 /// A bound whose function saturates: at most points it is 1e-200, which is neither met nor missed.

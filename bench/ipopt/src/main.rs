@@ -12,6 +12,7 @@ mod library;
 mod one;
 mod solve;
 mod table;
+mod trace;
 
 use clap::Parser;
 use library::{Ipopt, Value as Setting};
@@ -64,8 +65,8 @@ struct Arguments {
     /// What IPOPT itself prints, 0 to 12; to standard output.
     #[arg(long, default_value_t = 0)]
     print_level: i32,
-    /// One spec, one solver: prints JSON. What every process does.
-    #[arg(long, hide = true, value_parser = ["ntg", "ipopt"])]
+    /// One spec, one solver: prints JSON. What every process does. `trace` prints the iterations of ntg's first attempt.
+    #[arg(long, hide = true, value_parser = ["ntg", "ipopt", "trace"])]
     one: Option<String>,
 }
 
@@ -114,6 +115,9 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), String> {
     let ask = arguments.ask()?;
     if let (Some(solver), [spec]) = (&arguments.one, &arguments.paths[..]) {
+        if solver == "trace" {
+            return trace::trace(spec, &ask);
+        }
         let found = match solver.as_str() {
             "ntg" => one::by_ntg(spec, &ask),
             _ => one::by_ipopt(spec, &ask, &Ipopt::load(arguments.library.as_os_str())?),

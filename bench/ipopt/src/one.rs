@@ -31,7 +31,7 @@ pub(crate) struct Ask {
 }
 
 /// Starts beyond the first have every variable moved by up to this part of its typical size.
-const MOVED: f64 = 0.1;
+pub(crate) const MOVED: f64 = 0.1;
 
 /// A clock on the wall and one of the processor.
 struct Clocks(Instant, ProcessTime);
@@ -51,7 +51,7 @@ impl Clocks {
 }
 
 /// The problem on the mesh that is asked for.
-fn on_mesh<'p>(problem: &'p Interpreted, ask: &Ask) -> WithStructure<'p> {
+pub(crate) fn on_mesh<'p>(problem: &'p Interpreted, ask: &Ask) -> WithStructure<'p> {
     let own = WithStructure::new(problem);
     if ask.mesh == 1.0 { own } else { adapted::with_mesh(&own, ask.mesh) }
 }

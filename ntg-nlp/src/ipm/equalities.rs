@@ -59,7 +59,7 @@ impl<N: Nlp> State<'_, N> {
             step.jacobian_x.iter_mut().zip(&step.correction_jacobian_x).for_each(|(change, more)| *change += more);
         }
         let is_stalled = self.step.left > LEFT && self.proximal <= LEAST_PROXIMAL;
-        if is_stalled && self.options.conjugate_residuals && self.mode.relaxed().is_none() {
+        if is_stalled && self.mode.relaxed().is_none() {
             let left = self.reduce_by_conjugate_residuals((REFINED * size).max(ROUNDING), LEFT * size);
             self.step.left = left.map_or(self.step.left, |left| if left <= ROUNDING { 0.0 } else { left / size });
         }

@@ -167,7 +167,7 @@ fn equalities_that_say_nearly_the_same(method: Method) {
     // A fault: the sub-solver's multipliers of 2e6 are wrong by 5e-7 of themselves, which leaves a dual residual of
     // 1.04e-8; later points are worse.
     let tolerance = if method == Method::Sqp { 2e-8 } else { 1e-8 };
-    let options = Options { method, tolerance, conjugate_residuals: true, ..Options::default() };
+    let options = Options { method, tolerance, ..Options::default() };
     let found = solve(&p, &[0.0; 8], &options);
     assert!(found.status.is_solved() && found.iterations <= 20, "{} after {}", found.status, found.iterations);
     assert!(found.x.iter().all(|x| (x - 1.0).abs() <= 1e-5), "{:?}", found.x);

@@ -34,7 +34,7 @@ enum Attempt {
     /// leaves.
     Beside,
     /// From the first point, with the other restoration and the other correction of the inertia: in place of the default
-    /// ones, squares of violations and shifts of the diagonal. With conjugate residuals.
+    /// ones, squares of violations and shifts of the diagonal.
     OtherWays,
     /// From the first point, by the augmented Lagrangian.
     AugmentedLagrangian,
@@ -129,12 +129,7 @@ impl Session {
                 let x = beside_infeasible(nlp, x);
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings)
             }
-            Attempt::OtherWays => {
-                // Where rows disagree by the error of the discretisation, exact steps lead away from an acceptable point.
-                let conjugate_residuals = failed.status != Status::Acceptable;
-                let settings = Settings { conjugate_residuals, ..other_ways(settings) };
-                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
-            }
+            Attempt::OtherWays => self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &other_ways(settings)),
             Attempt::AugmentedLagrangian => {
                 let settings = Settings { method: Method::AugmentedLagrangian, ..settings };
                 self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
