@@ -14,14 +14,12 @@
 //! theorem 3.2.2; H. Pirnay, R. López-Negrete, L. T. Biegler, *Math. Prog. Comp.* 4 (2012), for parameters as variables.
 
 use crate::contract::{Evaluation, Limits, Nlp, NotFinite};
-use crate::kkt::{Curvature, System, Weights};
-use crate::options::Scaling;
+use crate::kkt::{COLUMNS, Columns, Curvature, Held, Refinement, System, Weights};
 use crate::outcome::Multipliers;
 use crate::scaling::Scales;
-use crate::sparse::Assembly;
 
-/// The proximal term of active rows and bounds, whose scaled slope is 1; refinement removes it.
-const PROXIMAL: f64 = 1e-10;
+/// The weight of the squares of active rows and bounds, whose scaled slope is 1; refinement removes what it leaves.
+const PENALTY: f64 = 1e10;
 /// The weight of a row that is not active: none, but a number that may divide.
 const WEIGHTLESS: f64 = 1e-30;
 /// Shifts of the diagonal where the matrix is not that of a strict minimum: the first, their factor, the largest.
@@ -85,13 +83,13 @@ impl std::fmt::Display for Unavailable {
 
 impl std::error::Error for Unavailable {}
 
-/// What moves a solution: how fast the bounds move.
+/// What moves a solution: how fast the bounds move that do, each with its number.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<'a> {
-    /// For each row the derivative of its active bound.
-    pub rows: &'a [f64],
-    /// For each variable the derivative of its active bound.
-    pub variables: &'a [f64],
+    /// Of rows the derivative of the active bound.
+    pub rows: &'a [(usize, f64)],
+    /// Of variables the derivative of the active bound.
+    pub variables: &'a [(usize, f64)],
 }
 
 /// Derivatives of a solution, in the program's own units.
@@ -108,29 +106,28 @@ pub struct Response {
 /// The factorised system of one solution. `W` is the program's workspace.
 pub struct Sensitivity<W> {
     system: System<W>,
-    assembly: Assembly,
     activity: Vec<Activity>,
-    /// The functions that are active: rows, then variables, as [`System`] numbers them.
-    active: Vec<usize>,
+    /// How each function enters, as [`System`] numbers them.
+    held: Vec<Held>,
     shift: f64,
-    buffers: Buffers,
+    work: Work,
 }
 
-/// Vectors by variable (with the padding entry), by function, and by border row.
+/// What is solved for several right-hand sides at a time: vectors by variable, with the padding entry, and by function.
 #[derive(Clone, Debug, Default)]
-struct Buffers {
-    by_function: Vec<f64>,
-    border: Vec<f64>,
-    unscaled: Vec<f64>,
-    product: Vec<f64>,
-    rows: Vec<f64>,
-}
-
-/// A scaled step, or a scaled residual: by variable with the padding entry, and by function.
-#[derive(Clone, Debug)]
-struct Scaled {
-    x: Vec<f64>,
-    y: Vec<f64>,
+struct Work {
+    x: Vec<Columns>,
+    y: Vec<Columns>,
+    /// What is left of both equations.
+    left: Vec<Columns>,
+    rows: Vec<Columns>,
+    /// The latest step, and what it changes.
+    step: Vec<Columns>,
+    bend: Vec<Columns>,
+    pull: Vec<Columns>,
+    /// Multipliers of border rows, by border row and by function.
+    border: Vec<Columns>,
+    multipliers: Vec<Columns>,
 }
 
 impl<W> Sensitivity<W> {
@@ -139,57 +136,47 @@ impl<W> Sensitivity<W> {
     /// # Errors
     /// [`Unavailable::NotFinite`] and [`Unavailable::Singular`].
     pub fn new<N: Nlp<Workspace = W>>(nlp: &N, x: &[f64], multipliers: Multipliers<'_>) -> Result<Self, Unavailable> {
-        Self::again(None, nlp, x, multipliers)
+        Self::again((None, false), nlp, x, multipliers)
     }
 
     /// As [`Sensitivity::new`]. Where the program has the patterns of the one that was analysed `earlier`, that analysis is
-    /// used again, and gives the same bits.
+    /// used again, and gives the same bits. The program `is_unchanged` where only its limits may differ.
     ///
     /// # Errors
     /// As [`Sensitivity::new`].
     pub fn again<N: Nlp<Workspace = W>>(
-        earlier: Option<Self>,
+        (earlier, is_unchanged): (Option<Self>, bool),
         nlp: &N,
         x: &[f64],
         multipliers: Multipliers<'_>,
     ) -> Result<Self, Unavailable> {
-        let (n, m) = (nlp.variables(), nlp.rows());
-        let (mut system, assembly) = match earlier {
-            Some(Self { system, assembly, .. }) if system.fits(nlp) => (system.refit(nlp), assembly),
-            _ => (System::new(nlp), Assembly::new(n, m, nlp.blocks())),
-        };
-        let mut scaled: Vec<f64> = x.iter().zip(&system.scales.variables).map(|(x, size)| x / size).collect();
-        scaled.push(0.0);
-        system.choose_scales(nlp, &scaled, Scaling::Automatic).map_err(Unavailable::NotFinite)?;
-        let weights = scaled_multipliers(&system, multipliers);
-        let mut values = vec![0.0; system.functions()];
-        system.derivatives(nlp, &scaled, &weights, &mut values).map_err(Unavailable::NotFinite)?;
-        let activity = activity(nlp.limits(), &system.scales, system.latest(), (x, multipliers));
+        let (limits, m) = (nlp.limits(), nlp.rows());
+        let held = limits.lower.iter().zip(&limits.upper).map(|(lower, upper)| lower == upper).collect();
+        let (earlier, work) = earlier.map(|earlier| (earlier.system, earlier.work)).unzip();
+        let mut system = System::for_program(earlier, nlp, is_unchanged, held);
+        system.at_solution(nlp, x, multipliers.rows).map_err(Unavailable::NotFinite)?;
+        let activity = activity(limits, &system.scales, system.latest(), (x, multipliers));
+        let mut held = vec![Held::No; system.functions()];
         let first = system.first_variable();
-        let functions = (0..m).chain(first..first + n);
-        let active = functions.zip(&activity).filter(|(_, is)| is.is_active()).map(|(function, _)| function).collect();
-        let buffers = Buffers {
-            by_function: vec![0.0; system.functions()],
-            border: vec![0.0; system.border_rows().len()],
-            unscaled: vec![0.0; n],
-            product: vec![0.0; n],
-            rows: vec![0.0; m],
-        };
-        let mut found = Self { system, assembly, activity, active, shift: 0.0, buffers };
-        found.assembly.first(nlp.blocks(), found.system.latest());
-        found.assembly.hessian(nlp.blocks(), found.system.latest(), |_, _, _| {});
+        for (function, _) in (0..m).chain(first..).zip(&activity).filter(|(_, is)| is.is_active()) {
+            held[function] = Held::Condensed;
+        }
+        for &row in system.border_rows().iter().filter(|&&row| activity[row].is_active()) {
+            held[row] = Held::Border;
+        }
+        let mut found = Self { system, activity, held, shift: 0.0, work: work.unwrap_or_default() };
         found.factorise()?;
         Ok(found)
     }
 
     /// Whether each row is at a bound.
     pub fn rows(&self) -> &[Activity] {
-        &self.activity[..self.buffers.rows.len()]
+        &self.activity[..self.system.objective()]
     }
 
     /// Whether each variable is at a bound.
     pub fn variables(&self) -> &[Activity] {
-        &self.activity[self.buffers.rows.len()..]
+        &self.activity[self.system.objective()..]
     }
 
     /// Whether the solution is a strict minimum: the second derivatives of the Lagrangian are positive along every
@@ -200,45 +187,68 @@ impl<W> Sensitivity<W> {
 
     /// The gradient of the objective without that of the rows times these multipliers: the multiplier of every variable
     /// that its bounds hold.
-    pub fn lagrangian(&self, row_multipliers: &[f64]) -> Vec<f64> {
-        let mut gradient = self.assembly.gradient.clone();
-        self.assembly.jacobian.add_transposed_product(-1.0, row_multipliers, &mut gradient);
-        gradient
+    pub fn lagrangian(&mut self, row_multipliers: &[f64]) -> Vec<f64> {
+        let Scales { variables, rows, objective } = &self.system.scales;
+        let mut weights = vec![0.0; self.system.functions()];
+        for ((to, y), factor) in weights.iter_mut().zip(row_multipliers).zip(rows) {
+            *to = -y / factor;
+        }
+        weights[self.system.objective()] = 1.0 / objective;
+        let mut gradient = vec![0.0; variables.len() + 1];
+        self.system.transposed_product(&weights, &mut gradient);
+        gradient.iter().zip(&self.system.scales.variables).map(|(slope, size)| slope / size).collect()
     }
 
-    /// The derivatives of the solution where bounds move so fast. Bounds that are not active count for nothing.
+    /// The derivatives of the solution where bounds move so fast, one for each of `all`. Bounds that are not active count
+    /// for nothing. What each is does not hang on the others.
     ///
     /// # Errors
     /// [`Unavailable::Unresolved`].
-    pub fn response(&mut self, moving: Moving<'_>) -> Result<Response, Unavailable> {
-        let Scales { variables, rows, .. } = &self.system.scales;
-        let mut by_function = vec![0.0; self.system.functions()];
-        for ((to, rate), factor) in by_function.iter_mut().zip(moving.rows).zip(rows) {
-            *to = rate * factor;
+    pub fn responses(&mut self, all: &[Moving<'_>]) -> Result<Vec<Response>, Unavailable> {
+        let mut found = Vec::with_capacity(all.len());
+        for some in all.chunks(COLUMNS) {
+            self.clear();
+            let (first, Scales { variables, rows, .. }) = (self.system.first_variable(), &self.system.scales);
+            for (k, moving) in some.iter().enumerate() {
+                for &(row, rate) in moving.rows.iter().filter(|(row, _)| self.held[*row] != Held::No) {
+                    self.work.rows[row][k] = rate * rows[row];
+                }
+                for &(j, rate) in moving.variables.iter().filter(|(j, _)| self.held[first + j] != Held::No) {
+                    self.work.rows[first + j][k] = rate / variables[j];
+                }
+            }
+            self.solve()?;
+            found.extend((0..some.len()).map(|k| self.unscaled(k)));
         }
-        let first = self.system.first_variable();
-        for ((to, rate), size) in by_function[first..].iter_mut().zip(moving.variables).zip(variables) {
-            *to = rate / size;
-        }
-        self.solve(Scaled { x: vec![0.0; variables.len() + 1], y: by_function })
+        Ok(found)
     }
 
     /// The *adjoint* of a linear function of the variables, with these coefficients: its derivative by the active bound
     /// of row `i` is `-rows[i]`, by that of variable `j` it is `-variables[j]`. One solve serves all parameters.
+    /// There is one adjoint for each of `all`.
     ///
     /// # Errors
     /// [`Unavailable::Unresolved`].
-    pub fn adjoint(&mut self, coefficients: &[f64]) -> Result<Response, Unavailable> {
-        let Scales { variables, objective, .. } = &self.system.scales;
-        let scaled = coefficients.iter().zip(variables).map(|(g, size)| g * size * objective);
-        let x = scaled.chain([0.0]).collect();
-        self.solve(Scaled { x, y: vec![0.0; self.system.functions()] })
+    pub fn adjoints(&mut self, all: &[&[f64]]) -> Result<Vec<Response>, Unavailable> {
+        let mut found = Vec::with_capacity(all.len());
+        for some in all.chunks(COLUMNS) {
+            self.clear();
+            let Scales { variables, objective, .. } = &self.system.scales;
+            for (k, coefficients) in some.iter().enumerate() {
+                for ((to, g), size) in self.work.left.iter_mut().zip(*coefficients).zip(variables) {
+                    to[k] = g * size * objective;
+                }
+            }
+            self.solve()?;
+            found.extend((0..some.len()).map(|k| self.unscaled(k)));
+        }
+        Ok(found)
     }
 
     /// The matrix of a strict minimum; elsewhere with the smallest shift that gives it one.
     fn factorise(&mut self) -> Result<(), Unavailable> {
-        let mut sigma = vec![0.0; self.system.functions()];
-        self.active.iter().for_each(|&function| sigma[function] = 1.0 / PROXIMAL);
+        let weight = |held: &Held| if *held == Held::No { 0.0 } else { PENALTY };
+        let sigma: Vec<f64> = self.held.iter().map(weight).collect();
         self.system.assemble(Weights { sigma: &sigma, curvature: Curvature::Exact });
         for border in 0..self.system.border_rows().len() {
             let weight = sigma[self.system.border_rows()[border]];
@@ -254,118 +264,185 @@ impl<W> Sensitivity<W> {
         Err(Unavailable::Singular)
     }
 
-    /// Solves the system for a scaled right-hand side, by refinement of what the factors give.
-    fn solve(&mut self, right: Scaled) -> Result<Response, Unavailable> {
-        let mut step = Scaled { x: vec![0.0; right.x.len()], y: vec![0.0; right.y.len()] };
-        let (mut left, mut before, mut best) = (f64::INFINITY, f64::INFINITY, step.clone());
-        for _ in 0..REFINEMENTS {
-            let (residual, relative) = self.residual(&right, &step);
-            if relative < left {
-                (left, best) = (relative, step.clone());
+    /// Right-hand sides of 0.
+    fn clear(&mut self) {
+        let (variables, functions) = (self.system.held().len() + 1, self.system.functions());
+        let Work { x, y, left, rows, step, bend, pull, border, multipliers } = &mut self.work;
+        let sizes = [(x, variables), (left, variables), (step, variables), (bend, variables), (pull, variables)];
+        let border = (border, self.system.border_rows().len());
+        for (buffer, len) in
+            sizes.into_iter().chain([(y, functions), (rows, functions), (multipliers, functions), border])
+        {
+            buffer.clear();
+            buffer.resize(len, Columns::default());
+        }
+    }
+
+    /// Solves the system for the scaled right-hand sides in `work.left` and `work.rows`, by refinement of what the factors
+    /// give. How variables that are held move is known from the beginning.
+    fn solve(&mut self) -> Result<(), Unavailable> {
+        let first = self.system.first_variable();
+        let Work { x, left, rows, step, .. } = &mut self.work;
+        for (j, _) in self.system.held().iter().enumerate().filter(|(_, held)| **held) {
+            (x[j], step[j]) = (rows[first + j], rows[first + j]);
+        }
+        let mut terms = Terms { variables: largest(left.iter()), rows: largest(rows.iter()) };
+        self.pass();
+        let Work { left, bend, .. } = &mut self.work;
+        add(left, bend);
+        terms.variables = both(terms.variables, largest(bend.iter()), larger);
+        terms.rows = both(terms.rows, self.rows_left(), larger);
+        let (mut before, mut least, mut open) = ([f64::INFINITY; COLUMNS], [f64::INFINITY; COLUMNS], [true; COLUMNS]);
+        for round in 0..=REFINEMENTS {
+            let relative = self.relative(&terms);
+            for k in 0..COLUMNS {
+                let is_best = relative[k] < least[k];
+                least[k] = if is_best { relative[k] } else { least[k] };
+                let is_stuck = least[k] <= ALLOWED && relative[k] > 0.5 * before[k];
+                let is_last = !relative[k].is_finite() || relative[k] <= REFINED || is_stuck || round == REFINEMENTS;
+                if open[k] && is_last {
+                    open[k] = false;
+                    self.close(k, is_best);
+                }
             }
-            let is_stuck = left <= ALLOWED && relative > 0.5 * before;
-            if !relative.is_finite() || relative <= REFINED || is_stuck {
+            if open == [false; COLUMNS] {
                 break;
             }
             before = relative;
-            self.improve(&residual, &mut step);
+            self.improve();
+            let Work { bend, pull, multipliers, .. } = &self.work;
+            terms.variables = both(terms.variables, largest(bend.iter().chain(pull).chain(multipliers)), larger);
         }
-        if left <= ALLOWED { Ok(self.unscaled(&best)) } else { Err(Unavailable::Unresolved(left)) }
+        let left = least.into_iter().fold(0.0, f64::max);
+        if left <= ALLOWED { Ok(()) } else { Err(Unavailable::Unresolved(left)) }
     }
 
-    /// The residual of the system without proximal terms and shift, and its size relative to its terms.
-    fn residual(&mut self, right: &Scaled, step: &Scaled) -> (Scaled, f64) {
-        let Self { system, assembly, active, buffers, .. } = self;
-        let Scales { variables, rows, .. } = &system.scales;
-        let first = system.first_variable();
-        for ((to, x), size) in buffers.unscaled.iter_mut().zip(&step.x).zip(variables) {
-            *to = x * size;
-        }
-        // The second derivatives are those of the scaled objective.
-        buffers.product.fill(0.0);
-        assembly.hessian.add_symmetric_product(1.0, &buffers.unscaled, &mut buffers.product);
-        let mut left = Scaled { x: right.x.clone(), y: vec![0.0; right.y.len()] };
-        let mut size = right.x.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
-        for ((left, product), variable) in left.x.iter_mut().zip(&buffers.product).zip(variables) {
-            let curvature = product * variable;
-            *left -= curvature;
-            size = size.max(curvature.abs());
-        }
-        buffers.rows.fill(0.0);
-        active.iter().filter(|&&f| f < rows.len()).for_each(|&f| buffers.rows[f] = step.y[f] * rows[f]);
-        buffers.product.fill(0.0);
-        assembly.jacobian.add_transposed_product(1.0, &buffers.rows, &mut buffers.product);
-        let bounds = &step.y[first..];
-        for (((left, product), variable), bound) in left.x.iter_mut().zip(&buffers.product).zip(variables).zip(bounds) {
-            let pull = product * variable + bound;
-            *left += pull;
-            size = size.max(pull.abs());
-        }
-        buffers.rows.fill(0.0);
-        assembly.jacobian.add_product(1.0, &buffers.unscaled, &mut buffers.rows);
+    /// The largest entries of what is left of the rows.
+    fn rows_left(&self) -> Columns {
+        let rows = self.work.rows.iter().zip(&self.held);
+        largest(rows.filter(|(_, held)| **held != Held::No).map(|(row, _)| row))
+    }
+
+    /// What is left of the equations relative to their terms.
+    fn relative(&self, terms: &Terms) -> Columns {
+        let free = self.work.left.iter().zip(self.system.held()).filter(|(_, held)| !**held);
+        let (variables, rows) = (largest(free.map(|(left, _)| left)), self.rows_left());
         // Where no bound moves, what changes in an active row is nothing: the measure is what it is the sum of, and
         // scaled slopes are about 1.
-        let is_still = right.y.iter().all(|rate| *rate == 0.0);
-        let mut moved = if is_still { step.x.iter().fold(0.0_f64, |most, x| most.max(x.abs())) } else { 0.0 };
-        for &f in active.iter() {
-            let change = if f < rows.len() { buffers.rows[f] * rows[f] } else { step.x[f - first] };
-            left.y[f] = right.y[f] - change;
-            moved = moved.max(right.y[f].abs()).max(change.abs());
-        }
-        let relative = |of: &[f64], size: f64| {
-            let largest = of.iter().fold(0.0_f64, |most, r| if r.is_nan() { f64::NAN } else { most.max(r.abs()) });
-            if largest == 0.0 { 0.0 } else { largest / size }
-        };
+        let steps = largest(self.work.x.iter());
+        let moved = both(terms.rows, steps, |rows, step| if rows == 0.0 { step } else { rows });
+        let relative = |largest: f64, size: f64| if largest == 0.0 { 0.0 } else { largest / size };
         // Scaled curvatures are about 1: where all terms vanish, what moves is the measure.
-        let worst = relative(&left.x, size.max(moved)).max(relative(&left.y, moved));
-        (left, worst)
+        std::array::from_fn(|k| {
+            let variables = relative(variables[k], terms.variables[k].max(moved[k]));
+            larger(relative(rows[k], moved[k]), variables)
+        })
     }
 
     /// Adds to a step what the factors make of its residual.
-    fn improve(&mut self, residual: &Scaled, step: &mut Scaled) {
-        let Self { system, active, buffers, .. } = self;
-        let n = residual.x.len() - 1;
-        buffers.by_function.fill(0.0);
-        active.iter().for_each(|&f| buffers.by_function[f] = residual.y[f] / PROXIMAL);
-        for (border, &row) in system.border_rows().iter().enumerate() {
-            buffers.border[border] = residual.y[row];
-            buffers.by_function[row] = 0.0;
+    fn improve(&mut self) {
+        let Self { system, held, work, .. } = self;
+        let Work { x, left, rows, step, bend, pull, border, multipliers, .. } = work;
+        for ((step, (left, pull)), held) in step.iter_mut().zip(left.iter().zip(&*pull)).zip(system.held()) {
+            *step = if *held { Columns::default() } else { std::array::from_fn(|k| left[k] + pull[k]) };
         }
-        let mut x = vec![0.0; n + 1];
-        system.transposed_product(&buffers.by_function, &mut x);
-        x.iter_mut().zip(&residual.x).for_each(|(x, g)| *x += g);
-        system.solve(&mut x[..n], &mut buffers.border);
-        x[n] = 0.0;
-        system.product(&x, &mut buffers.by_function);
-        for &f in active.iter() {
-            step.y[f] += (residual.y[f] - buffers.by_function[f]) / PROXIMAL;
+        for (border, &row) in border.iter_mut().zip(system.border_rows()) {
+            *border = if held[row] == Held::No { Columns::default() } else { rows[row] };
         }
-        step.x.iter_mut().zip(&x).for_each(|(step, more)| *step += more);
+        system.solve_columns(step, border);
+        for (border, &row) in border.iter().zip(system.border_rows()) {
+            multipliers[row] = if held[row] == Held::No { Columns::default() } else { border.map(|z| -z) };
+        }
+        add(x, step);
+        bend.fill(Columns::default());
+        pull.fill(Columns::default());
+        self.pass();
+        let Work { y, left, rows, bend, pull, multipliers, .. } = &mut self.work;
+        for (function, held) in self.held.iter().enumerate() {
+            for k in 0..COLUMNS {
+                y[function][k] += latest(*held, rows[function][k], multipliers[function][k]);
+            }
+        }
+        add(left, bend);
+        add(left, pull);
     }
 
-    fn unscaled(&self, step: &Scaled) -> Response {
+    /// What the latest step leaves of the equations.
+    fn pass(&mut self) {
+        let Work { step, multipliers, rows, bend, pull, .. } = &mut self.work;
+        self.system.refine(&mut Refinement { held: &self.held, penalty: PENALTY, step, multipliers, rows, bend, pull });
+        // The padding.
+        [bend, pull].into_iter().filter_map(|buffer| buffer.last_mut()).for_each(|last| *last = Columns::default());
+    }
+
+    /// Ends the refinement of one right-hand side, whose equations are then met: later steps are 0. The latest step is taken
+    /// back unless it is the best.
+    fn close(&mut self, k: usize, is_best: bool) {
+        let first = self.system.first_variable();
+        let Work { x, y, left, rows, step, bend, pull, multipliers, .. } = &mut self.work;
+        if !is_best {
+            for (j, step) in step.iter().enumerate() {
+                x[j][k] -= step[k];
+                left[j][k] -= bend[j][k] + pull[j][k];
+            }
+            for (function, held) in self.held.iter().enumerate() {
+                y[function][k] -= latest(*held, rows[function][k], multipliers[function][k]);
+            }
+        }
+        // Where a variable is held, its multiplier is what is left.
+        for (j, _) in self.system.held().iter().enumerate().filter(|(_, held)| **held) {
+            y[first + j][k] = -left[j][k];
+        }
+        [left, rows, pull].into_iter().flatten().for_each(|columns| columns[k] = 0.0);
+    }
+
+    fn unscaled(&self, k: usize) -> Response {
         let Scales { variables, rows, objective } = &self.system.scales;
-        let bounds = step.y[self.system.first_variable()..].iter().zip(variables);
+        let Work { x, y, .. } = &self.work;
+        let bounds = y[self.system.first_variable()..].iter().zip(variables);
         Response {
-            x: step.x.iter().zip(variables).map(|(x, size)| x * size).collect(),
-            rows: step.y.iter().zip(rows).map(|(y, factor)| y * factor / objective).collect(),
-            variables: bounds.map(|(y, size)| y / (size * objective)).collect(),
+            x: x.iter().zip(variables).map(|(x, size)| x[k] * size).collect(),
+            rows: y.iter().zip(rows).map(|(y, factor)| y[k] * factor / objective).collect(),
+            variables: bounds.map(|(y, size)| y[k] / (size * objective)).collect(),
         }
     }
 }
 
-/// The multipliers of all functions of the scaled program; that of the objective is -1.
-fn scaled_multipliers<W>(system: &System<W>, multipliers: Multipliers<'_>) -> Vec<f64> {
-    let Scales { variables, rows, objective } = &system.scales;
-    let mut all = vec![0.0; system.functions()];
-    for ((to, y), factor) in all.iter_mut().zip(multipliers.rows).zip(rows) {
-        *to = y * objective / factor;
+/// The sizes of the terms that residuals are the sum of.
+#[derive(Clone, Copy, Debug)]
+struct Terms {
+    variables: Columns,
+    rows: Columns,
+}
+
+/// The larger of two; no number where one of them is none.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// A function of the entries of two.
+fn both(a: Columns, b: Columns, function: impl Fn(f64, f64) -> f64) -> Columns {
+    std::array::from_fn(|k| function(a[k], b[k]))
+}
+
+/// The largest entry of each column.
+fn largest<'a>(all: impl Iterator<Item = &'a Columns>) -> Columns {
+    all.fold(Columns::default(), |most, entry| std::array::from_fn(|k| larger(entry[k].abs(), most[k])))
+}
+
+/// The latest change of a multiplier, where `row` is what is left of its function and `border` the change in the border.
+fn latest(held: Held, row: f64, border: f64) -> f64 {
+    match held {
+        Held::No => 0.0,
+        Held::Condensed => PENALTY * row,
+        Held::Border => border,
     }
-    all[system.objective()] = -1.0;
-    for ((to, y), size) in all[system.first_variable()..].iter_mut().zip(multipliers.bounds).zip(variables) {
-        *to = y * objective * size;
+}
+
+fn add(to: &mut [Columns], more: &[Columns]) {
+    for (to, more) in to.iter_mut().zip(more) {
+        *to = both(*to, *more, |to, more| to + more);
     }
-    all
 }
 
 /// Whether rows, then variables, are at a bound.
