@@ -113,7 +113,9 @@ impl Solution {
                 let index = declared.array.then(|| i64::try_from(member).unwrap_or(i64::MAX).saturating_add(1));
                 let name = names::indexed(&declared.name, index);
                 let is_wanted = |names: &[&str]| names.iter().any(|wanted| *wanted == name || *wanted == declared.name);
-                all.extend([declared.name.clone(), name.clone()]);
+                if names.is_some() {
+                    all.extend([declared.name.clone(), name.clone()]);
+                }
                 if names.is_none_or(is_wanted) {
                     variables.push(first + u32::try_from(member).unwrap_or(u32::MAX));
                     parameters.push(Value { name, value: value / declared.unit.factor, unit: declared.unit.clone() });

@@ -35,7 +35,7 @@ pub(crate) struct Refinement<'a> {
     pub(crate) step: &'a [Columns],
     /// `dy_B`, by function; 0 for all others.
     pub(crate) multipliers: &'a [Columns],
-    /// `r`, by function; what does not enter the system is left undefined.
+    /// `r`, by function; that of functions that are not held is left undefined.
     pub(crate) rows: &'a mut [Columns],
     /// By variable.
     pub(crate) bend: &'a mut [Columns],
@@ -49,15 +49,27 @@ type Many<const L: usize> = [Pack<L>; COLUMNS];
 /// Buffers for one pack of the largest block that was worked on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Buffers<const L: usize> {
-    /// By slot: the step, `bend` and `pull`.
-    slots: Vec<[Many<L>; 3]>,
-    /// By element variable: the same.
-    variables: Vec<[Many<L>; 3]>,
+    slots: Vectors<L>,
+    element_variables: Vectors<L>,
 }
 
-const STEP: usize = 0;
-const BEND: usize = 1;
-const PULL: usize = 2;
+/// Vectors of the same length.
+#[derive(Clone, Debug, Default)]
+struct Vectors<const L: usize> {
+    step: Vec<Many<L>>,
+    bend: Vec<Many<L>>,
+    pull: Vec<Many<L>>,
+}
+
+impl<const L: usize> Vectors<L> {
+    fn fit(&mut self, len: usize) {
+        [&mut self.step, &mut self.bend, &mut self.pull].into_iter().for_each(|buffer| buffer.resize(len, none()));
+    }
+}
+
+fn none<const L: usize>() -> Many<L> {
+    [[0.0; L]; COLUMNS]
+}
 
 /// `sum + a b`.
 #[inline(always)]
@@ -70,104 +82,156 @@ fn plus<const L: usize>(mut sum: Many<L>, a: &Pack<L>, b: &Many<L>) -> Many<L> {
     sum
 }
 
+/// `sum - a b`.
+#[inline(always)]
+fn less<const L: usize>(mut sum: Many<L>, a: &Pack<L>, b: &Many<L>) -> Many<L> {
+    for k in 0..COLUMNS {
+        for lane in 0..L {
+            sum[k][lane] -= a[lane] * b[k][lane];
+        }
+    }
+    sum
+}
+
 impl<const L: usize> Plan<L> {
-    /// Adds what the elements of the plan do.
+    /// Adds what the elements of the plan do. Packs without second derivatives and held rows do nothing.
     #[inline(always)]
     fn refine(&self, to: &mut Refinement<'_>, buffers: &mut Buffers<L>) {
-        let zero = [[[0.0; L]; COLUMNS]; 3];
-        let grow = |buffer: &mut Vec<_>, len: usize| buffer.resize(buffer.len().max(len), zero);
-        grow(&mut buffers.slots, self.slots);
-        grow(&mut buffers.variables, self.supports.element_variables);
-        let (slots, variables) =
-            (&mut buffers.slots[..self.slots], &mut buffers.variables[..self.supports.element_variables]);
+        let Buffers { slots, element_variables } = buffers;
+        slots.fit(self.slots);
+        element_variables.fit(self.supports.element_variables);
         for batch in 0..self.batching.batches() {
-            for (of, lanes) in variables.iter_mut().zip(self.map.variables(batch)) {
-                let steps = lanes.map(|variable| to.step[variable as usize]);
-                *of = zero;
-                of[STEP] = std::array::from_fn(|k| std::array::from_fn(|lane| steps[lane][k]));
-            }
-            for pack in self.batching.packs_of(batch) {
-                slots.fill(zero);
-                let coefficients = self.map.coefficients(pack);
-                for support in &self.supports.all {
-                    let variables = &variables[support.first..support.last];
-                    for &slot in &support.slots {
-                        let coefficients = &coefficients[self.map.coefficient_of[slot]..];
-                        let terms = coefficients.iter().zip(variables);
-                        slots[slot][STEP] =
-                            terms.fold(zero[STEP], |sum, (coefficient, of)| plus(sum, coefficient, &of[STEP]));
-                    }
-                }
-                self.bend(pack, slots);
-                self.hold(pack, slots, to);
-                for support in &self.supports.all {
-                    let variables = &mut variables[support.first..support.last];
-                    for &slot in &support.slots {
-                        let coefficients = &coefficients[self.map.coefficient_of[slot]..];
-                        let [_, bend, pull] = slots[slot];
-                        for (of, coefficient) in variables.iter_mut().zip(coefficients) {
-                            of[BEND] = plus(of[BEND], coefficient, &bend);
-                            of[PULL] = plus(of[PULL], coefficient, &pull);
-                        }
-                    }
-                }
-            }
-            for (of, lanes) in variables.iter().zip(self.map.variables(batch)) {
+            let variables = self.map.variables(batch);
+            for (of, lanes) in element_variables.step.iter_mut().zip(variables) {
                 for (lane, &variable) in lanes.iter().enumerate() {
+                    let step = to.step[variable as usize];
                     for k in 0..COLUMNS {
-                        to.bend[variable as usize][k] += of[BEND][k][lane];
-                        to.pull[variable as usize][k] += of[PULL][k][lane];
+                        of[k][lane] = step[k];
+                    }
+                }
+            }
+            element_variables.bend.fill(none());
+            element_variables.pull.fill(none());
+            for pack in self.batching.packs_of(batch) {
+                let (mut pulls, mut borders) = (false, false);
+                for &function in self.functions_of(pack).as_flattened() {
+                    let held = to.held[function as usize];
+                    (pulls, borders) = (pulls | (held == Held::Condensed), borders | (held == Held::Border));
+                }
+                let bends = borders || !self.pair_of.is_empty();
+                if pulls || bends {
+                    self.steps(pack, slots, &element_variables.step);
+                    self.bend(pack, slots);
+                }
+                if pulls || borders {
+                    slots.pull.fill(none());
+                    self.hold(pack, slots, to);
+                }
+                if bends {
+                    self.add_transposed(pack, &slots.bend, &mut element_variables.bend);
+                }
+                if pulls {
+                    self.add_transposed(pack, &slots.pull, &mut element_variables.pull);
+                }
+            }
+            let sums = element_variables.bend.iter().zip(&element_variables.pull);
+            for ((bend, pull), lanes) in sums.zip(variables) {
+                for (lane, &variable) in lanes.iter().enumerate() {
+                    let (bends, pulls) = (&mut to.bend[variable as usize], &mut to.pull[variable as usize]);
+                    for k in 0..COLUMNS {
+                        bends[k] += bend[k][lane];
+                        pulls[k] += pull[k][lane];
                     }
                 }
             }
         }
     }
 
-    /// `bend -= K step`, by slots.
+    /// The functions of each row of a pack.
     #[inline(always)]
-    fn bend(&self, pack: usize, slots: &mut [[Many<L>; 3]]) {
+    fn functions_of(&self, pack: usize) -> &[[u32; L]] {
+        &self.function[pack * self.rows.len()..][..self.rows.len()]
+    }
+
+    /// The steps of all slots.
+    #[inline(always)]
+    fn steps(&self, pack: usize, slots: &mut Vectors<L>, steps: &[Many<L>]) {
+        let coefficients = self.map.coefficients(pack);
+        for support in &self.supports.all {
+            for &slot in &support.slots {
+                let mut sum = none();
+                let coefficients = &coefficients[self.map.coefficient_of[slot]..];
+                for (step, coefficient) in steps[support.first..support.last].iter().zip(coefficients) {
+                    sum = plus(sum, coefficient, step);
+                }
+                slots.step[slot] = sum;
+            }
+        }
+    }
+
+    /// `to += E^T slots`.
+    #[inline(always)]
+    fn add_transposed(&self, pack: usize, slots: &[Many<L>], to: &mut [Many<L>]) {
+        let coefficients = self.map.coefficients(pack);
+        for support in &self.supports.all {
+            for (i, to) in to[support.first..support.last].iter_mut().enumerate() {
+                let mut sum = *to;
+                for &slot in &support.slots {
+                    sum = plus(sum, &coefficients[self.map.coefficient_of[slot] + i], &slots[slot]);
+                }
+                *to = sum;
+            }
+        }
+    }
+
+    /// `bend = -K step`, by slots.
+    #[inline(always)]
+    fn bend(&self, pack: usize, slots: &mut Vectors<L>) {
+        let Vectors { step, bend, .. } = slots;
+        bend.fill(none());
         for (entry, pair) in self.hessian_of(pack).iter().zip(&self.pair_of) {
             let Some((i, j)) = pair.map(|pair| self.exact.pairs[pair]) else { continue };
-            let entry = entry.map(|entry| -entry);
-            slots[i][BEND] = plus(slots[i][BEND], &entry, &slots[j][STEP]);
+            bend[i] = less(bend[i], entry, &step[j]);
             if i != j {
-                slots[j][BEND] = plus(slots[j][BEND], &entry, &slots[i][STEP]);
+                bend[j] = less(bend[j], entry, &step[i]);
             }
         }
     }
 
     /// What the rows of a pack do, by slots.
     #[inline(always)]
-    fn hold(&self, pack: usize, slots: &mut [[Many<L>; 3]], to: &mut Refinement<'_>) {
-        let jacobian = self.jacobian_of(pack);
-        for (row, of) in self.rows.iter().enumerate() {
-            let functions = self.function[pack * self.rows.len() + row].map(|function| function as usize);
-            let held = functions.map(|function| to.held[function]);
-            if held == [Held::No; L] {
+    fn hold(&self, pack: usize, slots: &mut Vectors<L>, to: &mut Refinement<'_>) {
+        let (jacobian, Vectors { step, bend, pull }) = (self.jacobian_of(pack), slots);
+        for (of, functions) in self.rows.iter().zip(self.functions_of(pack)) {
+            let (mut pulls, mut borders) = ([0.0; L], false);
+            for lane in 0..L {
+                let held = to.held[functions[lane] as usize];
+                pulls[lane] = if held == Held::Condensed { to.penalty } else { 0.0 };
+                borders |= held == Held::Border;
+            }
+            if pulls == [0.0; L] && !borders {
                 continue;
             }
-            let mut change = [[0.0; L]; COLUMNS];
+            let mut change = none();
             for &(entry, slot) in &of.entries {
-                change = plus(change, &jacobian[entry], &slots[slot][STEP]);
+                change = plus(change, &jacobian[entry], &step[slot]);
             }
-            let (mut condensed, mut border) = ([[0.0; L]; COLUMNS], [[0.0; L]; COLUMNS]);
+            let (mut condensed, mut border) = (none(), none());
             for lane in 0..L {
-                let (left, given) = (&mut to.rows[functions[lane]], to.multipliers[functions[lane]]);
-                let penalty = if held[lane] == Held::Condensed { to.penalty } else { 0.0 };
+                let function = functions[lane] as usize;
+                let (left, given) = (&mut to.rows[function], to.multipliers[function]);
                 for k in 0..COLUMNS {
                     left[k] -= change[k][lane];
-                    condensed[k][lane] = penalty * left[k];
+                    condensed[k][lane] = pulls[lane] * left[k];
                     border[k][lane] = given[k];
                 }
             }
-            if held.contains(&Held::Condensed) {
-                for &(entry, slot) in &of.entries {
-                    slots[slot][PULL] = plus(slots[slot][PULL], &jacobian[entry], &condensed);
-                }
+            for &(entry, slot) in &of.entries {
+                pull[slot] = plus(pull[slot], &jacobian[entry], &condensed);
             }
-            if held.contains(&Held::Border) {
+            if borders {
                 for &(entry, slot) in &of.entries {
-                    slots[slot][BEND] = plus(slots[slot][BEND], &jacobian[entry], &border);
+                    bend[slot] = plus(bend[slot], &jacobian[entry], &border);
                 }
             }
         }
