@@ -113,11 +113,13 @@ impl Form {
     pub(super) fn fits(&self, transcription: &Kept, solution: &Inner) -> bool {
         let (form, own) = (&transcription.model.structure, &solution.model.structure);
         let phases = |(a, b): (&Phase, &Phase)| a.outputs == b.outputs && a.points == b.points;
+        let members = |structure: &Structure| structure.parameters.iter().map(|p| p.value.len()).collect::<Vec<_>>();
         let rows = &transcription.elements.rows;
         let same = |(own, image): (&RowInfo, &u32)| key(own) == key(&rows[*image as usize]);
         form.phases.len() == own.phases.len()
             && form.phases.iter().zip(&own.phases).all(phases)
             && form.tables == own.tables
+            && members(form) == members(own)
             && self.image.len() == solution.x.len()
             && self.row_image.len() == solution.rows.len()
             && solution.rows.iter().zip(&*self.row_image).all(same)
