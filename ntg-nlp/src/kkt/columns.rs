@@ -126,3 +126,44 @@ impl Task for SolveColumns<'_> {
         self.factor.solve_columns_here(self.storage, self.b.as_chunks_mut::<BLOCK>().0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::factor::Regularised;
+    use super::super::ordering::Cliques;
+    use super::*;
+
+    #[test]
+    fn columns_are_solved_as_each_alone() {
+        let mut cliques = Cliques::default();
+        let lists: [&[u32]; 6] = [&[0, 1, 2, 9], &[2, 3, 9], &[4, 5, 6, 10], &[6, 7, 8], &[8, 10], &[9, 10]];
+        lists.iter().for_each(|list| cliques.add(&mut list.to_vec()));
+        let storage = Storage::new(11, &cliques);
+        let mut matrix = vec![0.0; storage.len];
+        storage.clear(&mut matrix);
+        for (number, list) in lists.iter().enumerate() {
+            for &a in *list {
+                for &b in list.iter().filter(|&&b| b <= a) {
+                    let entry = if a == b { 4.0 + f64::from(a) } else { (f64::from(a + 3 * b) + number as f64).sin() };
+                    matrix[storage.position(a as usize, b as usize)] += entry;
+                }
+            }
+        }
+        let mut factor = Factor::new(&storage);
+        let sum = Regularised { matrix: &matrix, convexification: &[], fraction: 0.0, shift: 0.0, variables: 11 };
+        assert_eq!(factor.factorise(&storage, &sum), Some(0));
+        let side = |i: usize, k: usize| (1.0 + i as f64 * (k + 1) as f64).cos();
+        let mut together = vec![Columns::default(); BLOCK * storage.columns()];
+        for (i, &padded) in storage.padded.iter().enumerate() {
+            together[padded] = std::array::from_fn(|k| side(i, k));
+        }
+        factor.solve_columns(&storage, &mut together);
+        for k in 0..COLUMNS {
+            let mut alone: Vec<f64> = (0..11).map(|i| side(i, k)).collect();
+            factor.solve(&storage, &mut alone);
+            for (&padded, alone) in storage.padded.iter().zip(&alone) {
+                assert!((together[padded][k] - alone).abs() < 1e-14, "{} {alone}", together[padded][k]);
+            }
+        }
+    }
+}
