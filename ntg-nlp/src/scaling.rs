@@ -129,6 +129,20 @@ impl Slopes {
             .above_rounding(at.objective)
     }
 
+    /// The slopes that scale a program at a solution, where it is evaluated with its multipliers: slopes that are rounding
+    /// count as none, and of an objective that is nearly stationary the curvature counts. `sizes` are those of the
+    /// variables.
+    pub fn at_solution<N: Nlp>(mut self, nlp: &N, at: &Evaluation, sizes: &[f64]) -> Self {
+        let (blocks, limits) = (nlp.blocks(), nlp.limits());
+        for (slope, size) in self.rows.iter_mut().zip(&limits.row_scale) {
+            if *slope <= ROUNDING * positive(*size) {
+                *slope = 0.0;
+            }
+        }
+        self.variation = self.variation.max(LEAST_AT_START * bending(blocks, at, sizes));
+        self.within_relations(blocks).within_reach(&at.rows, limits).above_rounding(at.objective)
+    }
+
     /// The slopes that scale a program, from those at the start and at a point beside it (none where the program has no
     /// derivatives there). A start may be stationary but for rounding, for a row or for the objective; then the slope
     /// beside it counts, and for a row its larger finite bound, if that is larger. For the objective the start may also
@@ -228,6 +242,19 @@ pub fn variation(blocks: &[Block], at: &Evaluation, sizes: &[f64]) -> f64 {
                 let slope = block.weight[row * block.elements + e] * values.jacobian[entry * block.elements + e];
                 sum += slope.abs() * slot_size(block, e, slot, sizes);
             }
+        }
+    }
+    sum
+}
+
+/// How much second derivatives change the variation over sizes: the sum over elements and pairs of slots of the size of
+/// the second derivative times the sizes of both slots, which are those of the block's first element.
+fn bending(blocks: &[Block], at: &Evaluation, sizes: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (block, values) in blocks.iter().zip(&at.blocks) {
+        for (&(i, j), entries) in block.hessian.iter().zip(values.hessian.chunks(block.elements.max(1))) {
+            let curvature: f64 = entries.iter().map(|entry| entry.abs()).sum();
+            sum += curvature * slot_size(block, 0, i, sizes) * slot_size(block, 0, j, sizes);
         }
     }
     sum

@@ -47,7 +47,8 @@ impl<'a, N: Nlp> State<'a, N> {
         analysis: &'a mut Analysis<N::Workspace>,
     ) -> Result<Self, Status> {
         let begin = Instant::now();
-        let mut system = System::for_program(analysis.system.take(), nlp, analysis.is_unchanged);
+        let mut system =
+            System::for_program(analysis.system.take(), nlp, analysis.is_unchanged, vec![false; nlp.variables()]);
         let n = nlp.variables();
         let sizes = Scales::sizes(nlp.limits());
         let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();

@@ -19,17 +19,17 @@ const SINGULAR: f64 = 1e-14;
 const NOISE: f64 = 1e-14;
 
 /// Numbers of as many unknowns as a block has.
-type Chunk = [f64; BLOCK];
+pub(super) type Chunk = [f64; BLOCK];
 /// A block, column by column.
-type Square = [Chunk; BLOCK];
+pub(super) type Square = [Chunk; BLOCK];
 
 /// The factors of one matrix.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     /// As the matrix, with `L`.
-    value: Vec<f64>,
+    pub(super) value: Vec<f64>,
     /// Reciprocal pivots, filled up.
-    inverse: Vec<Chunk>,
+    pub(super) inverse: Vec<Chunk>,
     /// The columns of blocks of a group below their diagonals, times their pivots; each `longest` after the one before.
     panel: Vec<Square>,
     /// The length of the longest column below its diagonal.

@@ -7,8 +7,9 @@
 //! [`system`] holds the scaled program, the matrix `A` and its factors. `supports` finds which slots depend on the same
 //! variables, `unknowns` which rows are not condensed, `elements` condenses the others into second derivatives element by
 //! element, `ordering` says in which order unknowns are eliminated, `storage` where the entries of that matrix and of its
-//! factors are stored, `factor` factorises it.
+//! factors are stored, `factor` factorises it, `columns` solves for several right-hand sides at a time.
 
+mod columns;
 mod elements;
 mod factor;
 mod ordering;
@@ -19,5 +20,6 @@ mod supports;
 pub(crate) mod system;
 mod unknowns;
 
-pub(crate) use elements::{Curvature, Weights};
+pub(crate) use columns::{COLUMNS, Columns};
+pub(crate) use elements::{Curvature, Held, Refinement, Weights};
 pub(crate) use system::System;

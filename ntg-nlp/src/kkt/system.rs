@@ -9,11 +9,12 @@
 //! function, to which padding refers, then the variables (from [`System::first_variable`] on). A bound on a variable is
 //! thus a bound on a function whose derivative is 1. Vectors by variable end with one padding entry, which is 0.
 
-use super::elements::{Curvature, Elements, Rows, Weights};
+use super::columns::{COLUMNS, Columns};
+use super::elements::{Curvature, Elements, Held, Refinement, Rows, Weights};
 use super::factor::{Factor, Regularised};
 use super::ordering::Cliques;
 use super::pattern::Pattern;
-use super::storage::Storage;
+use super::storage::{BLOCK, Storage};
 use super::supports::Supports;
 use super::unknowns::Unknowns;
 use crate::contract::{Block, Evaluation, Nlp, NotFinite};
@@ -46,6 +47,8 @@ pub(crate) struct System<W> {
     weights: Vec<f64>,
     /// Right-hand side and solution, by unknown.
     right_hand_side: Vec<f64>,
+    /// The same for several right-hand sides, filled up; empty before the first.
+    columns: Vec<Columns>,
     /// What the scales were chosen from; none where the program has changed since.
     scaled_by: Option<ScaledBy>,
 }
@@ -61,12 +64,13 @@ struct ScaledBy {
 }
 
 impl<W> System<W> {
-    /// Analyses a program: supports, border rows, order of elimination, storage of the matrix.
-    pub(crate) fn new<N: Nlp<Workspace = W>>(nlp: &N) -> Self {
+    /// Analyses a program: supports, border rows, order of elimination, storage of the matrix. Variables that are `held`
+    /// meet no other unknown.
+    pub(crate) fn new<N: Nlp<Workspace = W>>(nlp: &N, held: Vec<bool>) -> Self {
         let (n, m) = (nlp.variables(), nlp.rows());
         let sizes = Scales::sizes(nlp.limits());
         let supports: Vec<Arc<Supports>> = nlp.blocks().iter().map(|block| Arc::new(Supports::new(block))).collect();
-        let unknowns = Unknowns::new(nlp, &supports);
+        let unknowns = Unknowns::new(nlp, &supports, held);
         let mut elements = Elements::new(nlp.blocks(), &supports, &unknowns, &sizes);
         let mut cliques = Cliques::default();
         elements.cliques(&unknowns, |list| cliques.add(list));
@@ -86,6 +90,7 @@ impl<W> System<W> {
             latest,
             x: vec![0.0; n],
             weights: vec![0.0; m],
+            columns: vec![],
             scaled_by: None,
             unknowns,
             storage,
@@ -93,29 +98,36 @@ impl<W> System<W> {
     }
 
     /// The system of a program. The analysis of `earlier` is used again where the patterns are the same; where the
-    /// program `is_unchanged`, all of `earlier` is.
-    pub(crate) fn for_program<N: Nlp<Workspace = W>>(earlier: Option<Self>, nlp: &N, is_unchanged: bool) -> Self {
-        match earlier {
+    /// program `is_unchanged` but for limits, all of `earlier` is.
+    pub(crate) fn for_program<N: Nlp<Workspace = W>>(
+        earlier: Option<Self>,
+        nlp: &N,
+        is_unchanged: bool,
+        held: Vec<bool>,
+    ) -> Self {
+        match earlier.filter(|system| system.unknowns.held == held) {
             Some(system) if is_unchanged && system.scales.variables == Scales::sizes(nlp.limits()) => system,
-            Some(system) if system.fits(nlp) => system.refit(nlp),
-            _ => Self::new(nlp),
+            Some(system) if is_unchanged || system.fits(nlp) => system.refit(nlp, is_unchanged),
+            _ => Self::new(nlp, held),
         }
     }
 
     /// Whether a program has the patterns that were analysed.
-    pub(crate) fn fits<N: Nlp<Workspace = W>>(&self, nlp: &N) -> bool {
+    fn fits<N: Nlp<Workspace = W>>(&self, nlp: &N) -> bool {
         let same = |(pattern, block): (&Pattern, &Block)| pattern.is_of(block);
         (self.x.len(), self.weights.len()) == (nlp.variables(), nlp.rows())
             && self.patterns.len() == nlp.blocks().len()
             && self.patterns.iter().zip(nlp.blocks()).all(same)
     }
 
-    /// The same analysis with the numbers of another program, whose workspace holds its data.
-    pub(crate) fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N) -> Self {
+    /// The same analysis with the numbers of another program, whose workspace holds its data, or with other sizes.
+    fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N, is_unchanged: bool) -> Self {
         let sizes = Scales::sizes(nlp.limits());
         self.elements.refill(nlp.blocks(), &sizes);
         self.scales = Scales { variables: sizes, rows: vec![1.0; self.weights.len()], objective: 1.0 };
-        (self.workspace, _) = nlp.workspace();
+        if !is_unchanged {
+            (self.workspace, _) = nlp.workspace();
+        }
         self.scaled_by = None;
         self
     }
@@ -160,6 +172,36 @@ impl<W> System<W> {
         self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
         let (row_sizes, row_weights) = (rows.clone(), weights.clone());
         self.scaled_by = Some(ScaledBy { point: scaled.to_vec(), rule: scaling, row_sizes, row_weights });
+        Ok(())
+    }
+
+    /// Moves to a point in the program's own units with the multipliers of its rows, and chooses scales by the slopes and
+    /// the curvature there: one evaluation.
+    pub(crate) fn at_solution<N: Nlp<Workspace = W>>(
+        &mut self,
+        nlp: &N,
+        x: &[f64],
+        row_multipliers: &[f64],
+    ) -> Result<(), NotFinite> {
+        let limits = nlp.limits();
+        for (j, own) in self.x.iter_mut().enumerate() {
+            *own = x[j].max(limits.lower[j]).min(limits.upper[j]);
+        }
+        self.weights.iter_mut().zip(row_multipliers).for_each(|(weight, y)| *weight = -y);
+        nlp.derivatives(&self.x, 1.0, &self.weights, &mut self.workspace, &mut self.latest)?;
+        let plain = Scales { rows: vec![1.0; self.weights.len()], objective: 1.0, ..self.scales.clone() };
+        self.set_scales(nlp, plain);
+        let mut rows = vec![0.0; self.weights.len() + 2];
+        self.elements.slopes(&mut rows);
+        rows.truncate(self.weights.len());
+        let sizes = &self.scales.variables;
+        let variation = variation(nlp.blocks(), &self.latest, sizes);
+        let slopes = Slopes { rows, variation }.at_solution(nlp, &self.latest, sizes);
+        let scales = Scales::from_slopes(limits, Scaling::Automatic, &slopes);
+        let second = self.latest.blocks.iter_mut().flat_map(|block| &mut block.hessian);
+        second.for_each(|entry| *entry *= scales.objective);
+        self.set_scales(nlp, scales);
+        self.scaled_by = None;
         Ok(())
     }
 
@@ -367,9 +409,44 @@ impl<W> System<W> {
         rows.copy_from_slice(second);
     }
 
+    /// As [`System::solve`], for several right-hand sides.
+    pub(crate) fn solve_columns(&mut self, variables: &mut [Columns], rows: &mut [Columns]) {
+        self.columns.clear();
+        self.columns.resize(BLOCK * self.storage.columns(), Columns::default());
+        let unknowns = || variables.iter().take(self.unknowns.variables).chain(&*rows);
+        for (value, &padded) in unknowns().zip(&self.storage.padded) {
+            self.columns[padded] = *value;
+        }
+        self.factor.solve_columns(&self.storage, &mut self.columns);
+        let unknowns = variables.iter_mut().take(self.unknowns.variables).chain(rows);
+        for (value, &padded) in unknowns.zip(&self.storage.padded) {
+            *value = self.columns[padded];
+        }
+    }
+
+    /// What a step leaves of residuals; bounds of variables are functions whose derivative is 1, and count as condensed.
+    pub(crate) fn refine(&mut self, to: &mut Refinement<'_>) {
+        self.elements.refine(to);
+        let first = self.first_variable();
+        for (j, (step, pull)) in to.step.iter().zip(&mut *to.pull).take(self.x.len()).enumerate() {
+            if to.held[first + j] != Held::No {
+                let left = &mut to.rows[first + j];
+                for k in 0..COLUMNS {
+                    left[k] -= step[k];
+                    pull[k] += to.penalty * left[k];
+                }
+            }
+        }
+    }
+
     /// The point of the last evaluation, in the program's own units, whether or not that evaluation succeeded.
     pub(crate) fn last_point(&self) -> &[f64] {
         &self.x
+    }
+
+    /// Which variables meet no other unknown.
+    pub(crate) fn held(&self) -> &[bool] {
+        &self.unknowns.held
     }
 
     /// The rows of the program that are unknowns of the border.

@@ -17,6 +17,8 @@ const NEAR: usize = 24;
 pub(super) struct Unknowns {
     /// How many variables there are.
     pub(super) variables: usize,
+    /// Whether each variable is held: it then meets no other unknown, and what elements would add to it is left out.
+    pub(super) held: Vec<bool>,
     /// For each row its number among the border rows; none for a condensed row.
     pub(super) border_row: Vec<Option<u32>>,
     /// The border rows.
@@ -25,7 +27,7 @@ pub(super) struct Unknowns {
 
 impl Unknowns {
     /// Chooses the border rows of a program.
-    pub(super) fn new<N: Nlp>(nlp: &N, supports: &[Arc<Supports>]) -> Self {
+    pub(super) fn new<N: Nlp>(nlp: &N, supports: &[Arc<Supports>], held: Vec<bool>) -> Self {
         let variables = nlp.variables();
         // Globals, and variables that second derivatives connect with far ones, have no place in the order.
         let mut placeless = vec![false; variables];
@@ -39,12 +41,12 @@ impl Unknowns {
             border_row[row] = Some(bordered.len() as u32);
             bordered.push(row);
         }
-        Self { variables, border_row, bordered }
+        Self { variables, held, border_row, bordered }
     }
 
-    /// The unknown that a variable is; none for padding.
+    /// The unknown that a variable is; none for padding and for what is held.
     pub(super) fn of_variable(&self, variable: u32) -> Option<u32> {
-        ((variable as usize) < self.variables).then_some(variable)
+        self.held.get(variable as usize).is_some_and(|held| !held).then_some(variable)
     }
 
     /// The unknown that a function is; none but for border rows.

@@ -1,7 +1,7 @@
 //! Derivatives of solutions by their bounds: closed forms, and what a solution that has none says.
 
 use ntg_nlp::closures::Program;
-use ntg_nlp::sensitivity::{Activity, Moving, Sensitivity, Unavailable};
+use ntg_nlp::sensitivity::{Activity, Moving, Response, Sensitivity, Unavailable};
 use ntg_nlp::{Options, ipm};
 
 const INF: f64 = f64::INFINITY;
@@ -25,6 +25,13 @@ fn differentiated(program: &Program) -> Result<Sensitivity<impl Sized + use<>>, 
     Sensitivity::new(program, &outcome.x, outcome.multipliers())
 }
 
+/// The response where the bounds of all rows and variables move so fast.
+fn one<W>(sensitivity: &mut Sensitivity<W>, rows: &[f64], variables: &[f64]) -> Result<Response, Unavailable> {
+    let numbered = |rates: &[f64]| rates.iter().copied().enumerate().collect::<Vec<_>>();
+    let (rows, variables) = (numbered(rows), numbered(variables));
+    sensitivity.responses(&[Moving { rows: &rows, variables: &variables }]).map(|mut found| found.remove(0))
+}
+
 #[track_caller]
 fn near(found: &[f64], known: &[f64]) {
     for (found, known) in found.iter().zip(known) {
@@ -40,11 +47,11 @@ fn an_active_row_moves_the_solution_along_itself() {
     assert!(sensitivity.is_strict());
     assert_eq!(sensitivity.rows(), [Activity::Active]);
     assert_eq!(sensitivity.variables(), [Activity::Inactive, Activity::Inactive, Activity::Active]);
-    let by_c = sensitivity.response(Moving { rows: &[1.0], variables: &[0.0; 3] }).expect("a derivative");
+    let by_c = one(&mut sensitivity, &[1.0], &[0.0; 3]).expect("a derivative");
     near(&by_c.x, &[0.75, 0.25, 0.0]);
     // f_y = 4 y - 8 + x is the multiplier.
     near(&by_c.rows, &[1.75]);
-    let by_p = sensitivity.response(Moving { rows: &[0.0], variables: &[0.0, 0.0, 1.0] }).expect("a derivative");
+    let by_p = one(&mut sensitivity, &[0.0], &[0.0, 0.0, 1.0]).expect("a derivative");
     near(&by_p.x, &[-0.25, 0.25, 1.0]);
 }
 
@@ -54,7 +61,7 @@ fn without_active_rows_it_is_newtons_step() {
     let program = program(100.0, INF);
     let mut sensitivity = differentiated(&program).unwrap_or_else(|why| panic!("{why}"));
     assert_eq!(sensitivity.rows(), [Activity::Inactive]);
-    let by_p = sensitivity.response(Moving { rows: &[7.0], variables: &[0.0, 0.0, 1.0] }).expect("a derivative");
+    let by_p = one(&mut sensitivity, &[7.0], &[0.0, 0.0, 1.0]).expect("a derivative");
     near(&by_p.x, &[-4.0 / 7.0, 1.0 / 7.0, 1.0]);
 }
 
@@ -63,9 +70,9 @@ fn the_adjoint_tells_what_all_responses_tell() {
     let program = program(1.0, INF);
     let mut sensitivity = differentiated(&program).unwrap_or_else(|why| panic!("{why}"));
     let weights = [2.0, -3.0, 0.5];
-    let adjoint = sensitivity.adjoint(&weights).expect("an adjoint");
+    let adjoint = sensitivity.adjoints(&[&weights]).expect("an adjoint").remove(0);
     for (rows, variables) in [([1.0], [0.0; 3]), ([0.0], [0.0, 0.0, 1.0]), ([0.3], [0.0, 0.0, -2.0])] {
-        let response = sensitivity.response(Moving { rows: &rows, variables: &variables }).expect("a derivative");
+        let response = one(&mut sensitivity, &rows, &variables).expect("a derivative");
         let forward: f64 = weights.iter().zip(&response.x).map(|(v, x)| v * x).sum();
         let by_variables: f64 = adjoint.variables.iter().zip(variables).map(|(b, rate)| b * rate).sum();
         near(&[-adjoint.rows[0] * rows[0] - by_variables], &[forward]);
@@ -94,8 +101,8 @@ fn bounds_that_contradict_each_other_as_soon_as_they_move_have_no_derivative() {
     });
     let outcome = ipm::solve(&program, &[0.0], &Options::default());
     let mut sensitivity = Sensitivity::new(&program, &outcome.x, outcome.multipliers()).expect("a factorised system");
-    let apart = sensitivity.response(Moving { rows: &[1.0, 0.0], variables: &[0.0] });
+    let apart = one(&mut sensitivity, &[1.0, 0.0], &[0.0]);
     assert!(matches!(apart, Err(Unavailable::Unresolved(_))), "{apart:?}");
-    let together = sensitivity.response(Moving { rows: &[1.0, 1.0], variables: &[0.0] }).expect("a derivative");
+    let together = one(&mut sensitivity, &[1.0, 1.0], &[0.0]).expect("a derivative");
     near(&together.x, &[1.0]);
 }

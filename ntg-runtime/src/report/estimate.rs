@@ -156,12 +156,9 @@ fn covariance(nlp: &Transcription, solution: &Solution) -> Result<Vec<Vec<f64>>,
     if !factors.is_strict() {
         return Err("what was measured leaves a direction open in which nothing changes".to_owned());
     }
-    let mut rows = vec![];
-    for variable in first..first + count {
-        let mut unit = vec![0.0; inner.x.len()];
-        unit[variable] = 1.0;
-        let response = factors.adjoint(&unit).map_err(|why| why.to_string())?;
-        rows.push(response.x[first..first + count].to_vec());
-    }
-    Ok(rows)
+    let unit = |variable: usize| (0..inner.x.len()).map(|j| if j == variable { 1.0 } else { 0.0 }).collect();
+    let units: Vec<Vec<f64>> = (first..first + count).map(unit).collect();
+    let units: Vec<&[f64]> = units.iter().map(|unit| &unit[..]).collect();
+    let adjoints = factors.adjoints(&units).map_err(|why| why.to_string())?;
+    Ok(adjoints.into_iter().map(|adjoint| adjoint.x[first..first + count].to_vec()).collect())
 }

@@ -256,6 +256,7 @@ impl Report {
                 rows: nlp.elements.rows.clone(),
                 row_multipliers: outcome.row_multipliers,
                 bound_multipliers: outcome.bound_multipliers,
+                sizes: nlp.limits.scale.clone(),
             }),
         };
         let status = status::in_words(nlp, outcome.status);

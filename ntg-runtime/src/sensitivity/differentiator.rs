@@ -1,12 +1,13 @@
 //! What derivatives of several solutions of one problem share.
 
-use super::parametric::{AtSolution, Limit};
-use super::{Gradient, Sensitivity, SensitivityError, moving, weak};
+use super::parametric::{AtSolution, Form};
+use super::{Gradient, Sensitivity, SensitivityError, weak};
 use crate::problem::{Parametric, Problem};
-use crate::solution::{Inner, Solution};
+use crate::solution::{Inner, Solution, Value};
 use crate::transcribe::{Kept, Workspace};
 use ntg_nlp::Multipliers;
 use ntg_nlp::sensitivity::{Moving, Sensitivity as Factors};
+use ntg_structure::Structure;
 use std::sync::Arc;
 
 /// Differentiates solutions of one problem, one after another: for other values of parameters, on the same mesh. The
@@ -34,8 +35,10 @@ pub struct Differentiator {
 
 /// What is kept between solutions.
 struct KeptForm {
+    form: Form,
     transcription: Kept,
-    factors: Factors<Workspace>,
+    /// None before the first solution.
+    factors: Option<Factors<Workspace>>,
 }
 
 impl Differentiator {
@@ -61,49 +64,41 @@ impl Differentiator {
     }
 
     fn differentiated(&mut self, solution: &Solution, names: Option<&[&str]>) -> Result<Sensitivity, SensitivityError> {
-        let (transcription, earlier) = self.kept.take().map(|kept| (kept.transcription, kept.factors)).unzip();
-        let program = AtSolution::new(&*self.problem, transcription, &solution.inner)?;
-        let (parameters, variables) = match solution.parameters(&program.parameters, names) {
+        let (form, nlp, earlier) = match self.kept.take() {
+            Some(KeptForm { form, transcription, factors }) if form.fits(&transcription, &solution.inner) => {
+                (form, transcription.of(&*self.problem), (factors, true))
+            }
+            other => {
+                let (form, nlp) = Form::new(&*self.problem, &solution.inner)?;
+                (form, nlp, (other.and_then(|kept| kept.factors), false))
+            }
+        };
+        let (parameters, variables) = match solution.parameters(&form.parameters, names) {
             Ok(found) => found,
             Err(error) => {
-                let transcription = program.nlp.keep();
-                self.kept = earlier.map(|factors| KeptForm { transcription, factors });
+                self.kept =
+                    Some(KeptForm { form, transcription: nlp.keep(), factors: earlier.0.filter(|_| earlier.1) });
                 return Err(error);
             }
         };
+        let program = form.at(nlp, &solution.inner);
         let multipliers = Multipliers { rows: &program.row_multipliers, bounds: &program.bound_multipliers };
         let mut factors = Factors::again(earlier, &program.nlp, &program.x, multipliers)?;
-        let lagrangian = factors.lagrangian(&program.row_multipliers);
-        let mut responses = vec![];
-        let structure = solution.structure();
-        let sign = if structure.maximize { -1.0 } else { 1.0 };
-        let mut objective = Gradient { unit: structure.objective_unit.clone(), values: vec![] };
-        for (variable, parameter) in variables.iter().zip(&parameters) {
-            let held = program.held(*variable);
-            let rates = |limits: &[Limit], multipliers: &[f64]| -> Vec<f64> {
-                limits.iter().zip(multipliers).map(|(limit, multiplier)| limit.rate(*multiplier, &held)).collect()
-            };
-            let rows = rates(&program.rows, &program.row_multipliers);
-            let bounds = rates(&program.variables, &program.bound_multipliers);
-            // Equation 16.3.
-            let by_rows: f64 = program.row_multipliers.iter().zip(&rows).map(|(y, rate)| y * rate).sum();
-            let active = factors.variables().iter().map(|activity| f64::from(u8::from(activity.is_active())));
-            let by_bounds: f64 = lagrangian.iter().zip(&bounds).zip(active).map(|((y, rate), is)| is * y * rate).sum();
-            let factor = sign * parameter.unit.factor / structure.objective_unit.factor;
-            objective.values.push(factor * (by_rows + by_bounds));
-            responses.push(factors.response(Moving { rows: &rows, variables: &bounds })?);
-        }
+        let rates = form.rates(&program, &variables);
+        let moving: Vec<Moving> =
+            rates.iter().map(|rates| Moving { rows: &rates.rows, variables: &rates.variables }).collect();
+        let objective = objective(&program, &mut factors, (solution.structure(), &parameters), &moving);
+        let responses = factors.responses(&moving)?;
         let weak = weak(&program, &factors);
         let is_strict = factors.is_strict();
-        let AtSolution { nlp, x, image, row_image, .. } = program;
-        let inner =
-            Inner { model: nlp.model.clone(), x, rows: vec![], row_multipliers: vec![], bound_multipliers: vec![] };
-        let moving = Arc::new(moving(&nlp.model));
-        self.kept = Some(KeptForm { transcription: nlp.keep(), factors });
+        let AtSolution { nlp, x, .. } = program;
+        let at = Solution { inner: Arc::new(Inner::point(nlp.model.clone(), x)) };
+        let (moving, images) = (Arc::clone(&form.moving), (Arc::clone(&form.image), Arc::clone(&form.row_image)));
+        self.kept = Some(KeptForm { form, transcription: nlp.keep(), factors: Some(factors) });
         Ok(Sensitivity {
             problem: Arc::clone(&self.problem),
             solution: solution.clone(),
-            at: Solution { inner: Arc::new(inner) },
+            at,
             moving,
             parameters,
             variables,
@@ -111,7 +106,25 @@ impl Differentiator {
             objective,
             weak,
             is_strict,
-            images: (image, row_image),
+            images,
         })
     }
+}
+
+/// Equation 16.3.
+fn objective<W>(
+    program: &AtSolution<'_>,
+    factors: &mut Factors<W>,
+    (structure, parameters): (&Structure, &[Value]),
+    moving: &[Moving<'_>],
+) -> Gradient {
+    let lagrangian = factors.lagrangian(&program.row_multipliers);
+    let sign = if structure.maximize { -1.0 } else { 1.0 };
+    let slope = |(moving, parameter): (&Moving<'_>, &Value)| {
+        let by_rows: f64 = moving.rows.iter().map(|(row, rate)| program.row_multipliers[*row] * rate).sum();
+        let active = moving.variables.iter().filter(|(variable, _)| factors.variables()[*variable].is_active());
+        let by_bounds: f64 = active.map(|(variable, rate)| lagrangian[*variable] * rate).sum();
+        sign * parameter.unit.factor / structure.objective_unit.factor * (by_rows + by_bounds)
+    };
+    Gradient { unit: structure.objective_unit.clone(), values: moving.iter().zip(parameters).map(slope).collect() }
 }

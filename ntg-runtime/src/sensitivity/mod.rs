@@ -19,7 +19,6 @@ pub use values::Gradient;
 use crate::problem::{Parametric, Problem};
 use crate::report::Report;
 use crate::solution::{Solution, Value};
-use crate::transcribe::layout::Time;
 use crate::transcribe::rows::{RowKind, constraint_words};
 use crate::transcribe::{Model, names};
 use ntg_nlp::sensitivity::{Activity, Response, Sensitivity as Factors};
@@ -59,7 +58,7 @@ pub struct Sensitivity {
     weak: Vec<Weak>,
     is_strict: bool,
     /// The variable and the row of the parametric form that each of the solution's is.
-    images: (Vec<u32>, Vec<u32>),
+    images: (Arc<[u32]>, Arc<[u32]>),
 }
 
 /// A constraint that hardly holds what it limits, or hardly does not: its distance from the bound and its multiplier are
@@ -114,7 +113,9 @@ impl Solution {
                 let index = declared.array.then(|| i64::try_from(member).unwrap_or(i64::MAX).saturating_add(1));
                 let name = names::indexed(&declared.name, index);
                 let is_wanted = |names: &[&str]| names.iter().any(|wanted| *wanted == name || *wanted == declared.name);
-                all.extend([declared.name.clone(), name.clone()]);
+                if names.is_some() {
+                    all.extend([declared.name.clone(), name.clone()]);
+                }
                 if names.is_none_or(is_wanted) {
                     variables.push(first + u32::try_from(member).unwrap_or(u32::MAX));
                     parameters.push(Value { name, value: value / declared.unit.factor, unit: declared.unit.clone() });
@@ -158,19 +159,6 @@ impl Sensitivity {
     pub fn solution(&self) -> &Solution {
         &self.solution
     }
-}
-
-/// The model in which derivatives of times are looked up as times are: what is fixed does not move.
-fn moving(model: &Model) -> Model {
-    let mut moving = model.clone();
-    let still = |time: &mut Time| {
-        if let Time::Fixed(seconds) = time {
-            *seconds = 0.0;
-        }
-    };
-    moving.layout.phases.iter_mut().for_each(|phase| still(&mut phase.duration));
-    moving.layout.agents.iter_mut().for_each(|agent| still(&mut agent.start));
-    moving
 }
 
 /// What is weakly active, each constraint once.

@@ -44,6 +44,7 @@ impl Sensitivity {
             rows: nlp.elements.rows.clone(),
             row_multipliers: rows,
             bound_multipliers: bounds,
+            sizes: own.sizes.clone(),
         };
         Ok(Solution { inner: Arc::new(inner) })
     }

@@ -73,9 +73,7 @@ impl Sensitivity {
 
     /// The derivatives of the variables by one parameter, as if they were a solution.
     fn direction(&self, response: usize) -> Solution {
-        let (model, x) = (Arc::clone(&self.moving), self.responses[response].x.clone());
-        let inner = Inner { model, x, rows: vec![], row_multipliers: vec![], bound_multipliers: vec![] };
-        Solution { inner: Arc::new(inner) }
+        Solution { inner: Arc::new(Inner::point(Arc::clone(&self.moving), self.responses[response].x.clone())) }
     }
 
     /// Equation 16.4.

@@ -69,6 +69,8 @@ pub(crate) struct Inner {
     pub(crate) row_multipliers: Vec<f64>,
     /// The same for the bounds of the variables.
     pub(crate) bound_multipliers: Vec<f64>,
+    /// The typical sizes of the variables with which it was solved.
+    pub(crate) sizes: Vec<f64>,
 }
 
 /// A phase and its times, in seconds of mission time.
@@ -259,6 +261,11 @@ pub(crate) fn spaced(start: f64, end: f64, count: usize) -> Vec<f64> {
 }
 
 impl Inner {
+    /// A point that is no solution.
+    pub(crate) fn point(model: Arc<Model>, x: Vec<f64>) -> Self {
+        Self { model, x, rows: vec![], row_multipliers: vec![], bound_multipliers: vec![], sizes: vec![] }
+    }
+
     /// The multipliers, for a solve that starts from here.
     pub(crate) fn multipliers(&self) -> Multipliers<'_> {
         Multipliers { rows: &self.row_multipliers, bounds: &self.bound_multipliers }

@@ -164,6 +164,7 @@ pub(super) fn solution(nlp: &Transcription, outcome: Outcome) -> Solution {
             rows: nlp.elements.rows.clone(),
             row_multipliers: outcome.row_multipliers,
             bound_multipliers: outcome.bound_multipliers,
+            sizes: nlp.limits.scale.clone(),
         }),
     }
 }

@@ -82,8 +82,8 @@ pub struct Transcription<'p> {
 /// A transcription without its problem, to be kept until the problem is solved again.
 #[derive(Debug)]
 pub(crate) struct Kept {
-    model: Arc<Model>,
-    elements: Elements,
+    pub(crate) model: Arc<Model>,
+    pub(crate) elements: Elements,
     limits: Limits,
     linear: LinearSystem,
 }

@@ -39,6 +39,20 @@ impl Transcription<'_> {
         Ok(())
     }
 
+    /// Sets all sizes at a solution: the larger of those with which it was solved and those that it has. Limits are set.
+    pub(crate) fn set_scales_at(&mut self, x: &[f64], solved: &[f64]) {
+        let mut scale: Vec<f64> = x.iter().zip(solved).map(|(x, size)| x.abs().max(*size)).collect();
+        for agent in &self.model.layout.agents {
+            for output in self.outputs_of(agent.phases.clone()) {
+                let largest = output.coefficients.iter().map(|v| scale[*v as usize]).fold(0.0, f64::max);
+                output.coefficients.iter().for_each(|v| scale[*v as usize] = largest);
+            }
+        }
+        scale.iter_mut().for_each(|size| *size = usable(*size, &Unit::default()));
+        self.limits.scale = scale;
+        self.limits.row_scale = self.row_scales();
+    }
+
     /// Equation 5.5: the largest guessed coefficient or guess; else what balances constraints; else the unit.
     fn automatic(&self, guess: &[f64], scale: &mut [f64]) {
         let (structure, layout) = (&self.model.structure, &self.model.layout);

@@ -4,7 +4,7 @@
 use super::super::pack::{Pack, add_product, combine, product, row_product};
 use super::modified_ldl::ModifiedLdl;
 use super::plan::{BorderRow, Plan};
-use super::{Curvature, Weights};
+use super::{Curvature, Weights, refinement};
 
 /// Buffers for one pack of the largest block.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +25,8 @@ pub(super) struct Workspace<const L: usize> {
     pub(super) unscaling: Vec<f64>,
     /// The modified factorisation that makes elements convex.
     pub(super) modified_ldl: ModifiedLdl,
+    /// Buffers for several right-hand sides.
+    pub(super) refinement: refinement::Buffers<L>,
 }
 
 impl<const L: usize> Workspace<L> {

@@ -3,7 +3,7 @@
 //!
 //! `batching` decides which elements are worked on side by side, `range_map` lays out their range transformations,
 //! `plan` says where in the matrix their contributions are added, `products` which products that takes, `condense` does
-//! the work, `convexify` and `modified_ldl` compute the convexifying term, `dispatch` compiles all of it for the widest
+//! the work, `refinement` some of it for several right-hand sides at a time, `convexify` and `modified_ldl` compute the convexifying term, `dispatch` compiles all of it for the widest
 //! instructions of the processor.
 //!
 //! Everything is scaled. The *functions* of a program are numbered: the rows, then the objective, then one unused
@@ -17,6 +17,7 @@ mod modified_ldl;
 mod plan;
 mod products;
 mod range_map;
+mod refinement;
 
 use super::pack::LANES;
 use super::storage::Storage;
@@ -28,6 +29,8 @@ use batching::Batching;
 use condense::Workspace;
 use plan::{Plan, Program};
 use std::sync::Arc;
+
+pub(crate) use refinement::{Held, Refinement};
 
 /// All elements of a program, and their derivatives at the latest point.
 #[derive(Clone, Debug)]
