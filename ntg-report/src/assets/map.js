@@ -133,7 +133,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
     svg.append(inside, names);
     legend.replaceChildren();
     chart.lines.forEach((line, i) => {
-      const dashes = dash(line.run);
+      const dashes = dash(line.run, i);
       make("path", { d: path(line, f), fill: "none", stroke: colour(i), "stroke-width": 2.2, "stroke-dasharray": dashes ? dashes.join(" ") : "none" }, inside);
       if (line.x.length) make("circle", { cx: f.px(line.x[0]), cy: f.py(line.y[0]), r: 5, fill: "none", stroke: colour(i), "stroke-width": 2 }, inside);
       for (const [x, y] of line.events) make("circle", { cx: f.px(x), cy: f.py(y), r: 4, fill: colour(i) }, inside);
@@ -141,7 +141,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
         const item = legend.appendChild(document.createElement("span"));
         const stroke = item.appendChild(document.createElement("i"));
         stroke.style.borderTopColor = colour(i);
-        stroke.style.borderTopStyle = line.run ? "dashed" : "solid";
+        stroke.style.borderTopStyle = !dashes ? "solid" : dashes[0] < 4 ? "dotted" : "dashed";
         item.append(line.name);
       }
     });
