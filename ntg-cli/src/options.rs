@@ -3,7 +3,6 @@
 //! Takes text in which settings stand between backticks, `max_iterations`; gives the same text with the options that set
 //! them, `--max-iterations`.
 
-
 use ntg_runtime::multistart::MultiReport;
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::InvalidSetting;
@@ -22,9 +21,9 @@ const OPTIONS: [(&str, &str); 8] = [
 
 /// The text with options in the place of settings.
 pub(crate) fn worded(text: &str) -> String {
-    OPTIONS.iter().fold(text.to_owned(), |text, (setting, option)| {
-        text.replace(&format!("`{setting}`"), &format!("`{option}`"))
-    })
+    OPTIONS
+        .iter()
+        .fold(text.to_owned(), |text, (setting, option)| text.replace(&format!("`{setting}`"), &format!("`{option}`")))
 }
 
 /// The report with advice for the command line.

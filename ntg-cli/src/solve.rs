@@ -201,6 +201,6 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
         arguments::InertiaCorrection::ByElement => InertiaCorrection::ByElement,
         arguments::InertiaCorrection::ByShift => InertiaCorrection::ByShift,
     };
-    settings.validate().map_err(|invalid| crate::options::invalid(&invalid))?;
+    settings.validate().map_err(|invalid| options::invalid(&invalid))?;
     Ok(settings)
 }

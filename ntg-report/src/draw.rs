@@ -360,6 +360,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn lines_of_one_colour_differ_in_their_dashes() {
+        let looks: Vec<_> = (0..40).map(|index| (index % COLOURS.len(), dashes(index, 0).expect("a look"))).collect();
+        let unique: std::collections::BTreeSet<_> = looks.iter().collect();
+        assert_eq!(unique.len(), looks.len());
+        assert!(looks[..8].iter().all(|(_, dashes)| dashes.is_none()));
+    }
+
+    #[test]
     fn the_frame_cuts_no_name_of_a_map() {
         let frame = ((100, 100), (1000, 900));
         assert_eq!(within((500, 500), (20, -30), (200, 50), frame), (20, -30), "there is room");

@@ -227,7 +227,8 @@ fn ordinate(name: &str) -> &str {
 /// solver's last step has left of them, which tells nothing.
 pub fn multipliers(runs: &Runs<'_>) -> Vec<Panel> {
     let mut panels = over_constraints(runs, |constraint, runs, run| {
-        let density = constraint.multiplier.as_ref().is_some_and(|m| m.density);
+        let means = constraint.members.iter().any(|member| !member.mean.is_empty());
+        let density = means || constraint.multiplier.as_ref().is_some_and(|m| m.density);
         let told = constraint.reaches_a_bound();
         let lines = constraint.members.iter().filter(|member| told && member.multiplier_t.len() > 1);
         // The mean of each interval is what the optimum determines; from point to point it may be shared out anyhow.

@@ -282,6 +282,7 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("phase coast { in 1 .. 9 [s]; }", "E001"),
             ("guess { x = [0, 1]; }", "E001"),
             ("guess { x = 0 .. 1; }", "E001"),
+            ("guess { x, y through (0, 0), (1, 2) [m]; }", "E001"),
             ("final { x == 11 [m]; }", "E057"),
             ("param a = sqrt(-1);", "E032"),
             ("guess { x = linspace(0, 1, 5); }", "E024"),

@@ -29,7 +29,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
   // What is passed belongs to the picture as far as it is no further away than the tracks are long.
   const spans = [0, 1].map((k) => { const v = all.map((p) => p[k]); return [Math.min(...v), Math.max(...v)]; });
   const near = ([x, y]) => [x, y].every((v, k) => { const [low, high] = spans[k], room = chart.equal ? Math.max(...spans.map(([a, b]) => b - a)) / 2 : high - low; return v >= low - room && v <= high + room; });
-  for (const [kind, , xs, ys] of chart.shapes) if (kind === "place" || kind === "area" || kind === "ground") xs.forEach((x, i) => { const p = [x, ys[i]]; if (x != null && p[1] != null && near(p)) all.push(p); });
+  for (const [kind, , xs, ys] of chart.shapes) if (kind === "place" || kind === "area" || kind === "ground") xs.forEach((x, i) => { const p = [x, ys[i]], beside = kind === "ground" && (x < spans[0][0] || x > spans[0][1]); if (x != null && p[1] != null && near(p) && !beside) all.push(p); });
   const home = () => {
     const xs = all.map((p) => p[0]), ys = all.map((p) => p[1]);
     const grow = (low, high) => { const pad = 0.06 * (high - low) || Math.max(1e-3, 0.1 * Math.abs(low)); return [low - pad, high + pad]; };

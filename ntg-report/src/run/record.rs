@@ -189,8 +189,8 @@ fn in_units_of_time(run: &mut Run) {
         let is_density = constraint.multiplier.as_ref().is_some_and(|multiplier| multiplier.density);
         for member in &mut constraint.members {
             member.t.iter_mut().chain(&mut member.multiplier_t).chain(&mut member.mean_t).for_each(shown);
-            let values = member.multiplier.iter_mut().chain(&mut member.mean);
-            values.for_each(|value| *value *= if is_density { factor } else { 1.0 });
+            member.multiplier.iter_mut().for_each(|value| *value *= if is_density { factor } else { 1.0 });
+            member.mean.iter_mut().for_each(|mean| *mean *= factor);
         }
     }
 }

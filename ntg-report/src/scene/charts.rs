@@ -68,9 +68,8 @@ impl<'a> Charts<'a> {
 pub(super) fn levels(charts: &Charts<'_>, (core, rectangle): (Rectangle, Rectangle)) -> Vec<Level> {
     let (scene, factors) = (charts.scene, charts.factors);
     let plane = scene.plane();
-    let is_chart = |(table, _): &(&structure::Table, &Table)| {
-        are_arguments(table, &plane.map(|axis| &scene.axes[axis]))
-    };
+    let is_chart =
+        |(table, _): &(&structure::Table, &Table)| are_arguments(table, &plane.map(|axis| &scene.axes[axis]));
     let Some((declared, table)) = charts.declared.iter().zip(charts.tables).find(is_chart) else { return vec![] };
     let function = |points: &[[f64; 2]]| {
         let at = |p: &[f64; 2]| [p[0] * factors[plane[0]], p[1] * factors[plane[1]]];

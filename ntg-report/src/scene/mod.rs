@@ -48,7 +48,8 @@ pub(crate) fn find(run: &Run, problem: &dyn Problem, reading: &Reading) -> Scene
     let factors = scene.tracks[0].paths.iter().map(|path| factor(run, path)).collect();
     let space = Space { problem, structure: &structure, tables: &tables, scene: &scene, factors };
     let view = View::of(run, &scene);
-    let charts = charts::Charts { declared: &structure.tables, tables: &tables, scene: &scene, factors: &space.factors };
+    let charts =
+        charts::Charts { declared: &structure.tables, tables: &tables, scene: &scene, factors: &space.factors };
     let mut found = Found::default();
     for group in &structure.groups {
         found.group(&space, &view, group);

@@ -42,7 +42,8 @@ fn profile(outline: &Outline, height: &Height<'_>, up: usize) -> Option<Outline>
     let flat = 1 - up;
     let points = || outline.lines.iter().flatten();
     distance(points().map(|at| (at[up], height.at(&[at[flat]])))).then_some(())?;
-    let (low, high) = points().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), at| (l.min(at[flat]), h.max(at[flat])));
+    let (low, high) =
+        points().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), at| (l.min(at[flat]), h.max(at[flat])));
     /// Points of the profile: as many as a picture shows.
     const POINTS: usize = 200;
     let line = (0..=POINTS).map(|k| {

@@ -43,7 +43,13 @@ pub(super) fn constraints(
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
         let sizes = (report.size, report.unit.factor);
-        keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, sizes), (&checked.point, checked.indices));
+        keep(
+            nlp,
+            &outcome.x,
+            &mut report.between,
+            (checked.value, checked.bounds, sizes),
+            (&checked.point, checked.indices),
+        );
     })?;
     Ok((reports, terms))
 }
@@ -66,7 +72,14 @@ fn keep(
         let layout = &nlp.model.layout;
         let time = point.phase.map(|phase| layout.start(phase, x) + point.tau * layout.duration(phase, x));
         let phase = point.phase.map(|phase| names::phase(&nlp.model.structure, layout, phase)).unwrap_or_default();
-        *worst = Some(Worst { violation: missed / unit, relative, value: value / unit, time, phase, indices: indices.to_vec() });
+        *worst = Some(Worst {
+            violation: missed / unit,
+            relative,
+            value: value / unit,
+            time,
+            phase,
+            indices: indices.to_vec(),
+        });
     }
 }
 

@@ -39,7 +39,9 @@ impl Masses {
         let has_both = self.rows.iter().any(is_inner_left);
         for (point, multiplier) in &self.rows {
             let shares: [(Option<usize>, f64); 2] = match (at_end(point.tau), point.side) {
-                (None, _) => [(Some(ends.partition_point(|end| *end <= point.tau).saturating_sub(1)), 1.0), (None, 0.0)],
+                (None, _) => {
+                    [(Some(ends.partition_point(|end| *end <= point.tau).saturating_sub(1)), 1.0), (None, 0.0)]
+                }
                 (Some(end), Side::Left) => [(end.checked_sub(1), 1.0), (None, 0.0)],
                 (Some(end), Side::Right) if has_both || end == 0 => [(Some(end), 1.0), (None, 0.0)],
                 (Some(end), Side::Right) => [(Some(end - 1), 0.5), (Some(end), 0.5)],

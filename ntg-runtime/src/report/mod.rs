@@ -15,10 +15,10 @@ pub(crate) mod status;
 mod traces;
 mod warnings;
 
+pub use crate::transcribe::rows::member_words;
 pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
 pub use refined::{RefineStatus, Refined, Round};
 pub use traces::Trace;
-pub use crate::transcribe::rows::member_words;
 pub use warnings::Warning;
 
 use crate::settings::Settings;

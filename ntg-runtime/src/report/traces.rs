@@ -89,7 +89,8 @@ impl Solution {
             let (Some(trace), Some(phase)) = (found.get_mut(key), key.1) else { continue };
             let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
             let means = masses.means(&layout.phases[phase], duration).into_iter();
-            trace.means = means.map(|(from, to, mean)| (start + from * duration, start + to * duration, mean)).collect();
+            trace.means =
+                means.map(|(from, to, mean)| (start + from * duration, start + to * duration, mean)).collect();
         }
         let mut traces: Vec<Trace> = found.into_values().collect();
         for trace in &mut traces {

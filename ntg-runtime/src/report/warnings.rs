@@ -2,10 +2,10 @@
 
 use super::{ConstraintReport, RefineStatus, Report};
 use crate::digits::brief;
+use crate::transcribe::Transcription;
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::{member_words, shortest_duration};
 use crate::transcribe::times::phase_words;
-use crate::transcribe::Transcription;
 use ntg_structure::{Independent, Place};
 use std::fmt;
 
