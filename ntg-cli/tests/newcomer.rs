@@ -165,15 +165,17 @@ fn the_ground_is_the_table_and_the_limit_above_it_a_line() {
     let kinds: Vec<_> = list(&side["shapes"]).map(|shape| (shape[0].as_str(), shape[1].as_str())).collect();
     assert_eq!(kinds, [(Some("ground"), Some("ground")), (Some("border"), Some("above"))]);
     let (run, _) = saved(SIDE);
-    let lines: Vec<_> =
-        list(&run["scene"]["outlines"]).map(|o| (o["name"].as_str(), o["ground"].as_bool())).collect();
+    let lines: Vec<_> = list(&run["scene"]["outlines"]).map(|o| (o["name"].as_str(), o["ground"].as_bool())).collect();
     assert_eq!(lines, [(Some("ground"), Some(true)), (Some("above"), Some(false))]);
 }
 
 #[test]
 fn lines_of_equal_value_go_as_far_as_a_map_shows() {
-    let chart = TERRAIN.replace("above: z >= ground(x, y) + 40 [m];", "z >= 10 [m];").replace("+ der(z, 2)^2);", "
-        + der(z, 2)^2) + 0.001 [1/(m*s^3)] * integral(ground(x, y));");
+    let chart = TERRAIN.replace("above: z >= ground(x, y) + 40 [m];", "z >= 10 [m];").replace(
+        "+ der(z, 2)^2);",
+        "
+        + der(z, 2)^2) + 0.001 [1/(m*s^3)] * integral(ground(x, y));",
+    );
     let (run, _) = saved(&chart);
     let across = list(&run["scene"]["levels"]).flat_map(|level| list(&level["lines"])).flat_map(list);
     let (low, high) = across.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
