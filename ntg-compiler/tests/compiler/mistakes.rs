@@ -92,6 +92,7 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("let a = r[0];", "E028"),
             ("let a = r[4];", "E028"),
             ("let a = norm(r[1, 3]);", "E026"),
+            ("const N = 3; let g[N] = 3;", "E044"),
             ("let a = r[:, 1];", "E001"),
             ("let a = r[1:2];", "E001"),
             ("let a = r[end];", "E001"),
