@@ -171,10 +171,10 @@ fn the_ground_is_the_table_and_the_limit_above_it_a_line() {
 
 #[test]
 fn lines_of_equal_value_go_as_far_as_a_map_shows() {
-    let chart = TERRAIN.replace("above: z >= ground(x, y) + 40 [m];", "z >= 10 [m];").replace(
+    let chart = TERRAIN.replace("above: z >= ground(x, y) + 40 [m];", "der(z) <= 100 [m/s];").replace(
         "+ der(z, 2)^2);",
         "
-        + der(z, 2)^2) + 0.001 [1/(m*s^3)] * integral(ground(x, y));",
+        + der(z, 2)^2) + 0.001 [m/s^4] * integral(ground(x, y));",
     );
     let (run, _) = saved(&chart);
     let across = list(&run["scene"]["levels"]).flat_map(|level| list(&level["lines"])).flat_map(list);
@@ -200,7 +200,7 @@ fn a_duration_that_is_as_short_as_it_may_be_is_told() {
     let spec = "problem Short { duration T in 0 .. 10 [s];  output x [m]: spline(order = 4, intervals = 1);
         minimize T;  initial { x == 0; } }";
     let (found, _) = said(spec, &["solve", "spec.ntg"]);
-    let wanted = "warning: `T` is as short as a duration may be, 1e-5 s: a millionth of its upper bound; give it a lower \
+    let wanted = "warning: `T` is as short as a duration may be, 0.00001 s: a millionth of its upper bound; give it a lower \
                   bound above 0";
     assert!(found.contains(wanted), "{found}");
     let (found, _) = said(&spec.replace("in 0 ..", "in 0.1 .."), &["solve", "spec.ntg"]);
