@@ -99,8 +99,8 @@ pub(crate) fn constraint_words(constraint: &Constraint, indices: &[i64]) -> Stri
     member_words(constraint_name(constraint), indices)
 }
 
-/// A constraint's name with the indices of a member: "`turn`[2]"; "`u[2] in 0 .. 1`" of `u[..] in 0 .. 1`, which stands for
-/// all elements.
+/// A constraint's name with the indices of a member behind it; in the place of the dots of `u[..] in 0 .. 1`, which stands
+/// for all elements, where it has some.
 pub fn member_words(name: &str, indices: &[i64]) -> String {
     for (dots, axes) in [("[..]", 1), ("[.., ..]", 2)] {
         if let (true, Some(own)) = (name.contains(dots), indices.len().checked_sub(axes)) {
