@@ -195,6 +195,9 @@ pub(crate) struct Solve {
     /// Largest scaled residual of the optimality conditions.
     #[arg(long, value_name = "RESIDUAL", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
+    /// The typical size of an output or a variable, in its declared unit, where the automatic one is wrong: `x=100`.
+    #[arg(long, value_name = "NAME=SIZE")]
+    pub(crate) scale: Vec<String>,
     /// Which method solves the problem.
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub(crate) method: Method,

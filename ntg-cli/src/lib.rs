@@ -17,6 +17,7 @@ mod guess;
 mod lsp;
 mod merge;
 mod new;
+mod options;
 mod plot;
 mod report;
 mod route;

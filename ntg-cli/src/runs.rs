@@ -14,7 +14,7 @@ use ntg_runtime::settings::{Progress, Settings};
 
 use crate::solve::explained;
 use crate::watch::{Interrupt, Watch};
-use crate::{arguments, files, setup, starts};
+use crate::{arguments, files, options, setup, starts};
 
 /// What can be read as a run.
 pub(crate) const SAVED: &str = "give a file that `ntg solve --save` has written";
@@ -70,6 +70,7 @@ impl Inputs {
             None => Ok(vec![(name(path), spec.one(interrupt)?)]),
             Some(found) => {
                 let found = found.map_err(|error| setup::words(&error, &spec.source))?;
+                let found = options::all_in_options(found);
                 let runs = spec.minima(&found, interrupt)?;
                 let several = self.files.len() > 1;
                 let named = |label: String| if several { format!("{}: {label}", name(path)) } else { label };
@@ -100,7 +101,7 @@ impl Spec<'_> {
         watch.over(&mut settings);
         let report = ntg_runtime::solve(&self.problem, &settings);
         let iterations = watch.end(crate::solve::is_cancelled(&report));
-        let report = report.map_err(|error| setup::words(&error, &self.source))?;
+        let report = options::in_options(report.map_err(|error| setup::words(&error, &self.source))?);
         Ok(self.record(&report, (None, interrupt), &iterations))
     }
 

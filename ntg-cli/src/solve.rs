@@ -23,7 +23,7 @@ use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
-use crate::{Exit, certify, files, guess, route, setup, write};
+use crate::{Exit, certify, files, guess, options, route, setup, write};
 
 pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
     crate::said(solve(arguments))
@@ -69,13 +69,13 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let guess = guess.unwrap_or_default();
     let mut iterations = vec![];
     let found = match crate::starts::solve(&problem, &guess, (&arguments.starts, &interrupt), &settings) {
-        Some(found) => found.map(Found::Many),
+        Some(found) => found.map(|found| Found::Many(options::all_in_options(found))),
         None => {
             let watch = Watch::new(&interrupt);
             watch.over(&mut settings);
             let report = solve_from(&problem, &guess, &settings);
             iterations = watch.end(is_cancelled(&report));
-            report.map(|report| Found::One(Box::new(report)))
+            report.map(|report| Found::One(Box::new(options::in_options(report))))
         }
     };
     let found = found.map_err(|error| setup::words(&error, &source))?;
@@ -156,6 +156,15 @@ fn first_guess(arguments: &arguments::Solve, problem: &Interpreted) -> Result<Op
     Ok(guess)
 }
 
+/// `NAME=SIZE`.
+fn scale(text: &str) -> Result<(String, f64), String> {
+    let parts = text.split_once('=').map(|(name, size)| (name.trim(), size.trim().parse()));
+    match parts {
+        Some((name, Ok(size))) if !name.is_empty() => Ok((name.to_owned(), size)),
+        _ => Err(format!("--scale {text}: write NAME=SIZE, a number in the declared unit, such as `x=100`")),
+    }
+}
+
 fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
     let mut settings = Settings::default();
     if let Some(seconds) = arguments.time_limit {
@@ -165,6 +174,7 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
     if let Some(most) = arguments.max_iterations {
         settings.max_iterations = most;
     }
+    settings.scales = arguments.scale.iter().map(|text| scale(text)).collect::<Result<_, _>>()?;
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;
     }
@@ -191,6 +201,6 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
         arguments::InertiaCorrection::ByElement => InertiaCorrection::ByElement,
         arguments::InertiaCorrection::ByShift => InertiaCorrection::ByShift,
     };
-    settings.validate().map_err(|invalid| invalid.to_string())?;
+    settings.validate().map_err(|invalid| options::invalid(&invalid))?;
     Ok(settings)
 }

@@ -173,7 +173,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, String> {
     if let Some(most) = arguments.max_iterations {
         settings.max_iterations = most;
     }
-    settings.validate().map_err(|invalid| invalid.to_string())?;
+    settings.validate().map_err(|invalid| crate::options::invalid(&invalid))?;
     Ok(settings)
 }
 

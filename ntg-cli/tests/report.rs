@@ -66,7 +66,10 @@ fn every_spec_has_a_plot() {
     for spec in shipped() {
         done(folder.path(), &["plot", &spec, "-o", "plot.svg", "--force"]);
         let picture = std::fs::read_to_string(folder.path().join("plot.svg")).expect("a picture");
-        assert!(picture.starts_with("<svg") && ["t [s]", "s [m]"].iter().any(|time| picture.contains(time)), "{spec}");
+        assert!(
+            picture.starts_with("<svg") && ["t [s]", "s [m]", "\nt\n"].iter().any(|time| picture.contains(time)),
+            "{spec}"
+        );
         assert!(!picture.contains("NaN") && !picture.contains("inf"), "{spec}");
     }
 }

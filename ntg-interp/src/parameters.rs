@@ -1,6 +1,6 @@
 //! Parameters set by name, in the units that a person uses.
 
-use ntg_structure::Parameter;
+use ntg_structure::{Duration, Parameter, Structure};
 
 use crate::Interpreted;
 
@@ -9,6 +9,10 @@ use crate::Interpreted;
 pub enum SetError {
     /// There is no parameter of that name; the names that there are.
     Unknown(String, Vec<String>),
+    /// A variable, or a duration with bounds.
+    Sought(String),
+    /// A duration with a fixed value; the names of the parameters.
+    Fixed(String, Vec<String>),
     /// An array got the wrong number of values: name, wanted, got.
     Count(String, usize, usize),
     /// An index outside the array, or an index for a parameter that is no array: name, index, members.
@@ -25,6 +29,17 @@ impl std::fmt::Display for SetError {
             }
             Self::Unknown(name, known) => {
                 write!(f, "there is no parameter `{name}`; the parameters are: `{}`", known.join("`, `"))
+            }
+            Self::Sought(name) => {
+                write!(f, "`{name}` is no parameter but declared with bounds: change them in the spec")
+            }
+            Self::Fixed(name, known) => {
+                write!(
+                    f,
+                    "`{name}` is no parameter but a fixed duration: write `param {name}_set = ...;` and `duration {name} \
+                     = {name}_set;` in the spec, and set `{name}_set`"
+                )?;
+                if known.is_empty() { Ok(()) } else { write!(f, "; the parameters are: `{}`", known.join("`, `")) }
             }
             Self::Count(name, wanted, got) => {
                 let (values, are) =
@@ -117,10 +132,34 @@ impl Interpreted {
 
     fn find(&self, name: &str) -> Result<usize, SetError> {
         let parameters = &self.structure.parameters;
-        parameters
-            .iter()
-            .position(|p| p.name == name)
-            .ok_or_else(|| SetError::Unknown(name.to_owned(), parameters.iter().map(|p| p.name.clone()).collect()))
+        parameters.iter().position(|p| p.name == name).ok_or_else(|| {
+            let (own, known) = (name.to_owned(), parameters.iter().map(|p| p.name.clone()).collect());
+            match other(&self.structure, name) {
+                Some(Other::Sought) => SetError::Sought(own),
+                Some(Other::Fixed) => SetError::Fixed(own, known),
+                None => SetError::Unknown(own, known),
+            }
+        })
+    }
+}
+
+/// What a name is that is no parameter's.
+enum Other {
+    /// The solve finds its value.
+    Sought,
+    /// The spec fixes its value.
+    Fixed,
+}
+
+/// Whether a name is that of a duration or a variable.
+fn other(structure: &Structure, name: &str) -> Option<Other> {
+    let is_own = |own: &Option<String>| own.as_deref() == Some(name);
+    let phase = structure.phases.iter().find(|phase| is_own(&phase.duration_name));
+    let is_whole = structure.agents.iter().any(|agent| is_own(&agent.duration_name));
+    match phase.map(|phase| &phase.duration) {
+        Some(Duration::Fixed(_)) => Some(Other::Fixed),
+        Some(Duration::Free(_)) => Some(Other::Sought),
+        None => (is_whole || structure.variables.iter().any(|v| v.name == name)).then_some(Other::Sought),
     }
 }
 

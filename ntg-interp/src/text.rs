@@ -2,7 +2,7 @@
 
 use ntg_compiler::diagnostic::{Code, Diagnostic};
 use ntg_compiler::source::Source;
-use ntg_structure::{Structure, Unit};
+use ntg_structure::Unit;
 
 use crate::Interpreted;
 
@@ -14,9 +14,6 @@ impl Interpreted {
     /// In words: unknown names, values that cannot be read, units that do not fit.
     pub fn assign(&mut self, target_text: &str, text: &str) -> Result<(), String> {
         let (name, index) = target(target_text.trim())?;
-        if let Some(found) = bounded(&self.structure).find(|bounded| *bounded == name) {
-            return Err(format!("`{found}` is no parameter but declared with bounds: change them in the spec"));
-        }
         let unit = self.structure.parameters.iter().find(|p| p.name == name).map(|p| p.unit.clone());
         let values = quantity(text, &unit.unwrap_or_default())?;
         let done = match (index, values.as_slice()) {
@@ -28,12 +25,6 @@ impl Interpreted {
         };
         done.map_err(|error| error.to_string())
     }
-}
-
-/// The names of durations and variables.
-fn bounded(structure: &Structure) -> impl Iterator<Item = &str> {
-    let durations = structure.phases.iter().filter_map(|phase| phase.duration_name.as_deref());
-    durations.chain(structure.variables.iter().map(|variable| variable.name.as_str()))
 }
 
 /// `name` or `name[index]`.

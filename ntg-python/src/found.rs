@@ -88,8 +88,8 @@ impl Found {
     }
 
     #[getter]
-    fn advice(&self) -> &'static str {
-        self.report.advice
+    fn advice(&self) -> &str {
+        &self.report.advice
     }
 
     #[getter]

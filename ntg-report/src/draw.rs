@@ -12,7 +12,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use crate::figure::{Kind, Line, Panel, Shape, least_span};
+use crate::figure::{Kind, Limit, Line, Panel, Shape, least_span};
 
 /// A rectangle of a picture to draw in.
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -148,10 +148,11 @@ fn font(size: u32) -> FontDesc<'static> {
 /// Limits across and events up.
 fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>) -> Drawn {
     // A limit that is far away is not drawn: the library has no room for its distance, and no mark there is seen.
-    for (y, name) in panel.limits.iter().filter(|limit| ys.contains(&limit.0)) {
-        chart.draw_series(DashedLineSeries::new([(xs.start, *y), (xs.end, *y)], 50, 70, INK.stroke_width(30)))?;
+    for Limit { at, name, over } in panel.limits.iter().filter(|limit| ys.contains(&limit.at)) {
+        let (from, to) = (over.0.max(xs.start), over.1.min(xs.end));
+        chart.draw_series(DashedLineSeries::new([(from, *at), (to, *at)], 50, 70, INK.stroke_width(30)))?;
         let label = Text::new(name.clone(), (100, -260), font(220).color(&GREY));
-        chart.draw_series([EmptyElement::at((xs.start, *y)) + label])?;
+        chart.draw_series([EmptyElement::at((from, *at)) + label])?;
     }
     for (i, (x, name)) in panel.marks.iter().filter(|mark| (xs.start..=xs.end).contains(&mark.0)).enumerate() {
         chart.draw_series(DashedLineSeries::new([(*x, ys.start), (*x, ys.end)], 100, 80, GREY.stroke_width(20)))?;
@@ -231,21 +232,32 @@ fn within(at: Pixel, offset: Pixel, size: Pixel, (least, most): (Pixel, Pixel)) 
 
 fn draw_line(chart: &mut Chart<'_>, index: usize, line: &Line) -> Drawn {
     let colour = COLOURS[index % COLOURS.len()];
-    let style = colour.stroke_width(40);
+    let (style, dashes) = (colour.stroke_width(40), dashes(index, line.run)?);
     // A gap where a quantity does not exist.
     for stretch in line.points.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let points = stretch.iter().copied();
-        if line.run == 0 {
-            chart.draw_series(LineSeries::new(points, style))?;
-        } else {
-            chart.draw_series(DashedLineSeries::new(points, 140, 40 + 40 * u32::try_from(line.run)?, style))?;
-        }
+        match dashes {
+            None => chart.draw_series(LineSeries::new(points, style))?,
+            Some((long, gap)) => chart.draw_series(DashedLineSeries::new(points, long, gap, style))?,
+        };
     }
     chart.draw_series(line.events.iter().map(|at| Circle::new(*at, 80, colour.filled())))?;
     if let (false, Some(start)) = (line.times.is_empty(), line.points.first()) {
         chart.draw_series([Circle::new(*start, 90, style)])?;
     }
     Ok(())
+}
+
+/// Lengths of dashes and gaps; none for a solid line. Runs differ in their gaps, and lines that have the same colour in
+/// their dashes.
+fn dashes(index: usize, run: usize) -> Drawn<Option<(u32, u32)>> {
+    let again = u32::try_from(index / COLOURS.len())?;
+    Ok(match (run, again) {
+        (0, 0) => None,
+        (0, 1) => Some((30, 60)),
+        (0, again) => Some((140 + 120 * (again - 2), 60)),
+        (run, again) => Some((140 / (1 + again), 40 + 40 * u32::try_from(run)?)),
+    })
 }
 
 /// Draws the legend at the top; gives the area beneath it.
@@ -266,10 +278,9 @@ fn legend<'a>(area: &Area<'a>, lines: &[Line]) -> Drawn<Area<'a>> {
         }
         let ends = [(x, y + 140), (x + 560, y + 140)];
         let style = COLOURS[index % COLOURS.len()].stroke_width(40);
-        if line.run == 0 {
-            area.draw(&PathElement::new(ends, style))?;
-        } else {
-            area.draw(&DashedPathElement::new(ends, 140, 40 + 40 * u32::try_from(line.run)?, style))?;
+        match dashes(index, line.run)? {
+            None => area.draw(&PathElement::new(ends, style))?,
+            Some((long, gap)) => area.draw(&DashedPathElement::new(ends, long, gap, style))?,
         }
         area.draw(&Text::new(line.name.clone(), (x + 680, y), font(260).color(&INK)))?;
         x += width;
@@ -291,7 +302,7 @@ fn ranges(panel: &Panel) -> (Range<f64>, Range<f64>) {
     let values = level(span(points().map(|p| p.1), 0.0));
     let reach = 3.0 * (values.end - values.start);
     // A limit that is far away would flatten what there is to see.
-    let near = panel.limits.iter().map(|limit| limit.0);
+    let near = panel.limits.iter().map(|limit| limit.at);
     let near = near.filter(|limit| *limit > values.start - reach && *limit < values.end + reach);
     let ys = level(span(points().map(|p| p.1).chain(near), 0.06));
     if !panel.equal {
@@ -347,6 +358,14 @@ fn number(x: f64, length: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_of_one_colour_differ_in_their_dashes() {
+        let looks: Vec<_> = (0..40).map(|index| (index % COLOURS.len(), dashes(index, 0).expect("a look"))).collect();
+        let unique: std::collections::BTreeSet<_> = looks.iter().collect();
+        assert_eq!(unique.len(), looks.len());
+        assert!(looks[..8].iter().all(|(_, dashes)| dashes.is_none()));
+    }
 
     #[test]
     fn the_frame_cuts_no_name_of_a_map() {

@@ -25,12 +25,23 @@ pub struct Panel {
     pub logarithmic: bool,
     /// The lines.
     pub lines: Vec<Line>,
-    /// Horizontal limits, each with what it is.
-    pub limits: Vec<(f64, String)>,
+    /// Horizontal limits.
+    pub limits: Vec<Limit>,
     /// Vertical marks at events, each with what happens.
     pub marks: Vec<(f64, String)>,
     /// What lies beneath the lines of a map.
     pub shapes: Vec<Shape>,
+}
+
+/// A horizontal limit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Limit {
+    /// The ordinate.
+    pub at: f64,
+    /// What it is: `lower`, `upper`, `=`.
+    pub name: String,
+    /// The abscissas between which it holds.
+    pub over: (f64, f64),
 }
 
 /// What a shape of a map is.
@@ -216,11 +227,15 @@ fn ordinate(name: &str) -> &str {
 /// solver's last step has left of them, which tells nothing.
 pub fn multipliers(runs: &Runs<'_>) -> Vec<Panel> {
     let mut panels = over_constraints(runs, |constraint, runs, run| {
-        let density = constraint.multiplier.as_ref().is_some_and(|m| m.density);
+        let means = constraint.members.iter().any(|member| !member.mean.is_empty());
+        let density = means || constraint.multiplier.as_ref().is_some_and(|m| m.density);
         let told = constraint.reaches_a_bound();
         let lines = constraint.members.iter().filter(|member| told && member.multiplier_t.len() > 1);
-        let lines =
-            lines.map(|member| line(label(runs, run, &member.name), run, &member.multiplier_t, &member.multiplier));
+        // The mean of each interval is what the optimum determines; from point to point it may be shared out anyhow.
+        let lines = lines.map(|member| match member.mean.is_empty() {
+            true => line(label(runs, run, &member.name), run, &member.multiplier_t, &member.multiplier),
+            false => line(label(runs, run, &member.name), run, &member.mean_t, &member.mean),
+        });
         let y = if density {
             format!("dJ*/d(bound), {}", runs[run].1.independent.per())
         } else {
@@ -232,7 +247,7 @@ pub fn multipliers(runs: &Runs<'_>) -> Vec<Panel> {
     panels
 }
 
-type Shown = (String, Vec<Line>, Vec<(f64, String)>);
+type Shown = (String, Vec<Line>, Vec<Limit>);
 
 fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize) -> Shown) -> Vec<Panel> {
     let mut panels: Vec<Panel> = vec![];
@@ -265,15 +280,20 @@ fn line(name: String, run: usize, t: &[f64], value: &[f64]) -> Line {
     Line { name, run, points: t.iter().copied().zip(value.iter().copied()).collect(), ..Line::default() }
 }
 
-/// The bounds of a constraint, each once.
-fn limits(constraint: &Constraint) -> Vec<(f64, String)> {
-    let mut found: Vec<(f64, String)> = vec![];
+/// The bounds of a constraint, each once over the times at which it holds.
+fn limits(constraint: &Constraint) -> Vec<Limit> {
+    let mut found: Vec<Limit> = vec![];
     for member in &constraint.members {
+        let fold = |(low, high): (f64, f64), t: &f64| (low.min(*t), high.max(*t));
+        let over = member.t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), fold);
+        if over.0 > over.1 {
+            continue;
+        }
         let equal = member.lower.is_some() && member.lower == member.upper;
         let sides =
             [(member.lower, if equal { "=" } else { "lower" }), (member.upper, if equal { "=" } else { "upper" })];
         for (bound, side) in sides {
-            let limit = bound.map(|bound| (bound, side.to_owned()));
+            let limit = bound.map(|at| Limit { at, name: side.to_owned(), over });
             found.extend(limit.filter(|limit| !found.contains(limit)));
         }
     }

@@ -141,29 +141,30 @@ impl Status {
         }
     }
 
-    /// What a person may try next; empty when solved.
+    /// What a person may try next; empty when solved. A name in backticks is that of a field of
+    /// [`Settings`](crate::settings::Settings), for which a front end may write its own word.
     pub fn advice(&self) -> &'static str {
         match self {
             Self::Solved => "",
             Self::Acceptable => {
-                "Compare the residuals with what you need; for more digits give typical sizes by `scales`, or remove \
+                "Compare the residuals with what you need; for more digits give typical sizes (`scales`), or remove \
                  constraints that say the same thing twice."
             }
             Self::ViolatedBetween { .. } => {
-                "Use more points or intervals, or let the mesh be refined by `between` or `refine`."
+                "Use more points or intervals, or let the mesh be refined (`between`, `refine`)."
             }
             Self::Infeasible { .. } => {
                 "Relax one of the named constraints, or start from another guess: the constraints may \
                  contradict each other only near this one."
             }
             Self::IterationLimit => {
-                "Raise `max_iterations`, give a better guess, or reach the problem by a continuation from an easier one."
+                "Allow more iterations (`max_iterations`), give a better guess, or reach the problem by a continuation from an easier one."
             }
-            Self::TimeLimit => "Raise `time_limit`, give a better guess, or use fewer intervals first.",
+            Self::TimeLimit => "Allow more time (`time_limit`), give a better guess, or use fewer intervals first.",
             Self::Cancelled => "Start again from the returned point to go on.",
             Self::StepTooSmall => {
-                "Look for kinks (abs, min, max, tables that jump) and badly scaled quantities; give typical sizes by \
-                 `scales`, or start from another guess."
+                "Look for kinks (abs, min, max, tables that jump) and badly scaled quantities; give typical sizes \
+                 (`scales`), or start from another guess."
             }
             Self::Unbounded => "Bound the variables, or check the sign of the objective (minimize or maximize).",
             Self::NotFinite(_) => {
@@ -172,7 +173,7 @@ impl Status {
             }
             Self::Contradiction { .. } => "Correct the bounds: the lower one must not exceed the upper one.",
             Self::SubproblemFailed => {
-                "Give typical sizes by `scales`, remove constraints that say the same thing twice, or start from \
+                "Give typical sizes (`scales`), remove constraints that say the same thing twice, or start from \
                  another guess."
             }
         }

@@ -190,6 +190,9 @@ pub struct Output {
     pub unit: Unit,
     /// Its members, when it is an array.
     pub family: Option<Family>,
+    /// How many elements each of its vectors has: all members of an array that is declared by its size, `r[3]`, the columns
+    /// of a matrix, `r[1 .. n, 1 .. 3]`, whose members go row by row. None for numbers and for families of numbers.
+    pub vector: Option<usize>,
     /// Its spline.
     pub spline: Spline,
 }

@@ -144,3 +144,22 @@ fn minima_of_many_starts_are_refined_one_by_one() {
     assert_eq!((found.solved(), found.minima.len(), found.minima[0].count), (4, 1, 4), "{found}");
     close(found.minima[0].report.objective, 1.685_683_273_76, 1e-8);
 }
+
+#[test]
+fn an_objective_of_nothing_is_settled_at_once() {
+    // What is minimised can be 0, and is so but for the square of what the solver leaves.
+    let problem = Shipped::text(
+        "problem Follow {
+            duration T = 1;
+            state x, v;
+            input u in -10 .. 10;
+            collocation gauss(points = 4, intervals = 4);
+            minimize integral((x - t^2 / 2)^2) + 0.001 * integral((u - 1)^2);
+            dynamics { der(x) == v;  der(v) == u; }
+            initial { x == 0;  v == 0; }
+            guess { u = 0.3; }
+        }",
+    );
+    let (report, refined) = to(&problem, 1e-6);
+    assert!(report.objective.abs() < 1e-12 && refined.rounds.len() <= 2, "{report}");
+}

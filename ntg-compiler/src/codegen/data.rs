@@ -112,7 +112,7 @@ structs! {
     Loop { first, last }
     Measurement { term, unit, loops, residual, sigma }
     Named { name, doc, unit, family, agent, loops, domain, call }
-    Output { name, doc, unit, family, spline }
+    Output { name, doc, unit, family, vector, spline }
     Parameter { name, doc, unit, array, value }
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }
     Reduction { op, over, body }

@@ -9,6 +9,7 @@ use ntg_structure::{Block, Unit};
 
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
+use super::element_text::member_text;
 use super::problem::{Bounds, Constraint, Domain, Form, Part};
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
@@ -16,15 +17,6 @@ use super::units;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{self, BlockPlace, Comparison, Expr, ItemKind, Relation, Statement};
-
-/// `[2]`, `[2, 1]`: the members that are made by themselves.
-fn member_text(members: &[i64]) -> String {
-    if members.is_empty() {
-        return String::new();
-    }
-    let list: Vec<String> = members.iter().map(i64::to_string).collect();
-    format!("[{}]", list.join(", "))
-}
 
 /// Where the constraints of a block are given a meaning.
 #[derive(Clone)]
@@ -148,6 +140,8 @@ impl<'a> Elaborator<'a> {
 
     fn element_constraint(&mut self, cx: &Context<'a>, constraint: &'a ast::Constraint, site: &Site, at: &[Form]) {
         self.event = None;
+        // Elements of an open index share one formula, and its text.
+        self.element_axes = if at.iter().all(|form| form.as_number().is_some()) { at.len() } else { 0 };
         let bodies = self.relation(cx, &constraint.relation, site, at);
         let event = self.event.take();
         match site.block {
@@ -314,18 +308,20 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// The name of a constraint with its path and the members that are made one by one.
+    /// The name of a constraint with its path and the members that are made one by one; without a name, the text of such
+    /// a member.
     pub(super) fn constraint_name(
-        &self,
+        &mut self,
         cx: &Context<'a>,
-        constraint: &ast::Constraint,
+        constraint: &'a ast::Constraint,
         site: &Site,
     ) -> Option<String> {
         let member = member_text(&cx.members);
-        constraint.name.as_ref().map(|name| match site.agent {
-            Some(agent) => self.path_name(agent, site.phase, &name.text) + &member,
-            None => name.text.clone() + &member,
-        })
+        match (&constraint.name, site.agent) {
+            (Some(name), Some(agent)) => Some(self.path_name(agent, site.phase, &name.text) + &member),
+            (Some(name), None) => Some(name.text.clone() + &member),
+            (None, _) => self.element_words(cx, constraint),
+        }
     }
 
     /// Where an expression elaborated in a context lives.

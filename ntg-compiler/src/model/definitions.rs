@@ -158,7 +158,9 @@ impl<'a> Elaborator<'a> {
             let finding = Diagnostic::new(Code::WrongUnit, unit.span, message)
                 .label(unit.span, format!("this says {}", quantity.dimension.describe()))
                 .label(value.span, format!("this is {}", dimension.describe()))
-                .help(if dimension.is_none() {
+                .help(if let Some(size) = self.declared_symbol(unit) {
+                    format!("`[{size}]` is a unit here; as a size write `[1 .. {size}]`")
+                } else if dimension.is_none() {
                     "remove the unit, or multiply by one".to_owned()
                 } else {
                     format!("write `[{dimension}]`, or another unit of that dimension")
@@ -168,6 +170,16 @@ impl<'a> Elaborator<'a> {
         value.dimension = Some(quantity.dimension);
         value.unit = Some(shown);
         value
+    }
+
+    /// The symbol that a unit is, if the spec declares a constant of that name, such as a size `N`.
+    fn declared_symbol(&self, unit: &ast::Unit) -> Option<String> {
+        let [ast::UnitFactor { base: ast::UnitBase::Symbol(name), power: 1, .. }] = unit.factors.as_slice() else {
+            return None;
+        };
+        let is_size =
+            self.definitions.iter().any(|definition| definition.is_const && definition.name.text == name.text);
+        is_size.then(|| name.text.clone())
     }
 
     /// A definition's value where it is used: what is misplaced in it is misplaced here.

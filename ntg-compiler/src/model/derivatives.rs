@@ -284,7 +284,8 @@ impl<'a> Elaborator<'a> {
     }
 
     /// Leaves out the derivatives that are only needed at Gauss points, in equations, integrals, and inequalities that
-    /// leave the ends of intervals out: these points lie inside the intervals, where nothing jumps.
+    /// leave the ends of intervals out, and at the ends of a phase: these points lie inside the intervals or at one side, where
+    /// nothing jumps.
     fn seen_to_jump(&self, jumps: Vec<Jump>) -> Vec<Jump> {
         if jumps.is_empty() {
             return jumps;
@@ -297,7 +298,9 @@ impl<'a> Elaborator<'a> {
                     Collocation::Gauss { ends, .. } => is_equation || !ends,
                     Collocation::Uniform { .. } => false,
                 },
-                _ => false,
+                // At an end there is one side alone.
+                Domain::Start(_) | Domain::End(_) => true,
+                Domain::Mission => false,
             };
             if is_inside { &mut inside } else { &mut others }.push(constraint.body);
         }

@@ -202,12 +202,13 @@ impl<'a> Elaborator<'a> {
         }
         let [lower, upper] = ends;
         let span: Span = name.name.span.to(bounds.span);
+        let words = self.bounds_words(cx, name, axes);
         for body in self.within(lower.as_ref(), &body, upper.as_ref()) {
             self.origin(body.value.node, span);
             let domain = Domain::Path(cx.phase_at(phase), Part::WHOLE);
             let loops = (*cx.loops).clone();
             self.problem.constraints.push(Constraint {
-                name: None,
+                name: words.clone(),
                 span,
                 block: Block::Trajectory,
                 unit: body.unit,

@@ -161,6 +161,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) warmed: Set<MemoKey>, // Asked, never iterated.
     /// The members of definitions that are being elaborated, each inside the one before.
     pub(super) members: Vec<(usize, Vec<Form>)>,
+    /// How many of the innermost members made one by one are indices of an element of the constraint in hand.
+    pub(super) element_axes: usize,
     /// Axes of parameters, of variables, and of the outputs of each phase.
     pub(super) parameter_axes: Vec<Vec<Ends>>,
     pub(super) variable_axes: Vec<Vec<Ends>>,
@@ -261,6 +263,7 @@ impl<'a> Elaborator<'a> {
             memo: Map::default(),
             warmed: Set::default(),
             members: Vec::new(),
+            element_axes: 0,
             parameter_axes: Vec::new(),
             variable_axes: Vec::new(),
             output_axes: Vec::new(),

@@ -164,7 +164,8 @@ impl<'a> Elaborator<'a> {
         for (number, other) in [(a, b), (b, a)] {
             if number.dimension == Some(Dimension::NONE) {
                 let text = self.grouped(number.span);
-                if text.ends_with(']') {
+                let is_list = text.rsplit_once('[').is_some_and(|(list, _)| list.trim_end().ends_with(')'));
+                if text.ends_with(']') && is_list {
                     let unit = unit_of(other);
                     return format!(
                         "a unit behind a list is that of its bare numbers; a formula in it is multiplied by `1 [{unit}]`"

@@ -21,6 +21,7 @@ mod dimension;
 mod dynamics;
 mod elaborator;
 mod element;
+mod element_text;
 mod expression;
 mod files;
 mod functions;
@@ -169,6 +170,7 @@ impl<'a> Elaborator<'a> {
         self.problem.span = problem.name.span;
         if unitless::is_unitless(&problem.items) {
             self.time = dimension::Dimension::NONE;
+            self.problem.independent.unit = ntg_structure::Unit::default();
         }
         self.independent(&problem.items);
         self.declarations(problem);

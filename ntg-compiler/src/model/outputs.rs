@@ -124,12 +124,15 @@ impl<'a> Elaborator<'a> {
             None if name.unit.is_some() => (None, Unit::default()),
             None => self.unit_of_bounds(scope, name),
         };
-        let columns = match axes.as_slice() {
-            [_, columns] => columns.extent().and_then(|extent| usize::try_from(extent).ok()),
-            _ => None,
+        let extent = |ends: &Ends| ends.extent().and_then(|extent| usize::try_from(extent).ok());
+        let columns = if let [_, columns] = axes.as_slice() { extent(columns) } else { None };
+        let by_size = name.shape.as_ref().is_some_and(|shape| shape.axes.iter().all(|axis| axis.first.is_none()));
+        let vector = match axes.as_slice() {
+            [only] if by_size => extent(only),
+            _ => columns,
         };
         let (name, span, spline) = (name.name.text.clone(), name.name.span, spline.clone());
-        let output = Output { name, doc, unit, family, columns, spline, span };
+        let output = Output { name, doc, unit, family, columns, vector, spline, span };
         Declared { output, axes, dimension, has_unit }
     }
 

@@ -123,6 +123,16 @@ impl<'a> Elaborator<'a> {
         if of_array && outer.is_none() && after.starts_with(".T") && !after[2..].starts_with(char::is_alphanumeric) {
             return self.report(finding.help(format!("the transpose is `transpose({name})`")));
         }
+        let own = after.strip_prefix('.').map(|own| own.split(|c: char| !(c.is_alphanumeric() || c == '_')).next());
+        if let (
+            true,
+            None,
+            Some(Some("dot" | "ddot" | "d" | "dt" | "der" | "diff" | "deriv" | "derivative" | "prime")),
+        ) = (of_array, outer, own)
+        {
+            let order = if own == Some(Some("ddot")) { ", 2" } else { "" };
+            return self.report(finding.help(format!("the derivative is `der({name}{order})`")));
+        }
         let finding = match nearest(name, paths.iter().copied()) {
             Some(near) => finding.help(format!("did you mean `{near}`?")),
             None if paths.is_empty() => match outer {

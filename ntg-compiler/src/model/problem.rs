@@ -199,6 +199,8 @@ pub struct Output {
     pub family: Option<(i64, i64)>,
     /// How many columns it has, when it is a matrix, whose members go row by row.
     pub columns: Option<usize>,
+    /// How many elements each of its vectors has: all of an array that is declared by its size alone, else its columns.
+    pub vector: Option<usize>,
     /// Its spline in this phase.
     pub spline: Spline,
     /// Where it is declared.

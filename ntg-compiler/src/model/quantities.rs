@@ -157,6 +157,10 @@ impl<'a> Elaborator<'a> {
                 let message = format!("`{name}` is one number, but its default has {}", values.len());
                 let finding = Diagnostic::new(Code::WrongCount, param.default.span, message);
                 self.report(finding.help(format!("declare an array: `param {name}[{}] = ...;`", values.len())));
+                // What follows would only repeat that.
+                let given = if let Shape::Of(given) = &numbers.shape { given.clone() } else { vec![] };
+                let given = if given.is_empty() { vec![i64::try_from(values.len()).unwrap_or(1)] } else { given };
+                self.parameter_axes[k] = given.into_iter().map(Ends::to).collect();
             }
             Some((Some(size), span)) => {
                 // One value stands for all members.

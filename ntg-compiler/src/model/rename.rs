@@ -2,7 +2,7 @@
 //!
 //! Takes parts of a syntax tree, changes them in place: inside a scenario `x` becomes `plant_x[k]`, anywhere
 //! `plant[2].x` becomes `plant_x[2]`. What an index, an argument or a step hides stays what it is.
-//! Finds: paths into a scenario that lead nowhere.
+//! Finds: paths into a scenario that lead nowhere, names of arrays that only the program has.
 
 use std::collections::BTreeMap;
 
@@ -63,9 +63,22 @@ impl<'n> Rename<'n> {
             first.indices.insert(0, member(index));
             return;
         }
+        self.name_of_array(&first.name);
         if let Some(at) = path.segments.iter().position(|s| self.scenarios.contains_key(&s.name.text)) {
             self.name_of_member(path, at);
         }
+    }
+
+    /// Tells of `plant_x`, which is what `x` becomes, and no name of the spec: it would mean all members.
+    fn name_of_array(&mut self, name: &Ident) {
+        let all = self.scenarios.iter().flat_map(|(scenario, names)| names.iter().map(move |own| (scenario, own)));
+        let mut meant = all.filter(|(scenario, own)| array(scenario, own) == name.text);
+        let Some((scenario, own)) = meant.next() else { return };
+        let finding = Diagnostic::new(Code::UnknownName, name.span, format!("unknown name `{}`", name.text));
+        self.found.push(finding.help(match self.inside {
+            Some((around, _)) if around == scenario => format!("the member's own is `{own}`"),
+            _ => format!("a member's is `{scenario}[1].{own}`"),
+        }));
     }
 
     /// `plant[2].x`: the segment `at` names a scenario.

@@ -81,7 +81,12 @@ impl<'a> Elaborator<'a> {
         axes: &[Ends],
         whole: Shape,
     ) -> Option<Shape> {
-        if axes.is_empty() || segment.indices.len() > axes.len() {
+        if !axes.is_empty() && segment.indices.len() > axes.len() {
+            // Told here, before a vector is missed around it.
+            self.wrong_indices(segment, axes.len());
+            return None;
+        }
+        if axes.is_empty() {
             return Some(if segment.indices.is_empty() { whole } else { Shape::NUMBER });
         }
         let mut left = Vec::new();

@@ -174,7 +174,16 @@ impl<'a> Elaborator<'a> {
         let place = self.problem.phases[phase].outputs.len();
         let spline = self.slack_spline(phase);
         let (doc, span) = (self.slack_doc(constraint), constraint.span);
-        let output = Output { name: name.to_owned(), doc, unit: unit.clone(), family, columns: None, spline, span };
+        let output = Output {
+            name: name.to_owned(),
+            doc,
+            unit: unit.clone(),
+            family,
+            columns: None,
+            vector: None,
+            spline,
+            span,
+        };
         self.problem.phases[phase].outputs.push(output);
         self.output_axes[phase].push(family.iter().map(|(_, count)| Ends::to(*count)).collect());
         self.output_dimensions[phase].push(Some(dimension));

@@ -106,6 +106,7 @@ fn phases(lowering: &mut Lowering<'_>) -> Vec<out::Phase> {
                 doc: o.doc,
                 unit: o.unit,
                 family: o.family.map(|(first, last)| out::Family { first, last }),
+                vector: o.vector,
                 spline: o.spline,
             };
             out::Phase {

@@ -118,6 +118,12 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
         _ if matches!(word, "subject_to" | "subject" | "such" | "constraint" | "constraints" | "path" | "boundary" | "bounds" | "events") => {
             finding.help("constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`")
         }
+        _ if matches!(word, "terminal" | "endpoint" | "goal" | "target") => {
+            finding.help("what holds at the end stands in `final { }`")
+        }
+        _ if matches!(word, "init" | "begin" | "initially") => {
+            finding.help("what holds at the start stands in `initial { }`")
+        }
         _ if matches!(word, "equation" | "equations" | "ode" | "system") => {
             finding.help("equations of motion stand in `dynamics { der(x) == ...; }`")
         }

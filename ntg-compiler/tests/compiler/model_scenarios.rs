@@ -185,7 +185,9 @@ fn an_output_of_a_scenario_jumps_for_all_members_or_for_one() {
         )
     };
     let text = |jumps: &str| ntg_compiler::codegen::generate(&program(&spec(jumps))).to_string();
-    assert_eq!(text("jump a.v, a[2].p;"), text("jump a_v, a_p[2];"));
-    assert_eq!(text("continuous a.v up to 0;"), text("continuous a_v up to 0;"));
+    // By hand, one member after the other.
+    assert_eq!(text("jump a.v, a[2].p;"), text("jump a[1].v, a[2].v, a[3].v, a[2].p;"));
+    let each = "continuous a[1].v up to 0;  continuous a[2].v up to 0;  continuous a[3].v up to 0;";
+    assert_eq!(text("continuous a.v up to 0;"), text(each));
     assert_ne!(text("jump a.v;"), text(""));
 }

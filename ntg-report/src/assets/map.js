@@ -29,7 +29,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
   // What is passed belongs to the picture as far as it is no further away than the tracks are long.
   const spans = [0, 1].map((k) => { const v = all.map((p) => p[k]); return [Math.min(...v), Math.max(...v)]; });
   const near = ([x, y]) => [x, y].every((v, k) => { const [low, high] = spans[k], room = chart.equal ? Math.max(...spans.map(([a, b]) => b - a)) / 2 : high - low; return v >= low - room && v <= high + room; });
-  for (const [kind, , xs, ys] of chart.shapes) if (kind === "place" || kind === "area" || kind === "ground") xs.forEach((x, i) => { const p = [x, ys[i]]; if (x != null && p[1] != null && near(p)) all.push(p); });
+  for (const [kind, , xs, ys] of chart.shapes) if (kind === "place" || kind === "area" || kind === "ground") xs.forEach((x, i) => { const p = [x, ys[i]], beside = kind === "ground" && (x < spans[0][0] || x > spans[0][1]); if (x != null && p[1] != null && near(p) && !beside) all.push(p); });
   const home = () => {
     const xs = all.map((p) => p[0]), ys = all.map((p) => p[1]);
     const grow = (low, high) => { const pad = 0.06 * (high - low) || Math.max(1e-3, 0.1 * Math.abs(low)); return [low - pad, high + pad]; };
@@ -133,7 +133,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
     svg.append(inside, names);
     legend.replaceChildren();
     chart.lines.forEach((line, i) => {
-      const dashes = dash(line.run);
+      const dashes = dash(line.run, i);
       make("path", { d: path(line, f), fill: "none", stroke: colour(i), "stroke-width": 2.2, "stroke-dasharray": dashes ? dashes.join(" ") : "none" }, inside);
       if (line.x.length) make("circle", { cx: f.px(line.x[0]), cy: f.py(line.y[0]), r: 5, fill: "none", stroke: colour(i), "stroke-width": 2 }, inside);
       for (const [x, y] of line.events) make("circle", { cx: f.px(x), cy: f.py(y), r: 4, fill: colour(i) }, inside);
@@ -141,7 +141,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
         const item = legend.appendChild(document.createElement("span"));
         const stroke = item.appendChild(document.createElement("i"));
         stroke.style.borderTopColor = colour(i);
-        stroke.style.borderTopStyle = line.run ? "dashed" : "solid";
+        stroke.style.borderTopStyle = !dashes ? "solid" : dashes[0] < 4 ? "dotted" : "dashed";
         item.append(line.name);
       }
     });

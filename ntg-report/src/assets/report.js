@@ -9,7 +9,12 @@
   const light = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#56b4e9", "#b07d00", "#785e28", "#5a5a5a"];
   const dark = ["#58b4ea", "#ff9248", "#2fd3a2", "#e08bd2", "#9bd7ff", "#f0c04a", "#c9a86a", "#b0b0b0"];
   const colour = (i) => (isDark() ? dark : light)[i % 8];
-  const dash = (run) => (run ? [10, 3 + 4 * run] : undefined);
+  // Runs differ in their gaps; lines that have the same colour again in their dashes.
+  const dash = (run, i) => {
+    const again = Math.floor(i / 8);
+    if (run) return [10 / (1 + again), 3 + 4 * run];
+    return [undefined, [2, 4], [10, 4], [14, 4, 2, 4], [20, 6]][again % 5];
+  };
   const drawn = [];
 
   const prefers = matchMedia("(prefers-color-scheme: dark)");
@@ -45,10 +50,12 @@
     ctx.beginPath(); ctx.rect(left, top, width, height); ctx.clip();
     ctx.font = `${11 * px}px system-ui, sans-serif`; ctx.textAlign = "left"; ctx.textBaseline = "alphabetic";
     ctx.fillStyle = css("--quiet"); ctx.strokeStyle = css("--ink"); ctx.lineWidth = 1.5 * px; ctx.setLineDash([4 * px, 4 * px]);
-    for (const [at, name] of chart.limits) {
-      const y = u.valToPos(at, "y", true);
-      ctx.beginPath(); ctx.moveTo(left, y); ctx.lineTo(left + width, y); ctx.stroke();
-      ctx.fillText(name, left + 6 * px, y - 4 * px);
+    // A limit stands where it holds.
+    for (const [at, name, from, to] of chart.limits) {
+      const y = u.valToPos(at, "y", true), [x0, x1] = [Math.max(left, u.valToPos(from, "x", true)), Math.min(left + width, u.valToPos(to, "x", true))];
+      if (x1 < x0) continue;
+      ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x1, y); ctx.stroke();
+      ctx.fillText(name, x0 + 6 * px, y - 4 * px);
     }
     ctx.strokeStyle = css("--quiet"); ctx.lineWidth = px; ctx.setLineDash([7 * px, 5 * px]);
     chart.marks.forEach(([at, name], i) => {
@@ -103,8 +110,8 @@
     const log = chart.kind === "log";
     const width = () => Math.max(place.clientWidth - 14, 240);
     const series = chart.lines.map((line, i) => ({
-      label: line.name || chart.title, stroke: () => colour(i), width: 2, pxAlign: 0, dash: dash(line.run), spanGaps: false,
-      value: (u, v) => number(v), points: { show: (log || chart.y.startsWith("dJ*")) && line.x.length < 100, size: 5, fill: () => colour(i) },
+      label: line.name || chart.title, stroke: () => colour(i), width: 2, pxAlign: 0, dash: dash(line.run, i), spanGaps: false,
+      value: (u, v) => number(v), points: { show: (log || (chart.y.startsWith("dJ*") && !line.x.some((x, k) => k && x === line.x[k - 1]))) && line.x.length < 100, size: 5, fill: () => colour(i) },
     }));
     const u = new uPlot({
       width: width(), height: 270, series: [{ label: chart.x, value: (u, v) => number(v) }, ...series],

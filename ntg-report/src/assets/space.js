@@ -104,20 +104,30 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
     // Numbers stand at the edges that are nearest to the eye.
     const depth = (x, y) => project([x, y, z0])[2];
     const ynear = depth(x0, y0) < depth(x0, y1) ? y0 : y1, xnear = depth(x0, y0) < depth(x1, y0) ? x0 : x1;
-    const below = (p, label) => { const [x, y] = project(p); words(label, [x, y + 12], quiet, "center"); };
-    // As many numbers as have room.
-    const room = (p, q) => { const [a, b] = [project(p), project(q)]; return Math.max(1, Math.min(7, Math.hypot(a[0] - b[0], a[1] - b[1]) / 48)); };
-    for (const x of steps(x0, x1, room([x0, ynear, z0], [x1, ynear, z0]))) below([x, ynear, z0], number(x));
-    for (const y of steps(y0, y1, room([xnear, y0, z0], [xnear, y1, z0]))) below([xnear, y, z0], number(y));
-    const beside = (p, label) => { const [x, y] = project(p); words(label, [Math.min(Math.max(x, 40), width - 40), Math.min(y + 28, tallness - 8)], css("--ink"), "center"); };
+    // A number that would lie over another word is left out; names of axes come first.
+    const taken = [];
+    const free = (label, [x, y], style, align) => {
+      context.font = "12px system-ui, sans-serif";
+      const w = context.measureText(label).width, x0 = align === "right" ? x - w : align === "center" ? x - w / 2 : x, own = [x0 - 3, y - 7, x0 + w + 3, y + 7];
+      if (taken.some((other) => own[0] < other[2] && other[0] < own[2] && own[1] < other[3] && other[1] < own[3])) return;
+      taken.push(own);
+      words(label, [x, y], style, align);
+    };
+    const beside = (p, label) => { const [x, y] = project(p), half = context.measureText(label).width / 2 + 6; free(label, [Math.min(Math.max(x, half), width - half), Math.min(y + 28, tallness - 8)], css("--ink"), "center"); };
+    context.font = "12px system-ui, sans-serif";
     beside([(x0 + x1) / 2, ynear, z0], chart.axes[0]);
     beside([xnear, (y0 + y1) / 2, z0], chart.axes[1]);
     const corners = [[x0, y0], [x0, y1], [x1, y0], [x1, y1]].map(([x, y]) => [x, y, project([x, y, z0])[0]]);
     const [cx, cy] = corners.reduce((a, b) => (a[2] < b[2] ? a : b));
+    const [upX, upY] = project([cx, cy, z1]);
+    free(chart.axes[2], [Math.max(upX, context.measureText(chart.axes[2]).width / 2 + 4), Math.max(upY - 14, 10)], css("--ink"), "center");
+    const below = (p, label) => { const [x, y] = project(p); free(label, [x, y + 12], quiet, "center"); };
+    // As many numbers as have room.
+    const room = (p, q) => { const [a, b] = [project(p), project(q)]; return Math.max(1, Math.min(7, Math.hypot(a[0] - b[0], a[1] - b[1]) / 48)); };
+    for (const x of steps(x0, x1, room([x0, ynear, z0], [x1, ynear, z0]))) below([x, ynear, z0], number(x));
+    for (const y of steps(y0, y1, room([xnear, y0, z0], [xnear, y1, z0]))) below([xnear, y, z0], number(y));
     stroke(project, [[cx, cy, z0], [cx, cy, z1]], quiet, 1);
-    for (const z of steps(z0, z1, 5)) { const [x, y] = project([cx, cy, z]); words(number(z), [x - 6, y], quiet, "right"); }
-    const [x, y] = project([cx, cy, z1]);
-    words(chart.axes[2], [Math.max(x, 30), Math.max(y - 14, 10)], css("--ink"), "center");
+    for (const z of steps(z0, z1, 5)) { const [x, y] = project([cx, cy, z]); free(number(z), [x - 6, y], quiet, "right"); }
   };
 
   // The part of an area, or of a segment, that lies in the box.
@@ -219,7 +229,7 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
     limits(project);
     tracks.forEach((track, i) => {
       const line = chart.lines[i];
-      stroke(project, track, colour(i), 2.4, dash(line.run));
+      stroke(project, track, colour(i), 2.4, dash(line.run, i));
       const dot = (p, r, full) => { const [x, y] = project(p); context.beginPath(); context.arc(x, y, r, 0, 7); context.lineWidth = 2; context.strokeStyle = context.fillStyle = colour(i); if (full) context.fill(); else context.stroke(); };
       if (track.length && finite(track[0])) dot(track[0], 5);
       line.events.filter(finite).forEach((p) => dot(p, 3.5, true));
@@ -236,7 +246,8 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
       if (!line.name) return;
       const item = legend.appendChild(document.createElement("span")), mark = item.appendChild(document.createElement("i"));
       mark.style.borderTopColor = colour(i);
-      mark.style.borderTopStyle = line.run ? "dashed" : "solid";
+      const dashes = dash(line.run, i);
+      mark.style.borderTopStyle = !dashes ? "solid" : dashes[0] < 4 ? "dotted" : "dashed";
       item.append(line.name);
     });
   }

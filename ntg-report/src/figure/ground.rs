@@ -1,7 +1,7 @@
 //! What lies beneath tracks, in the coordinates of a map or of a view from the side.
 
 use super::{Kind, Shape};
-use crate::run::{Scene, Surface};
+use crate::run::{Outline, Scene, Surface};
 use crate::scene::{contour, ellipse};
 
 /// Zones, borders, places and heights in the plane of a map.
@@ -9,14 +9,18 @@ pub(super) fn plan(scene: &Scene) -> Vec<Shape> {
     let mut shapes = vec![];
     let plane = scene.plane();
     // Lines of equal height of the ground alone: those of a ceiling would run among them.
-    for surface in scene.surfaces.iter().filter(|surface| surface.floor) {
+    for surface in scene.surfaces.iter().filter(|surface| surface.is_ground()) {
         contours(surface, &mut shapes);
     }
     for level in &scene.levels {
         shapes.extend(level.lines.iter().map(|line| contour_line(level.value, line)));
     }
     for outline in &scene.outlines {
-        let kind = if outline.keep_out { Kind::Area } else { Kind::Border };
+        let kind = match outline {
+            Outline { ground: true, .. } => Kind::Ground,
+            Outline { keep_out: true, .. } => Kind::Area,
+            _ => Kind::Border,
+        };
         for (number, line) in outline.lines.iter().enumerate() {
             let name = if number == 0 { outline.name.clone() } else { String::new() };
             shapes.push(Shape { kind, name, points: line.iter().map(|[x, y]| (*x, *y)).collect() });

@@ -145,7 +145,7 @@ fn beneath(scene: &Scene, along: &[f64], points: &[[f64; 3]], alone: bool) -> Ve
         let heights = points.iter().map(|at| ground::height(surface, at[0], at[1]));
         let points = along.iter().copied().zip(heights).filter(|(_, z)| z.is_finite()).collect();
         // What limits heights from above is a line; only a ground is filled.
-        let kind = if surface.floor { Kind::Ground } else { Kind::Border };
+        let kind = if surface.is_ground() { Kind::Ground } else { Kind::Border };
         Shape { kind, name: surface.name.clone(), points }
     });
     shapes.filter(|shape| shape.points.len() > 1).collect()

@@ -81,7 +81,9 @@ fn chart(panel: &Panel, points: usize) -> Value {
         "equal": panel.equal,
         "least": figure::least_span(panel),
         "lines": panel.lines.iter().map(|line| self::line(line, points)).collect::<Vec<_>>(),
-        "limits": panel.limits.iter().map(|(at, name)| json!([short(*at), name])).collect::<Vec<_>>(),
+        "limits": panel.limits.iter().map(|limit| {
+            json!([short(limit.at), limit.name, short(limit.over.0), short(limit.over.1)])
+        }).collect::<Vec<_>>(),
         "shapes": panel.shapes.iter().map(shape).collect::<Vec<_>>(),
         "marks": panel.marks.iter().map(|(at, name)| json!([short(*at), name])).collect::<Vec<_>>(),
     })
@@ -128,7 +130,7 @@ fn space(space: &Space, points: usize) -> Value {
         "lines": lines.collect::<Vec<_>>(),
         "places": scene.places.iter().map(|place| json!([place.name, turned(&place.at)])).collect::<Vec<_>>(),
         "surfaces": scene.surfaces.iter().map(|surface| json!({
-            "name": surface.name, "floor": surface.floor,
+            "name": surface.name, "floor": surface.is_ground(),
             "x": many(&surface.x), "y": many(&surface.y), "z": many(&surface.z),
         })).collect::<Vec<_>>(),
         "outlines": scene.outlines.iter().map(|outline| json!({

@@ -155,6 +155,9 @@ fn charts(anchor: &str, title: &str, ids: &[usize], independent: &Independent) -
         @if !ids.is_empty() {
             section id=(anchor) {
                 h2 { (title) }
+                @if anchor == "multipliers" { p.quiet {
+                    "Of limits along a trajectory: densities, the mean of each interval. Their integral is dJ*/d(bound) of the table below."
+                } }
                 @if anchor == "tracks" { div #clock data-name=(independent.name) data-unit=(independent.unit) {} }
                 div.charts { @for id in ids { figure.chart data-chart=(id) {} } }
             }

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::spec::{State, state};
 use crate::figure::Runs;
-use crate::run::{Independent, Multiplier, Run};
+use crate::run::{Constraint, Independent, Multiplier, Run};
 
 /// Seven significant digits without an exponent where that is readable.
 pub(super) fn number(value: f64) -> String {
@@ -102,7 +102,7 @@ pub(super) fn constraints(run: &Run) -> Markup {
                     tbody { @for constraint in &run.constraints {
                         @let state = state(constraint);
                         tr.dim[state == State::Inactive] {
-                            td.name { (constraint.name) }
+                            td.name { (constraint.name) (which(run, constraint)) }
                             td { (constraint.block) }
                             td.n { @if constraint.line > 0 { (constraint.line) } }
                             td { mark class=(state.class()) { (state.word()) } }
@@ -124,6 +124,26 @@ pub(super) fn constraints(run: &Run) -> Markup {
                 @if proved { p.quiet { "For all times: `proved` and `within` hold between the points, too, in real arithmetic; the words appear under the pointer." } }
             }
         }
+    }
+}
+
+/// What tells a constraint from others of the same words: its phase, or, where both bounds of a range change along the way,
+/// which of them it is.
+fn which(run: &Run, constraint: &Constraint) -> String {
+    let place = |c: &Constraint| (c.line, c.column);
+    let names = |c: &Constraint| c.members.iter().map(|member| member.name.clone()).collect::<Vec<_>>();
+    let alike = |other: &&Constraint| other.name == constraint.name && place(other) == place(constraint);
+    let all: Vec<&Constraint> = run.constraints.iter().filter(alike).collect();
+    let twins: Vec<&&Constraint> = all.iter().filter(|other| names(other) == names(constraint)).collect();
+    match (twins.iter().position(|twin| std::ptr::eq(**twin, constraint)), twins.len(), all.len()) {
+        (Some(0), 2, _) => ", from below".to_owned(),
+        (Some(1), 2, _) => ", from above".to_owned(),
+        (_, 1, several) if several > 1 => match constraint.members.first().map(|member| member.name.split(" [").next())
+        {
+            Some(Some(phase)) if !phase.is_empty() => format!(" in {phase}"),
+            _ => String::new(),
+        },
+        _ => String::new(),
     }
 }
 

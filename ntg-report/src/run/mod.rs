@@ -317,6 +317,9 @@ pub struct Worst {
     pub t: Option<f64>,
     /// The phase's path.
     pub phase: String,
+    /// Which member of the constraint: the indices of the loops around it, those over the elements of its vectors last.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub indices: Vec<i64>,
 }
 
 /// A multiplier `dJ*/d(bound)`.
@@ -354,6 +357,12 @@ pub struct Member {
     /// Multipliers there.
     #[serde(with = "numbers::many")]
     pub multiplier: Vec<f64>,
+    /// Both ends of every interval, where multipliers are densities,
+    #[serde(with = "numbers::many", skip_serializing_if = "Vec::is_empty")]
+    pub mean_t: Vec<f64>,
+    /// and the mean density between them, twice.
+    #[serde(with = "numbers::many", skip_serializing_if = "Vec::is_empty")]
+    pub mean: Vec<f64>,
 }
 
 /// One step of a continuation.

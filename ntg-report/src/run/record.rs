@@ -65,7 +65,7 @@ impl Recording<'_> {
                 factor: independent.unit.factor,
             },
             status: report.status.label(),
-            advice: report.advice.to_owned(),
+            advice: report.advice.clone(),
             warnings: report.warnings().into_iter().map(|warning| warning.message).collect(),
             objective: report.objective,
             objective_unit: report.objective_unit.symbol.clone(),
@@ -188,8 +188,9 @@ fn in_units_of_time(run: &mut Run) {
         }
         let is_density = constraint.multiplier.as_ref().is_some_and(|multiplier| multiplier.density);
         for member in &mut constraint.members {
-            member.t.iter_mut().chain(&mut member.multiplier_t).for_each(shown);
+            member.t.iter_mut().chain(&mut member.multiplier_t).chain(&mut member.mean_t).for_each(shown);
             member.multiplier.iter_mut().for_each(|value| *value *= if is_density { factor } else { 1.0 });
+            member.mean.iter_mut().for_each(|mean| *mean *= factor);
         }
     }
 }
@@ -222,6 +223,7 @@ fn constraint(report: &ConstraintReport, traces: &[&Trace]) -> Constraint {
             value: worst.value,
             t: worst.time,
             phase: worst.phase.clone(),
+            indices: worst.indices.clone(),
         })
     };
     Constraint {
@@ -271,6 +273,8 @@ fn member(trace: &Trace) -> Member {
         value,
         multiplier_t: if timed { multiplier_t } else { vec![] },
         multiplier,
+        mean_t: trace.means.iter().flat_map(|(from, to, _)| [*from, *to]).collect(),
+        mean: trace.means.iter().flat_map(|(.., mean)| [*mean, *mean]).collect(),
     }
 }
 

@@ -66,6 +66,8 @@ pub struct Outline {
     pub name: String,
     /// Whether its inside is forbidden. Otherwise its lines are borders.
     pub keep_out: bool,
+    /// Whether it is the ground of a view from the side.
+    pub ground: bool,
     /// Points that are joined; the first one again at the end of what is closed.
     pub lines: Vec<Vec<[f64; 2]>>,
 }
@@ -90,6 +92,8 @@ pub struct Surface {
     pub name: String,
     /// Whether what is beneath is forbidden; otherwise what is above.
     pub floor: bool,
+    /// Whether it stands above a ground that is drawn by itself, so that it is a limit and no ground.
+    pub clearance: bool,
     /// Grid lines of the first coordinate of the plane,
     pub x: Vec<f64>,
     /// and of the second one.
@@ -111,6 +115,13 @@ pub struct Ball {
     pub centre: [f64; 3],
     /// The three half axes, as vectors.
     pub half_axes: [[f64; 3]; 3],
+}
+
+impl Surface {
+    /// Whether it is drawn as ground.
+    pub fn is_ground(&self) -> bool {
+        self.floor && !self.clearance
+    }
 }
 
 impl Scene {

@@ -6,7 +6,7 @@
 use indexmap::IndexMap;
 
 /// Cells in each direction.
-const CELLS: usize = 80;
+const CELLS: usize = 100;
 /// Halvings of an edge of the grid in which the level is crossed.
 const HALVINGS: usize = 14;
 
@@ -29,9 +29,11 @@ impl Grid {
         Self { values: function(&nodes), rectangle }
     }
 
-    /// Round values of which lines show how the function runs, about seven; none for a constant.
-    pub(crate) fn levels(&self) -> Vec<f64> {
-        levels(self.values.iter().copied())
+    /// Round values of which lines show how the function runs in a part of the rectangle, about seven; none for a constant.
+    pub(crate) fn levels(&self, core: &Rectangle) -> Vec<f64> {
+        let is_within = |at: [f64; 2]| at.iter().zip(core).all(|(at, (low, high))| low <= at && at <= high);
+        let nodes = self.values.iter().enumerate().filter(|(node, _)| is_within(place(&self.rectangle, *node)));
+        levels(nodes.map(|(_, value)| *value))
     }
 
     /// Lines of one value. The first point stands again at the end of a closed line.

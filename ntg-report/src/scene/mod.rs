@@ -10,6 +10,7 @@ mod field;
 mod places;
 mod quadric;
 mod surface;
+mod terrain;
 mod tracks;
 
 use std::collections::BTreeSet;
@@ -47,14 +48,17 @@ pub(crate) fn find(run: &Run, problem: &dyn Problem, reading: &Reading) -> Scene
     let factors = scene.tracks[0].paths.iter().map(|path| factor(run, path)).collect();
     let space = Space { problem, structure: &structure, tables: &tables, scene: &scene, factors };
     let view = View::of(run, &scene);
+    let charts =
+        charts::Charts { declared: &structure.tables, tables: &tables, scene: &scene, factors: &space.factors };
     let mut found = Found::default();
     for group in &structure.groups {
         found.group(&space, &view, group);
     }
     let (centres, mut levels) = named_fields(run, &space, &view);
     if levels.is_empty() && found.surfaces.is_empty() {
-        levels = charts::levels(&structure.tables, &tables, (&scene, &space.factors), view.rectangle);
+        levels = charts::levels(&charts, (view.core, view.rectangle));
     }
+    terrain::ground(&charts, &mut found);
     let mut places = places::find(run, &scene, &found.bound, &reading.lists);
     let near = |a: &Place, b: &Place| {
         let pairs = a.at.iter().zip(&b.at).filter(|(a, b)| a.is_finite() && b.is_finite());
@@ -74,12 +78,20 @@ fn factor(run: &Run, path: &str) -> f64 {
     run.outputs.get(path).or_else(|| run.lets.get(path)).map_or(1.0, |series| series.factor)
 }
 
+/// How much further than the tracks the lines of a map go.
+const AROUND_TRACKS: f64 = 1.4;
+/// The same across a map with one scale: a picture is up to twice as wide as high.
+const WIDE: f64 = 2.3;
+
 /// What is looked at: the tracks and some room around them.
 struct View {
     middle: [f64; 3],
     /// Of the largest extent.
     size: f64,
     plane: [usize; 2],
+    /// Around the tracks; what lies there decides which lines of equal value are drawn,
+    core: Rectangle,
+    /// and as far as a wide picture of a map may reach.
     rectangle: Rectangle,
     /// The coordinate across the plane, and which heights are looked at.
     height: Option<(usize, (f64, f64))>,
@@ -99,12 +111,13 @@ impl View {
         let own = |axis: usize| ranges[axis].1 - ranges[axis].0;
         let largest = (0..ranges.len()).map(own).fold(0.0, f64::max);
         // With one unit the shorter side of a map shows as much as the longer one.
-        let room = |axis: usize| {
+        let room = |axis: usize, wider: f64| {
             let (low, high) = ranges[axis];
             let half = 0.5 * if alike { own(plane[0]).max(own(plane[1])) } else { high - low };
-            let half = 1.4 * if half > 0.0 { half } else { 0.5 };
+            let half = wider * if half > 0.0 { half } else { 0.5 };
             (0.5 * (low + high) - half, 0.5 * (low + high) + half)
         };
+        let wide = if alike { WIDE } else { AROUND_TRACKS };
         let height = (0..ranges.len()).find(|axis| !plane.contains(axis)).map(|axis| {
             let (low, high) = ranges[axis];
             let extent = if high > low { high - low } else { largest };
@@ -115,7 +128,9 @@ impl View {
             middle[axis] = 0.5 * (low + high);
         }
         let size = if largest > 0.0 { largest } else { 1.0 };
-        Self { middle, size, plane, rectangle: [room(plane[0]), room(plane[1])], height }
+        let core = [room(plane[0], AROUND_TRACKS), room(plane[1], AROUND_TRACKS)];
+        let rectangle = [room(plane[0], wide), core[1]];
+        Self { middle, size, plane, core, rectangle, height }
     }
 }
 
@@ -176,7 +191,7 @@ impl Found {
             (Some(quadric), None) => {
                 let Some(half) = quadric.half_axes(limit.level) else { return };
                 let line = ellipse(quadric.centre(), &half, view.plane);
-                self.outlines.push(Outline { name: limit.name.clone(), keep_out, lines: vec![line] });
+                self.outlines.push(Outline { name: limit.name.clone(), keep_out, ground: false, lines: vec![line] });
             }
             (Some(quadric), Some(_)) if axes.len() == 3 => {
                 let Some(half) = quadric.half_axes(limit.level) else { return };
@@ -219,7 +234,7 @@ impl Found {
                 .into_iter()
                 .all(|value| (value < limit.level) == limit.is_lower && value != limit.level);
         let name = limit.name.clone();
-        self.outlines.push(Outline { name, keep_out, lines });
+        self.outlines.push(Outline { name, keep_out, ground: false, lines });
     }
 
     fn surface(
@@ -244,7 +259,7 @@ impl Found {
             return;
         }
         let (name, floor) = (limit.name.clone(), found.grows == limit.is_lower);
-        self.surfaces.push(Surface { name, floor, x: found.x, y: found.y, z: found.z });
+        self.surfaces.push(Surface { name, floor, clearance: false, x: found.x, y: found.y, z: found.z });
     }
 }
 
@@ -340,5 +355,5 @@ fn equal_values(view: &View, row: impl Fn(&[[f64; 3]]) -> Vec<f64>, (name, facto
     };
     let grid = Grid::new(view.rectangle, function);
     let level = |value: f64| Level { name: name.to_owned(), value, lines: grid.lines(value, function) };
-    grid.levels().into_iter().map(level).filter(|level| !level.lines.is_empty()).collect()
+    grid.levels(&view.core).into_iter().map(level).filter(|level| !level.lines.is_empty()).collect()
 }

@@ -1,8 +1,9 @@
 //! Which outputs are positions.
 //!
 //! Two or three outputs of an agent are the position of a *vehicle* where a route guesses them
-//! together. In an agent without such a route they are those of one unit and one index that boundary
-//! conditions fix at both ends or constant bounds confine, if there are two or three.
+//! together. In an agent without such a route they are those that boundary conditions fix at both ends or
+//! constant bounds confine: the two or three elements of a vector, a vector of two with the height beside it, or two or
+//! three numbers of one unit and one index.
 
 use crate::guess::{Guess, constant_bounds};
 use crate::transcribe::instances::{index_at, members};
@@ -10,7 +11,7 @@ use crate::transcribe::layout::Layout;
 use crate::transcribe::slots::AffineMap;
 use crate::transcribe::{Transcription, names};
 use ntg_splines::Side;
-use ntg_structure::{GuessKind, GuessScope};
+use ntg_structure::{GuessKind, GuessScope, Output};
 
 /// An output by name and index.
 type Axis = (String, Option<i64>);
@@ -149,13 +150,67 @@ fn outputs(nlp: &Transcription, agent: usize) -> Vec<Axis> {
     layout.phases[phase].outputs.iter().map(|o| (declared[o.output].name.clone(), o.index)).collect()
 }
 
-/// Groups of outputs of one unit and one index that are fixed at both ends, or confined.
+/// A coordinate that may be one of a position.
+struct Candidate {
+    axis: Axis,
+    unit: String,
+    /// Which vector it is an element of: the name of the array, and the row of a matrix.
+    vector: Option<(String, usize)>,
+}
+
+/// Groups of outputs that are fixed at both ends, or confined: the elements of a vector, a plane vector with the one height
+/// beside it, and numbers of one unit and one index.
 fn plain(nlp: &Transcription, agent: usize) -> Vec<Vec<Axis>> {
+    let (mut vectors, mut rest): (Vec<Vec<Candidate>>, Vec<Candidate>) = (vec![], vec![]);
+    for candidate in candidates(nlp, agent) {
+        match vectors.iter_mut().find(|known| candidate.vector.is_some() && known[0].vector == candidate.vector) {
+            Some(vector) => vector.push(candidate),
+            None if candidate.vector.is_some() => vectors.push(vec![candidate]),
+            None => rest.push(candidate),
+        }
+    }
+    let mut groups: Vec<Vec<Candidate>> = vec![];
+    for mut vector in vectors {
+        let row = vector[0].vector.as_ref().map_or(0, |(_, row)| *row);
+        let is_height = |other: &Candidate| {
+            let index = other.axis.1.map_or(1, |index| usize::try_from(index).unwrap_or(0));
+            other.unit == vector[0].unit && index == row
+        };
+        let heights: Vec<usize> = (0..rest.len()).filter(|k| is_height(&rest[*k])).collect();
+        if let ([height], 2) = (&heights[..], vector.len()) {
+            vector.push(rest.remove(*height));
+        }
+        groups.push(vector);
+    }
+    let alike = |group: &[Candidate], own: &Candidate| group[0].unit == own.unit && group[0].axis.1 == own.axis.1;
+    let first = groups.len();
+    for candidate in rest {
+        match groups[first..].iter_mut().find(|group| alike(group, &candidate)) {
+            Some(group) => group.push(candidate),
+            None => groups.push(vec![candidate]),
+        }
+    }
+    groups.retain(|group| AXES.contains(&group.len()));
+    // Velocities are tied at both ends, too: a route of the position says how they change.
+    if groups.iter().any(|group| !is_rate(&group[0].unit)) {
+        groups.retain(|group| !is_rate(&group[0].unit));
+    }
+    let axes = groups.into_iter().map(|group| group.into_iter().map(|candidate| candidate.axis).collect::<Vec<_>>());
+    axes.collect()
+}
+
+/// Whether a unit is one of something per time.
+fn is_rate(unit: &str) -> bool {
+    ["/s", "/min", "/h", "/day"].iter().any(|per| unit.contains(per))
+}
+
+/// The outputs of an agent that boundary conditions fix at both ends, or constant bounds confine.
+fn candidates(nlp: &Transcription, agent: usize) -> Vec<Candidate> {
     let layout = &nlp.model.layout;
     let phases = layout.agents[agent].phases.clone();
     let (Some(first), Some(last)) = (phases.clone().next(), phases.last()) else { return vec![] };
     let declared = &nlp.model.structure.phases[layout.phases[first].phase].outputs;
-    let mut groups: Vec<(String, Option<i64>, Vec<Axis>)> = vec![];
+    let mut found = vec![];
     for (output, member) in layout.phases[first].outputs.iter().enumerate() {
         let own = &declared[member.output];
         let fixed = |phase: usize, output: usize, tau: f64, side: Side| {
@@ -168,14 +223,17 @@ fn plain(nlp: &Transcription, agent: usize) -> Vec<Vec<Axis>> {
             |o: &crate::transcribe::layout::OutputMember| o.index == member.index && later[o.output].name == own.name;
         let Some(at_end) = layout.phases[last].outputs.iter().position(same) else { continue };
         let tied = fixed(first, output, 0.0, Side::Right) && fixed(last, at_end, 1.0, Side::Left);
-        if !(confined || tied) {
-            continue;
-        }
-        let axis = (own.name.clone(), member.index);
-        match groups.iter_mut().find(|g| g.0 == own.unit.symbol && g.1 == member.index) {
-            Some(group) => group.2.push(axis),
-            None => groups.push((own.unit.symbol.clone(), member.index, vec![axis])),
+        if confined || tied {
+            let axis = (own.name.clone(), member.index);
+            found.push(Candidate { axis, unit: own.unit.symbol.clone(), vector: vector_of(own, member.index) });
         }
     }
-    groups.into_iter().map(|group| group.2).filter(|axes| AXES.contains(&axes.len())).collect()
+    found
+}
+
+/// The vector of a plane or of space that a member of an array belongs to: the array's name, and which vector of it, from 1.
+fn vector_of(output: &Output, index: Option<i64>) -> Option<(String, usize)> {
+    let size = output.vector.filter(|size| AXES.contains(size))?;
+    let member = usize::try_from(index? - output.family?.first).ok()?;
+    Some((output.name.clone(), 1 + member / size))
 }

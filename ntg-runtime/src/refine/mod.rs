@@ -51,7 +51,7 @@ pub fn refine(
         // A solution starts every further round; there is nothing to continue from.
         structure.continuations.clear();
     });
-    let mut run = Run { mesh, best: report.clone(), report, rounds: vec![], wanted, settings: &settings };
+    let mut run = Run { mesh, best: report.clone(), report, rounds: vec![], beside: 0.0, wanted, settings: &settings };
     let status = loop {
         if let Some(status) = run.round(before + began.elapsed())? {
             break status;
@@ -77,6 +77,8 @@ struct Run<'a> {
     /// The best solve so far: its violation counts, and then its objective.
     best: Report,
     rounds: Vec<Round>,
+    /// The size of the objective beside the first solution.
+    beside: f64,
     wanted: &'a Refinement,
     settings: &'a Settings,
 }
@@ -85,7 +87,10 @@ impl Run<'_> {
     /// Measures the last solve, and solves on a finer mesh unless that is the end.
     fn round(&mut self, spent: Duration) -> Result<Option<RefineStatus>, Error> {
         let nlp = Transcription::new(&self.mesh)?;
-        let found = round(&nlp, &self.report, &self.rounds);
+        if self.rounds.is_empty() {
+            self.beside = beside(&nlp, &self.report);
+        }
+        let found = round(&nlp, &self.report, (&self.rounds, self.beside));
         let met = found.within(self.wanted.tolerance);
         self.rounds.push(found);
         if !self.report.has_solution() {
@@ -120,7 +125,7 @@ impl Run<'_> {
             (self.report, self.mesh) = (next, finer);
             return Ok(None);
         }
-        self.rounds.push(round(&Transcription::new(&finer)?, &next, &self.rounds));
+        self.rounds.push(round(&Transcription::new(&finer)?, &next, (&self.rounds, self.beside)));
         Ok(Some(ended(&next)))
     }
 }
@@ -146,6 +151,30 @@ fn is_better(one: &Report, other: &Report, tolerance: f64) -> bool {
     better_by > tolerance * a.abs().max(b.abs())
 }
 
+/// The size of the objective where every output is half of its range away from the solution along a smooth wave, half of its
+/// typical size where it is constant; 0 where that is no number.
+fn beside(nlp: &Transcription, report: &Report) -> f64 {
+    /// Half waves over the range of a phase, so that no derivative vanishes.
+    const WAVES: f64 = 2.5;
+    let mut x = report.solution.coefficients().to_vec();
+    for phase in &nlp.model.layout.phases {
+        for output in &phase.outputs {
+            let own = output.coefficients.iter().map(|c| x[*c as usize]);
+            let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let unit = nlp.model.structure.phases[phase.phase].outputs[output.output].unit.factor;
+            let size = [high - low, high.abs().max(low.abs()), unit].into_iter().find(|size| *size > 1e-12 * unit);
+            for (coefficient, tau) in output.coefficients.iter().zip(output.knots.greville()) {
+                x[*coefficient as usize] += 0.5 * size.unwrap_or(unit) * (std::f64::consts::PI * WAVES * tau).sin();
+            }
+        }
+    }
+    let (mut work, mut at) = nlp.workspace();
+    match nlp.values(&x, &mut work, &mut at) {
+        Ok(()) if at.objective.is_finite() => crate::report::user(nlp, at.objective).abs(),
+        _ => 0.0,
+    }
+}
+
 /// Why refinement ended with a solve that found no solution.
 fn ended(report: &Report) -> RefineStatus {
     match report.status {
@@ -155,17 +184,25 @@ fn ended(report: &Report) -> RefineStatus {
     }
 }
 
-/// Changes are relative to the largest objective of all rounds, because the last one may be 0.
-fn round(nlp: &Transcription, report: &Report, before: &[Round]) -> Round {
+/// Changes are relative to the largest objective of all rounds, because the last one may be 0; where all are next to nothing
+/// of what the objective is beside the solution, relative to that part of it (equation 14.1a).
+fn round(nlp: &Transcription, report: &Report, (before, beside): (&[Round], f64)) -> Round {
+    /// What is below this part of its size beside the solution is 0: a square of what is exact to a thousandth of that.
+    const NOTHING: f64 = 1e-6;
+    /// As far as a solve resolves values.
+    const RESOLVED: f64 = 1e-8;
     let fine = report.objective_fine;
-    let size = before.iter().fold(fine.abs(), |most, round| most.max(round.fine.abs())).max(f64::MIN_POSITIVE);
-    let change = before.last().map_or(f64::NAN, |before| (fine - before.fine).abs() / size);
+    let largest = before.iter().fold(fine.abs(), |most, round| most.max(round.fine.abs()));
+    let size = largest.max(NOTHING * beside).max(f64::MIN_POSITIVE);
+    let is_nothing = largest <= NOTHING * beside;
+    let relative = |apart: f64| if is_nothing && apart <= RESOLVED * beside { 0.0 } else { apart / size };
+    let change = before.last().map_or(f64::NAN, |before| relative((fine - before.fine).abs()));
     Round {
         intervals: nlp.model.layout.phases.iter().map(|phase| phase.breakpoints.len() - 1).sum(),
         variables: nlp.variables(),
         objective: report.objective,
         fine,
-        quadrature: (fine - report.objective).abs() / size,
+        quadrature: relative((fine - report.objective).abs()),
         change,
         violation: report.violation.between,
         iterations: report.iterations,

@@ -37,13 +37,19 @@ pub(super) fn constraints(
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
         let report = &mut reports[constraint];
         let sizes = (report.size, report.unit.factor);
-        keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), &info.point);
+        keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), (&info.point, &info.indices));
         multipliers::add(nlp, outcome, row, report);
     }
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
         let sizes = (report.size, report.unit.factor);
-        keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, sizes), &checked.point);
+        keep(
+            nlp,
+            &outcome.x,
+            &mut report.between,
+            (checked.value, checked.bounds, sizes),
+            (&checked.point, checked.indices),
+        );
     })?;
     Ok((reports, terms))
 }
@@ -54,7 +60,7 @@ fn keep(
     x: &[f64],
     worst: &mut Option<Worst>,
     (value, (lower, upper), (size, unit)): (f64, (f64, f64), (f64, f64)),
-    point: &Point,
+    (point, indices): (&Point, &[i64]),
 ) {
     if worst.is_some() && lower <= value && value <= upper {
         return; // As nearly all are.
@@ -66,7 +72,14 @@ fn keep(
         let layout = &nlp.model.layout;
         let time = point.phase.map(|phase| layout.start(phase, x) + point.tau * layout.duration(phase, x));
         let phase = point.phase.map(|phase| names::phase(&nlp.model.structure, layout, phase)).unwrap_or_default();
-        *worst = Some(Worst { violation: missed / unit, relative, value: value / unit, time, phase });
+        *worst = Some(Worst {
+            violation: missed / unit,
+            relative,
+            value: value / unit,
+            time,
+            phase,
+            indices: indices.to_vec(),
+        });
     }
 }
 

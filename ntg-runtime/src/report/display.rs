@@ -2,6 +2,7 @@
 
 use super::{ConstraintReport, Estimate, Report, Warning};
 use crate::digits::brief;
+use crate::transcribe::rows::member_words;
 use ntg_structure::{Independent, Unit};
 use std::fmt;
 
@@ -89,7 +90,8 @@ fn violated(
     for (worst, where_) in [(constraint.points.as_ref(), "at a point"), (between, "between points")] {
         let Some(worst) = worst.filter(|w| w.relative > NEGLIGIBLE || w.relative.is_nan()) else { continue };
         let unit = symbol(&constraint.unit);
-        write!(f, "\n  `{}` is missed by {}{unit} {where_}", constraint.name, brief(worst.violation))?;
+        let member = member_words(&constraint.name, &worst.indices);
+        write!(f, "\n  {member} is missed by {}{unit} {where_}", brief(worst.violation))?;
         if let Some(time) = worst.time {
             write!(f, ", {}", independent.place(time, brief))?;
         }

@@ -8,12 +8,14 @@ mod cost;
 mod display;
 mod estimate;
 pub(crate) mod fine;
+mod means;
 mod multipliers;
 mod refined;
 pub(crate) mod status;
 mod traces;
 mod warnings;
 
+pub use crate::transcribe::rows::member_words;
 pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
 pub use refined::{RefineStatus, Refined, Round};
 pub use traces::Trace;
@@ -66,7 +68,7 @@ pub struct Report {
     /// Why the solve ended; its `Display` says it in words.
     pub status: Status,
     /// What to try next; empty when solved.
-    pub advice: &'static str,
+    pub advice: String,
     /// The objective in the user's sense (`maximize` gives the maximum), in `objective_unit`.
     pub objective: f64,
     /// The objective integrated on the finer grid: closer to what flying would cost.
@@ -86,6 +88,9 @@ pub struct Report {
     /// Expressions whose value or derivative is singular at the guess. They stop nothing; where a
     /// solve ends badly, they are the first to look at.
     pub singular: Vec<Singular>,
+    /// Durations without a lower bound that the solve has made as short as it may, in words, each with the place of its
+    /// declaration.
+    pub(crate) shortest: Vec<(String, Place)>,
     /// The residuals of the optimality conditions.
     pub residuals: Residuals,
     /// Iterations of all steps of a continuation.
@@ -160,6 +165,8 @@ pub struct Worst {
     pub time: Option<f64>,
     /// The phase's path; empty without one.
     pub phase: String,
+    /// Which member of the constraint: the indices of the loops around it, those over the elements of its vectors last.
+    pub indices: Vec<i64>,
 }
 
 /// A multiplier in the user's sense: `dJ*/d(bound)`.
@@ -212,7 +219,7 @@ impl Report {
         let constraints: Vec<String> = found.map(|warning| warning.message).collect();
         if self.has_solution() && !constraints.is_empty() {
             self.status = Status::ViolatedBetween { constraints };
-            self.advice = self.status.advice();
+            self.advice = self.status.advice().to_owned();
         }
         self
     }
@@ -224,7 +231,8 @@ impl Report {
 
     /// A constraint by its name or its text in the spec.
     pub fn constraint(&self, name: &str) -> Option<&ConstraintReport> {
-        self.constraints.iter().find(|c| c.name == name)
+        let all = &self.constraints;
+        all.iter().find(|c| c.name == name).or_else(|| all.iter().find(|c| c.place.text == name))
     }
 
     /// Checks an outcome on the finer grid and puts everything together.
@@ -249,6 +257,7 @@ impl Report {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };
         let violation = Violations { points: largest(|c| c.points.as_ref()), between: largest(|c| c.between.as_ref()) };
+        let shortest = warnings::shortest(nlp, &outcome.x);
         let solution = Solution {
             inner: Arc::new(Inner {
                 model: nlp.model.clone(),
@@ -263,7 +272,7 @@ impl Report {
         let estimate = estimate::estimate(nlp, &solution, status.has_solution())?;
         Ok(Self {
             problem: structure.name.clone(),
-            advice: status.advice(),
+            advice: status.advice().to_owned(),
             status,
             objective: user(nlp, outcome.objective),
             objective_fine: user(nlp, fine_terms.iter().sum()),
@@ -274,6 +283,7 @@ impl Report {
             violation,
             between_tolerance: Settings::default().between_tolerance,
             singular: vec![],
+            shortest,
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),
             seconds: history.iter().map(|step| step.seconds).sum(),

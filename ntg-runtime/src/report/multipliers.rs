@@ -31,7 +31,7 @@ impl Solution {
             let RowKind::Constraint(index) = info.kind else { return None };
             let declared = &structure.constraints[index];
             let sense = sense(structure, declared.unit.factor);
-            is_called(constraint_name(declared), constraint)
+            (is_called(constraint_name(declared), constraint) || declared.place.text == constraint)
                 .then(|| multiplier(layout, &self.inner.x, info, sense * raw))
         });
         own.collect()

@@ -2,12 +2,14 @@
 //! reports show.
 
 use super::fine::{Plan, Wanted};
+use super::means::Masses;
 use super::multipliers;
 use crate::problem::Problem;
 use crate::solution::{Inner, Solution};
 use crate::transcribe::points::Point;
-use crate::transcribe::rows::RowKind;
+use crate::transcribe::rows::{RowInfo, RowKind};
 use crate::transcribe::{SetupError, Transcription, names};
+use ntg_structure::{Domain, Points};
 use std::collections::BTreeMap;
 
 /// One member of a constraint in one phase.
@@ -31,6 +33,9 @@ pub struct Trace {
     pub multipliers: Vec<(f64, f64)>,
     /// Whether the multipliers are densities over time (docs/maths.md, equation 9.4).
     pub density: bool,
+    /// Start and end of each knot interval in mission time, and the mean density of the multipliers there, those at the ends
+    /// of the interval included (equation 9.4a); empty where points belong to no intervals.
+    pub means: Vec<(f64, f64, f64)>,
 }
 
 /// Constraint, phase member and all loop indices.
@@ -60,10 +65,13 @@ impl Solution {
                 found.insert(key, trace);
             }
         }
+        let mut masses: BTreeMap<Key, Masses> = BTreeMap::new();
         for (info, raw) in inner.rows.iter().zip(&inner.row_multipliers) {
             let RowKind::Constraint(constraint) = info.kind else { continue };
-            let Some(trace) = found.get_mut(&key(constraint, info.point, &info.indices)) else { continue };
+            let key = key(constraint, info.point, &info.indices);
+            let Some(trace) = found.get_mut(&key) else { continue };
             let sense = multipliers::sense(&inner.model.structure, unit(inner, constraint));
+            masses.entry(key).or_default().push(info.point, sense * raw, is_gauss(&nlp, info));
             let shown = multipliers::multiplier(&inner.model.layout, &inner.x, info, sense * raw);
             // Beside Gauss points stand breakpoints without weights, whose multipliers are no
             // densities: they are not drawn with the others.
@@ -76,11 +84,32 @@ impl Solution {
                 trace.multipliers.push((shown.time.unwrap_or(f64::NAN), shown.value));
             }
         }
+        let (layout, x) = (&inner.model.layout, &inner.x);
+        for (key, masses) in &masses {
+            let (Some(trace), Some(phase)) = (found.get_mut(key), key.1) else { continue };
+            let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
+            let means = masses.means(&layout.phases[phase], duration).into_iter();
+            trace.means =
+                means.map(|(from, to, mean)| (start + from * duration, start + to * duration, mean)).collect();
+        }
         let mut traces: Vec<Trace> = found.into_values().collect();
         for trace in &mut traces {
             trace.multipliers.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
         Ok(traces)
+    }
+}
+
+/// Whether a row stands at Gauss points.
+fn is_gauss(nlp: &Transcription, info: &RowInfo) -> bool {
+    let structure = &nlp.model.structure;
+    let group = nlp.elements.batches.get(info.maker.0).and_then(|batch| structure.groups.get(batch.group));
+    match group.map(|group| &group.domain) {
+        Some(Domain::Path { phase, points, .. }) => {
+            let sets = structure.phases.get(phase.phase).map(|phase| &phase.points);
+            sets.and_then(|sets| sets.get(*points)).is_some_and(|set| matches!(set, Points::Gauss { .. }))
+        }
+        _ => false,
     }
 }
 
@@ -117,5 +146,6 @@ fn trace(inner: &Inner, (constraint, phase, indices): &Key, set: &Set) -> Trace 
         upper: set.bounds.1 / factor,
         multipliers: vec![],
         density: false,
+        means: vec![],
     }
 }

@@ -2,6 +2,10 @@
 
 use super::{ConstraintReport, RefineStatus, Report};
 use crate::digits::brief;
+use crate::transcribe::Transcription;
+use crate::transcribe::layout::Time;
+use crate::transcribe::rows::{member_words, shortest_duration};
+use crate::transcribe::times::phase_words;
 use ntg_structure::{Independent, Place};
 use std::fmt;
 
@@ -25,13 +29,19 @@ impl fmt::Display for Warning {
 }
 
 impl Report {
-    /// What is to be known beside the status: expressions that are singular at the guess, constraints of a solution that
-    /// are violated between the points by more than `Settings::between_tolerance`, the worst first, and a refinement
-    /// that has not come to its tolerance.
+    /// What is to be known beside the status: expressions that are singular at the guess, durations that are as short as
+    /// they may be, constraints of a solution that are violated between the points by more than
+    /// `Settings::between_tolerance`, the worst first, and a refinement that has not come to its tolerance.
     pub fn warnings(&self) -> Vec<Warning> {
         let singular = self.singular.iter().map(|singular| Warning {
             message: singular.to_string(),
             place: singular.place.clone(),
+            constraint: String::new(),
+            time: None,
+        });
+        let shortest = self.shortest.iter().map(|(message, place)| Warning {
+            message: message.clone(),
+            place: place.clone(),
             constraint: String::new(),
             time: None,
         });
@@ -43,7 +53,7 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        singular.chain(between).chain(unmet).collect()
+        singular.chain(shortest).chain(between).chain(unmet).collect()
     }
 
     /// The constraints of a solution that are violated between the points of the transcription by more than
@@ -60,9 +70,37 @@ impl Report {
     }
 }
 
+/// Every duration that ends at the least length that the transcription allows it, where its own bound is below that.
+pub(super) fn shortest(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
+    /// A duration up to this many times the least one ends there: the method stays a hair inside of bounds.
+    const NEAR: f64 = 2.0;
+    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+    let ends = layout.phases.iter().enumerate().filter_map(|(phase, member)| {
+        let Time::Free(variable) = member.duration else { return None };
+        let (value, lower) = (*x.get(variable as usize)?, nlp.limits.lower[variable as usize]);
+        let is_ours = lower == shortest_duration(nlp.limits.upper[variable as usize]);
+        (is_ours && value <= NEAR * lower).then_some((phase, lower))
+    });
+    let told = ends.map(|(phase, lower)| {
+        let declared = &structure.phases[layout.phases[phase].phase];
+        let name = match (&declared.name, &declared.duration_name) {
+            (None, Some(name)) => format!("`{name}`"),
+            _ => format!("the duration of {}", phase_words(structure, layout, phase)),
+        };
+        let least = structure.independent.amount(lower, brief);
+        let message = format!(
+            "{name} is as short as a duration may be, {least}: a millionth of its upper bound; give it a lower bound \
+             above 0"
+        );
+        (message, declared.place.clone())
+    });
+    told.collect()
+}
+
 fn violated_between(constraint: &ConstraintReport, independent: &Independent) -> Warning {
-    let mut message = format!("`{}` is violated between the points", constraint.name);
     let worst = constraint.between.as_ref();
+    let member = worst.map_or(&[][..], |worst| &worst.indices);
+    let mut message = format!("{} is violated between the points", member_words(&constraint.name, member));
     if let Some(worst) = worst {
         message += &format!(" by {}", brief(worst.violation));
         if !constraint.unit.symbol.is_empty() {

@@ -147,7 +147,8 @@ mod tests {
     fn phase(intervals: usize, points: usize) -> Phase {
         let breakpoints = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
         let spline = Spline { order: 5, smoothness: 3, breakpoints };
-        let output = Output { name: "x".into(), doc: String::new(), unit: Unit::default(), family: None, spline };
+        let output =
+            Output { name: "x".into(), doc: String::new(), unit: Unit::default(), family: None, vector: None, spline };
         Phase {
             name: None,
             agent: 0,

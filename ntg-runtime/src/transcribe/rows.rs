@@ -69,7 +69,7 @@ pub(crate) fn variable_bounds(frame: &Frame) -> Result<Vec<Pair>, SetupError> {
             let lasting = structure.independent.amount(upper, |value| value.to_string());
             return Err(SetupError::Duration { phase, lasting, place: declared.place.clone() });
         }
-        bounds.push((lower.max(shortest(upper)), upper));
+        bounds.push((lower.max(shortest_duration(upper)), upper));
     }
     for (agent, member) in layout.agents.iter().enumerate() {
         let declared = &structure.agents[member.agent];
@@ -96,7 +96,19 @@ pub(crate) fn constraint_name(constraint: &Constraint) -> &str {
 
 /// The constraint with its members' indices: "`turn`[2]".
 pub(crate) fn constraint_words(constraint: &Constraint, indices: &[i64]) -> String {
-    let name = constraint_name(constraint);
+    member_words(constraint_name(constraint), indices)
+}
+
+/// A constraint's name with the indices of a member behind it; in the place of the dots of `u[..] in 0 .. 1`, which stands
+/// for all elements, where it has some.
+pub fn member_words(name: &str, indices: &[i64]) -> String {
+    for (dots, axes) in [("[..]", 1), ("[.., ..]", 2)] {
+        if let (true, Some(own)) = (name.contains(dots), indices.len().checked_sub(axes)) {
+            let (outer, own) = indices.split_at(own);
+            let own: Vec<String> = own.iter().map(i64::to_string).collect();
+            return member_words(&name.replacen(dots, &format!("[{}]", own.join(", ")), 1), outer);
+        }
+    }
     match indices {
         [] => format!("`{name}`"),
         [index] => format!("`{name}`[{index}]"),
@@ -115,7 +127,8 @@ const UNBOUNDED: Pair = (f64::NEG_INFINITY, f64::INFINITY);
 /// division by a duration can overflow.
 const SHORTEST: f64 = 1e-6;
 
-fn shortest(upper: f64) -> f64 {
+/// The least duration beneath an upper bound, SI.
+pub(crate) fn shortest_duration(upper: f64) -> f64 {
     SHORTEST * if upper.is_finite() { upper } else { 1.0 }
 }
 

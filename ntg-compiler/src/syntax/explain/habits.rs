@@ -104,6 +104,14 @@ impl Here<'_> {
             "=" if first == "table" && has(Rule::left_parenthesis) => {
                 format!("a table names its arguments: `table {before}(x) = ...`")
             }
+            "[" | "(" | "{" if before == first && matches!(first, "state" | "input" | "output" | "variable") => {
+                format!(
+                    "names stand side by side: `{first} x, y [m]`; a vector has its size behind it: `{first} r[2] [m]`"
+                )
+            }
+            "," if self.is_within("guess") && has(Rule::equals) => {
+                "a route is that of a list in parentheses: `(x, y) through (0, 0), (1, 2);`".into()
+            }
             "(" if self.is_within("guess") && has(Rule::equals) => {
                 format!("write `{before} = ...`: the right side may hold `t` and `tau`")
             }

@@ -110,6 +110,7 @@ pub(crate) fn phase() -> Phase {
             doc: "The place.".into(),
             unit: Unit { symbol: "km".into(), factor: 1000.0 },
             family: None,
+            vector: None,
             spline: Spline { order: 4, smoothness: 3, breakpoints },
         }],
         points: vec![Points::Gauss { points: 5 }],

@@ -40,6 +40,9 @@ pub(crate) fn program(text: &str) -> Program {
     let mut program = compiled.unwrap_or_else(|found| panic!("{}", found.render(&source))).program;
     let structure = &mut program.structure;
     structure.constraints.iter_mut().for_each(|constraint| constraint.place = Place::default());
+    // What has no name of its own is called by the text of its element.
+    let is_name = |name: &String| !name.contains(' ');
+    structure.constraints.iter_mut().for_each(|constraint| constraint.name = constraint.name.take().filter(is_name));
     structure.terms.iter_mut().for_each(|term| term.place = Place::default());
     structure.variables.iter_mut().for_each(|variable| variable.place = Place::default());
     structure.agents.iter_mut().for_each(|agent| agent.place = Place::default());

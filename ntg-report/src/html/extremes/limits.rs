@@ -105,7 +105,7 @@ pub(super) fn of(run: &Run, path: &str, series: &Series) -> Vec<Limit> {
             let Some(rest) = rest else { continue };
             let named = is_member(own, bracket, (&indices, constraint.members.len()));
             if is_limit(constraint, member) && named && is_alike(series, member) {
-                let mut limit = Limit::new(run, (index, number), &during(run, phase, series));
+                let mut limit = Limit::new(run, (index, number), &during(run, phase, (series, member)));
                 limit.phase = rest.trim_start_matches('.').to_owned();
                 found.push(limit);
             }
@@ -173,10 +173,15 @@ fn at(series: &Series, t: f64) -> f64 {
     (1.0 - share) * of(&series.value, next - 1) + share * of(&series.value, next)
 }
 
-/// The samples of a phase; all of them without one. The left value at a start is a sample before it.
-fn during(run: &Run, phase: &str, series: &Series) -> Vec<f64> {
-    let Some(phase) = run.phases.iter().find(|own| own.name == phase) else { return series.value.clone() };
+/// The samples of a phase, all of them without one, while the limit holds. The left value at a start is a sample before it.
+fn during(run: &Run, phase: &str, (series, member): (&Series, &Member)) -> Vec<f64> {
     let end = series.t.last().copied().unwrap_or(f64::NAN);
-    let inside = |t: f64| t >= phase.start && (t < phase.end || t >= end);
+    let phase = run.phases.iter().find(|own| own.name == phase);
+    let fold = |(low, high): (f64, f64), t: &f64| (low.min(*t), high.max(*t));
+    let (from, to) = member.t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), fold);
+    let inside = |t: f64| {
+        let in_phase = phase.is_none_or(|phase| t >= phase.start && (t < phase.end || t >= end));
+        in_phase && (from..=to).contains(&t)
+    };
     series.t.iter().zip(&series.value).filter(|(t, _)| inside(**t)).map(|(_, value)| *value).collect()
 }

@@ -138,7 +138,7 @@ pub fn agent(name: Option<&str>, family: Option<Family>) -> Agent {
 pub fn output(name: &str, order: usize, intervals: usize, smoothness: usize) -> Output {
     let breakpoints = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
     let spline = Spline { order, smoothness, breakpoints };
-    Output { name: name.into(), doc: String::new(), unit: Unit::default(), family: None, spline }
+    Output { name: name.into(), doc: String::new(), unit: Unit::default(), family: None, vector: None, spline }
 }
 
 pub fn phase_of(agent: usize, name: Option<&str>, duration: Duration, outputs: Vec<Output>, points: usize) -> Phase {
