@@ -21,14 +21,14 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs")
 }
 
-/// What the judge finds worst; none where the solver does not say that the point is a solution.
-fn worst(path: &Path, seed: Option<u64>) -> Option<f64> {
+/// What the judge finds worst; the status where the solver does not say that the point is a solution.
+fn worst(path: &Path, seed: Option<u64>) -> Result<f64, String> {
     let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let folder = path.parent().unwrap_or(Path::new("."));
     let problem = Interpreted::new(&compile(&text, folder).program);
     let report = solved(&problem, seed);
     if !report.is_solved() {
-        return None;
+        return Err(report.to_string());
     }
     // With the parameters of the last step of a continuation.
     let last = WithStructure::new(&problem).edited(|structure| structure.clone_from(report.solution.structure()));
@@ -38,7 +38,7 @@ fn worst(path: &Path, seed: Option<u64>) -> Option<f64> {
     let (x, multipliers) = (report.solution.coefficients(), Some(report.solution.row_multipliers()));
     let judged = judge(&nlp, Point { x, multipliers }).expect("finite at a solution");
     let [stationarity, complementarity] = judged.optimality.expect("there are multipliers");
-    Some(judged.violation().max(stationarity.relative).max(complementarity.relative))
+    Ok(judged.violation().max(stationarity.relative).max(complementarity.relative))
 }
 
 /// From the spec's guess, or from a point beside it.
@@ -64,14 +64,13 @@ fn the_judge_confirms_what_is_solved() {
         asked.push((gallery(name), None));
     }
     asked.extend([None, Some(1), Some(2), Some(3), Some(4)].map(|seed| (gallery("powered_descent_mars"), seed)));
-    let (mut confirmed, mut wrong) = (0, vec![]);
+    let mut wrong = vec![];
     for (path, seed) in &asked {
         match worst(path, *seed) {
-            Some(error) if error <= MOST => confirmed += 1,
-            Some(error) => wrong.push(format!("{} {seed:?}: {error:.1e}", path.display())),
-            None => {}
+            Ok(error) if error <= MOST => {}
+            Ok(error) => wrong.push(format!("{} {seed:?}: {error:.1e}", path.display())),
+            Err(report) => wrong.push(format!("{} {seed:?}: {report}", path.display())),
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    assert_eq!(confirmed, asked.len());
 }

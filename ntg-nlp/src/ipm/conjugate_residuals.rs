@@ -20,6 +20,12 @@ use crate::reductions::sum;
 /// 600 solves fail.
 const MOST: usize = 60;
 
+/// The inverse of the least eigenvalue of `K` that is more than rounding: with the least proximal term, `s` is 1e-15 of rows
+/// whose slope is 1. Where the reduction asks for less, rows depend on each other at the point (the apex of a cone), and
+/// exact steps of their multipliers have no limit. A law but for the power of ten: useful steps ask for 1e4 at most, those
+/// that run off for 1e6 and more.
+const LARGEST_INVERSE: f64 = 1e5;
+
 /// Memory for conjugate residuals.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ConjugateResiduals {
@@ -81,7 +87,7 @@ impl<N: Nlp> State<'_, N> {
             image.iter_mut().zip(changes()).for_each(|(kq, change)| *kq = change + beta * *kq);
             x.iter_mut().zip(&self.step.correction_x).for_each(|(x, more)| *x = more + beta * *x);
             let alpha = product / sum([image], |[kq]| kq * kq);
-            if !(alpha > 0.0 && alpha.is_finite()) {
+            if !(alpha > 0.0 && alpha <= LARGEST_INVERSE) {
                 break;
             }
             all_x.iter_mut().zip(&*x).for_each(|(all, more)| *all += alpha * more);
