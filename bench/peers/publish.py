@@ -24,15 +24,27 @@ Errors are the largest of relative violation, stationarity and complementarity b
 
 
 def publish(found):
-    """Rows of this run replace those of earlier ones; each keeps its machine and date."""
+    """Rows of this run replace those of earlier ones; each keeps its machine and date. The table of FATROP has rows of its
+    own, so that it can be measured without the solvers of the other one, each beside ntg in the same run."""
     known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {"rows": {}, "routes": {}}
-    for kind in ("rows", "routes"):
-        for name, what in found.get(kind, {}).items():
-            known[kind][name] = {"machine": found["machine"], **what}
+    for kind, measured in kinds(found).items():
+        for name, what in measured.items():
+            known.setdefault(kind, {})[name] = {"machine": found["machine"], **what}
     RESULTS.write_text(json.dumps(known, indent=1) + "\n")
     before, rest = PAGE.read_text().split(BEGIN)
     after = rest.split(END)[1]
     PAGE.write_text(before + BEGIN + "\n" + section(known) + END + after)
+
+
+def kinds(found):
+    """What a run replaces, by kind."""
+    by = found["options"]["by"]
+    rows = found.get("rows", {})
+    return {
+        "rows": rows if {"ipopt", "ripopt"} <= set(by) else {},
+        "chains": rows if "fatrop" in by else {},
+        "routes": found.get("routes", {}),
+    }
 
 
 def section(known):
@@ -43,8 +55,9 @@ def section(known):
     for row in rows:
         lines += [f"- {note}" for note in table.notes(row, known["rows"][row.name]["solvers"])]
     lines += growths(rows, known["rows"])
-    chains = fatrop_table.lines(rows, known["rows"])
-    lines += [CHAINS, *chains] if chains else []
+    chains = known.get("chains", {})
+    table_of_chains = fatrop_table.lines(all_rows(), chains)
+    lines += [CHAINS, *table_of_chains, "", places(chains.values())] if table_of_chains else []
     lines += ["", places(known["rows"].values()), "", "Where the time goes, in the same runs:", "", table.PARTS_HEAD]
     lines += [table.parts(row, known["rows"][row.name]["solvers"]) for row in rows]
     if known["routes"]:
