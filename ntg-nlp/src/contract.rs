@@ -106,6 +106,9 @@ pub struct Limits {
     pub upper: Vec<f64>,
     /// A positive typical size of each variable.
     pub scale: Vec<f64>,
+    /// Variables with the same number share their typical size, such as the coefficients of one spline. Empty: each has
+    /// its own.
+    pub alike: Vec<u32>,
     /// Lower bounds of the rows; equal to the upper bound for an equality.
     pub row_lower: Vec<f64>,
     /// Upper bounds of the rows.

@@ -58,6 +58,7 @@ mod remeasure;
 pub mod residuals;
 pub mod scaling;
 pub mod sensitivity;
+mod sizes;
 pub mod sparse;
 #[cfg(feature = "sqp")]
 pub mod sqp;

@@ -1,41 +1,170 @@
-//! Rows are measured again where a solve ends (docs/maths.md, section 11.12).
+//! Where a solve ends, rows, objective and variables are measured again (docs/maths.md, section 11.12).
 //!
-//! Rows are scaled by their slopes at the start, (5.2). Where a start is so steep that its slopes are 1e10 times those at
-//! the solution (`exp(-500 h)` at a height that is slightly wrong), the tolerance of a scaled row is no tolerance at all:
-//! what was found may violate the row by any amount. Such an end is the start of another solve.
+//! Scales are those of the start. Where a start is so steep that the slopes of a row are 1e10 times those at the solution
+//! (`exp(-500 h)` at a height that is slightly wrong), the tolerance of a scaled row is no tolerance at all: what was found
+//! may violate the row by any amount. Likewise where variables become many times as large as their typical sizes, or the
+//! objective hardly varies any more beside what it did at the start: any point seems to be stationary. Such an end is
+//! the start of another solve, with scales from there. And where variables outgrow their typical sizes on the way, a solve
+//! begins again with larger ones.
 
-use crate::contract::{Block, Nlp};
+use crate::contract::{Block, Evaluation, Nlp};
 use crate::options::Options;
 use crate::outcome::Outcome;
-use crate::residuals::violation;
+use crate::residuals::{self, Point, Residual, slot_terms, violation};
+use crate::scaling::{Scales, Slopes, variation};
+use crate::sizes::{Resized, multiples};
+use crate::sparse::Assembly;
+use crate::status::Status;
 use std::time::Instant;
 
-/// By how much a violation may exceed the tolerance where it is measured by the slopes at the solution. A law: that of
-/// the acceptable end (1e-6) to the default tolerance.
+/// By how much a residual may exceed the tolerance where it is measured by the slopes and sizes at the solution. A law:
+/// that of the acceptable end (1e-6) to the default tolerance.
 const LOOSER: f64 = 100.0;
 /// How often a solve goes on with scales from where it has ended. A law: each time the slopes of the end are those of the
 /// next start, and with a row whose slope vanishes at its solution there would be no end.
 const ROUNDS: usize = 3;
+/// How often a solve begins again with larger sizes. A law: the next sizes are at least `OUTGROWN * MARGIN` times as
+/// large, so that these are eighteen orders of magnitude.
+const RESTARTS: usize = 6;
+/// Where a variable is less than this part of its typical size at the start, the start says nothing about the size, which
+/// is made up from the equations there: a law, for a guess has its own size.
+pub(crate) const UNSEEN: f64 = 0.5;
+/// Such a variable has outgrown its size where it becomes so many times as large. A fit to the gallery: 100 and 1000 solve
+/// as many problems, and with 1000 steps crawl for longer.
+pub(crate) const OUTGROWN: f64 = 100.0;
+/// By how much the new size of what has outgrown its typical size exceeds what it is.
+const MARGIN: f64 = 10.0;
+/// Variables within so many typical sizes, and an objective that varies by at least this part of what it did at the
+/// start, are measured well enough.
+const NEAR_SIZE: f64 = 10.0;
+const NEAR_VARIATION: f64 = 1e-2;
 
-/// Solves, and goes on from where that has ended as long as rows do not hold there. `solve` gets a start, where it is not
-/// the first one, and says with its outcome whether the rows hold.
-pub(crate) fn until_rows_hold(
+/// What the end of a solve says of the scales that it had.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) enum Measure {
+    /// They hold.
+    #[default]
+    Holds,
+    /// Rows do not hold by their slopes at the end.
+    Rows,
+    /// By these sizes of its variables and the slopes there, the end is no solution.
+    Sizes(Vec<f64>),
+    /// Variables have outgrown their sizes on the way; these are larger.
+    Outgrown(Vec<f64>),
+}
+
+/// One of several solves in a row.
+pub(crate) struct Round<'a> {
+    /// Where it starts, if it is not the first point.
+    pub(crate) start: Option<&'a [f64]>,
+    /// Whether it may end where variables have outgrown their sizes.
+    pub(crate) may_outgrow: bool,
+}
+
+/// Solves, and goes on as long as the scales do not hold.
+pub(crate) fn until_measured<N: Nlp>(
+    nlp: &N,
     options: &Options,
-    mut solve: impl FnMut(Option<&[f64]>, &Options) -> (Outcome, bool),
+    mut solve: impl FnMut(&Resized<'_, N>, Round<'_>, &Options) -> (Outcome, Measure),
 ) -> Outcome {
-    let (mut outcome, mut rows_hold) = solve(None, options);
     let began = Instant::now();
-    for _ in 0..ROUNDS {
-        if rows_hold {
-            break;
+    let mut resized = Resized::new(nlp);
+    let mut start: Option<Vec<f64>> = None;
+    let (mut iterations, mut rounds, mut restarts) = (0, 0, 0);
+    loop {
+        let left = options.max_iterations.saturating_sub(iterations);
+        let round = Round { start: start.as_deref(), may_outgrow: restarts < RESTARTS };
+        let options = Options { max_iterations: left, ..options.after(began.elapsed()) };
+        let (mut outcome, measure) = solve(&resized, round, &options);
+        iterations += outcome.iterations;
+        (outcome.iterations, outcome.seconds) = (iterations, began.elapsed().as_secs_f64());
+        // Sizes that were outgrown may have become too large.
+        let measure = match measure {
+            Measure::Holds if resized.is_resized() && outcome.status.has_solution() => {
+                sizes_at_end(nlp, &outcome, &options).map_or(Measure::Holds, Measure::Sizes)
+            }
+            measure => measure,
+        };
+        match measure {
+            Measure::Holds => return outcome,
+            Measure::Outgrown(sizes) => {
+                restarts += 1;
+                resized.resize(sizes);
+                continue;
+            }
+            Measure::Rows if rounds == ROUNDS => return outcome,
+            Measure::Sizes(_) if rounds == ROUNDS => return Outcome { status: Status::StepTooSmall, ..outcome },
+            Measure::Rows => {}
+            Measure::Sizes(sizes) => resized.resize(sizes),
         }
-        let left = options.max_iterations.saturating_sub(outcome.iterations);
-        let (next, next_holds) =
-            solve(Some(&outcome.x), &Options { max_iterations: left, ..options.after(began.elapsed()) });
-        let (iterations, seconds) = (outcome.iterations + next.iterations, outcome.seconds + next.seconds);
-        (outcome, rows_hold) = (Outcome { iterations, seconds, ..next }, next_holds);
+        rounds += 1;
+        start = Some(outcome.x);
     }
-    outcome
+}
+
+/// Larger sizes of what has outgrown its own at a point: of the scaled variables beyond their limits, and of those that
+/// are alike.
+pub(crate) fn outgrown<N: Nlp>(nlp: &N, scaled: &[f64], limits: &[f64]) -> Vec<f64> {
+    let multiples = multiples(nlp.limits(), scaled);
+    let grown =
+        multiples.iter().zip(limits).map(|(&multiple, limit)| if multiple > *limit { MARGIN * multiple } else { 1.0 });
+    Scales::sizes(nlp.limits()).iter().zip(grown).map(|(size, multiple)| size * multiple).collect()
+}
+
+/// Whether the scales of a solve are near those at its end, where its last evaluation is `at`: no variable is many times as
+/// large as its size, and the objective, with its factor, varies as much as it should.
+pub(crate) fn is_near_scales<N: Nlp>(nlp: &N, (objective, at): (f64, &Evaluation), end: &Outcome) -> bool {
+    let (sizes, grown) = sizes_at(nlp, &end.x);
+    grown <= NEAR_SIZE && objective * variation(nlp.blocks(), at, &sizes) >= NEAR_VARIATION
+}
+
+/// The sizes by which a solution is none: those that variables have there, where they are larger than their typical ones.
+/// None where it is a solution by them, too.
+pub(crate) fn sizes_at_end<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<Vec<f64>> {
+    let (sizes, _) = sizes_at(nlp, &end.x);
+    let found = residual_by(nlp, &sizes, end, options)?;
+    let tolerance = |of: f64| LOOSER * of;
+    let holds = found.is_acceptable(tolerance(options.constraint_tolerance), tolerance(options.tolerance));
+    (!holds).then_some(sizes)
+}
+
+/// The sizes of the variables at a point, where they are larger than their typical ones; and by how much at most.
+fn sizes_at<N: Nlp>(nlp: &N, x: &[f64]) -> (Vec<f64>, f64) {
+    let mut sizes = Scales::sizes(nlp.limits());
+    let scaled: Vec<f64> = x.iter().zip(&sizes).map(|(x, size)| x / size).collect();
+    let grown = multiples(nlp.limits(), &scaled);
+    sizes.iter_mut().zip(&grown).for_each(|(size, multiple)| *size *= multiple.max(1.0));
+    (sizes, grown.into_iter().fold(0.0, f64::max))
+}
+
+/// The residual at the end of an outcome, by given sizes of the variables and the slopes there; none where the program has
+/// no derivatives there.
+fn residual_by<N: Nlp>(nlp: &N, sizes: &[f64], end: &Outcome, options: &Options) -> Option<Residual> {
+    let (mut work, mut at) = nlp.workspace();
+    nlp.derivatives(&end.x, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
+    let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
+    assembly.first(nlp.blocks(), &at);
+    let mut resized = Resized::new(nlp);
+    resized.resize(sizes.to_vec());
+    let slopes = Slopes::of(nlp, &at, &assembly.jacobian, sizes).at_solution(nlp, &at, sizes);
+    let scales = Scales::from_slopes(resized.limits(), options.scaling, &slopes);
+    let (blocks, y) = (nlp.blocks(), |i: usize| end.row_multipliers[i]);
+    let mut lagrangian = vec![0.0; sizes.len()];
+    residuals::lagrangian(blocks, &at, &end.row_multipliers, &mut lagrangian);
+    let mut terms = vec![0.0; sizes.len()];
+    residuals::terms_by_variable((blocks, &at), y, &scales, &mut terms);
+    at.blocks.iter_mut().flat_map(|block| &mut block.hessian).for_each(|entry| *entry *= scales.objective);
+    let largest_term = residuals::largest_term((blocks, &at), (|j| end.x[j], y), &scales, &mut slot_terms(blocks));
+    let point = Point {
+        x: &end.x,
+        rows: &at.rows,
+        lagrangian: &lagrangian,
+        row_multipliers: &end.row_multipliers,
+        bound_multipliers: &end.bound_multipliers,
+        largest_term,
+        terms: &terms,
+    };
+    Some(residuals::residuals(resized.limits(), &scales, &point).scaled)
 }
 
 /// The largest violation of a row times its factor that no slope can make too large: by slopes that are rounding beside
@@ -57,21 +186,21 @@ pub(crate) fn rows_hold<N: Nlp>(nlp: &N, rows: &[f64], slopes: &mut [f64], optio
     })
 }
 
-/// [`rows_hold`] at the end of an outcome, from an evaluation of its own; true where there is no solution.
+/// What the end of an outcome says of the scales that it had, from an evaluation of its own.
 #[cfg(feature = "sqp")]
-pub(crate) fn rows_hold_at_end<N: Nlp>(nlp: &N, outcome: &Outcome, options: &Options) -> bool {
+pub(crate) fn measure_at_end<N: Nlp>(nlp: &N, outcome: &Outcome, options: &Options) -> Measure {
     let (mut work, mut at) = nlp.workspace();
     let weights = vec![0.0; nlp.rows()];
     if !outcome.status.has_solution() || nlp.derivatives(&outcome.x, 1.0, &weights, &mut work, &mut at).is_err() {
-        return true;
+        return Measure::Holds;
     }
-    let mut assembly = crate::sparse::Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
+    let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
     assembly.first(nlp.blocks(), &at);
-    let mut slopes = vec![0.0_f64; nlp.rows()];
-    for (j, size) in crate::scaling::Scales::sizes(nlp.limits()).iter().enumerate() {
-        assembly.jacobian.column(j).for_each(|(i, slope)| slopes[i] = slopes[i].max((slope * size).abs()));
+    let mut slopes = Slopes::of(nlp, &at, &assembly.jacobian, &Scales::sizes(nlp.limits())).rows;
+    if !rows_hold(nlp, &at.rows, &mut slopes, options) {
+        return Measure::Rows;
     }
-    rows_hold(nlp, &at.rows, &mut slopes, options)
+    sizes_at_end(nlp, outcome, options).map_or(Measure::Holds, Measure::Sizes)
 }
 
 /// Raises the slope of each row to the steepest one of its relation, which is the same function at other points.

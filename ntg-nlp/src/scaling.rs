@@ -109,7 +109,7 @@ impl Scales {
 
 impl Slopes {
     /// The slopes of an evaluation whose Jacobian is assembled. `sizes` are those of the variables.
-    fn of<N: Nlp>(nlp: &N, at: &Evaluation, jacobian: &Csc, sizes: &[f64]) -> Self {
+    pub(crate) fn of<N: Nlp>(nlp: &N, at: &Evaluation, jacobian: &Csc, sizes: &[f64]) -> Self {
         let mut rows = vec![0.0_f64; nlp.rows()];
         for (j, size) in sizes.iter().enumerate() {
             for (i, slope) in jacobian.column(j) {

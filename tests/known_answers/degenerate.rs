@@ -178,3 +178,38 @@ fn a_low_thrust_spiral_by_the_augmented_lagrangian() {
     let report = Shipped::spec("gallery/low_thrust_spiral").solve();
     close(report.objective, 45.721_763_9, 1e-7);
 }
+
+/// Without a guess the input has the size of its bound, 1, and the objective its variation there. Where consumption is 1e4
+/// times as large, any point is stationary by these. Optimum: IPOPT on this mesh, from five starts.
+#[test]
+fn an_input_of_ten_thousand_times_its_bound_is_measured_by_its_own_size() {
+    let spec = |unit: f64| {
+        Shipped::text(&format!(
+            "problem Ramsey {{
+                duration T = 60;
+                state k in {low} ..;
+                input c in {low} ..;
+                collocation gauss(points = 3, intervals = 30);
+                minimize integral(exp(-0.03 * t) / c) * 1e4;
+                dynamics {{ der(k) == 1500 * {unit}^0.7 * k^0.3 - 0.06 * k - c; }}
+                initial {{ k == 20000 * {unit}; }}
+                final {{ k >= 20000 * {unit}; }}
+            }}",
+            low = unit,
+        ))
+    };
+    for unit in [1.0, 1e-3, 1e3] {
+        let report = spec(unit).solve();
+        close(report.objective, 7.601260400 / unit, 1e-8);
+    }
+}
+
+/// The guess says nothing about the sizes of two of the states, and the equations at the guess say 1e-10, for an exponential
+/// has not yet begun to act there: they grow to 3.
+#[test]
+fn states_that_outgrow_the_sizes_at_the_guess_are_found() {
+    let report = Shipped::spec("gallery/park_ramirez").solve();
+    // One of several local minima; the best one known is 32.13168.
+    assert!(report.objective > 30.7 && report.objective < 32.2, "{report}");
+    assert!(report.iterations <= 500, "{} iterations", report.iterations);
+}

@@ -1,14 +1,16 @@
 //! The end of an iteration, and of a solve (lines 5, 10 and 11 of Algorithm 11).
 
-use super::state::State;
+use super::state::{Analysis, State};
 use crate::contract::Nlp;
+use crate::kkt::System;
 use crate::outcome::Outcome;
-use crate::remeasure;
+use crate::remeasure::{self, Measure, OUTGROWN, UNSEEN, is_near_scales, outgrown, sizes_at_end};
 use crate::residuals::{self, ACCEPTABLE, ROUNDING, Residuals, slot_terms};
 use crate::scaling::Scales;
+use crate::sizes::multiples;
 use crate::status::{Bounded, Status, Violation};
 
-impl<N: Nlp> State<'_, N> {
+impl<'a, N: Nlp> State<'a, N> {
     /// Counts the iteration and computes derivatives at the new point.
     ///
     /// # Errors
@@ -76,6 +78,48 @@ impl<N: Nlp> State<'_, N> {
         }
     }
 
+    /// From here on the solve ends where variables outgrow typical sizes of which the start shows nothing.
+    pub(super) fn watch_sizes(&mut self) {
+        let limit = |multiple: f64| if multiple < UNSEEN { OUTGROWN } else { f64::INFINITY };
+        self.size_limits = multiples(self.nlp.limits(), self.variables()).into_iter().map(limit).collect();
+    }
+
+    /// Larger sizes of the variables that have outgrown theirs, if any have.
+    pub(super) fn outgrown_sizes(&self) -> Option<Vec<f64>> {
+        let is_outgrown = |(x, limit): (&f64, &f64)| x.abs() > *limit;
+        let has_outgrown = !self.best.is_held && self.variables().iter().zip(&self.size_limits).any(is_outgrown);
+        has_outgrown.then(|| outgrown(self.nlp, self.variables(), &self.size_limits))
+    }
+
+    /// The scaled variables, without the padding entry.
+    pub(super) fn variables(&self) -> &[f64] {
+        &self.x[..self.x.len() - 1]
+    }
+
+    /// Ends the solve at the present point, where variables have outgrown their sizes; `sizes` are larger.
+    pub(super) fn end_outgrown(self, sizes: Vec<f64>) -> Outcome {
+        let (outcome, analysis) = self.leave(Status::IterationLimit);
+        analysis.measure = Measure::Outgrown(sizes);
+        outcome
+    }
+
+    /// Ends the solve at the present point.
+    pub(super) fn outcome(mut self, status: Status) -> Outcome {
+        let rows_hold = !status.has_solution() || self.rows_hold();
+        let (nlp, options) = (self.nlp, self.options);
+        let (outcome, analysis) = self.leave(status);
+        let is_near =
+            |system: &System<N::Workspace>| is_near_scales(nlp, (system.scales.objective, system.latest()), &outcome);
+        analysis.measure = if !rows_hold {
+            Measure::Rows
+        } else if !outcome.status.has_solution() || analysis.system.as_ref().is_none_or(is_near) {
+            Measure::Holds
+        } else {
+            sizes_at_end(nlp, &outcome, options).map_or(Measure::Holds, Measure::Sizes)
+        };
+        outcome
+    }
+
     /// Whether the rows hold by their slopes at the present point.
     fn rows_hold(&mut self) -> bool {
         let (limits, factors) = (self.nlp.limits(), &self.system.scales.rows);
@@ -92,8 +136,8 @@ impl<N: Nlp> State<'_, N> {
         remeasure::rows_hold(self.nlp, rows, &mut slopes[..rows.len()], self.options)
     }
 
-    /// Ends the solve at the present point.
-    pub(super) fn outcome(mut self, status: Status) -> Outcome {
+    /// The present point as an outcome, and the analysis, which has the system again.
+    fn leave(mut self, status: Status) -> (Outcome, &'a mut Analysis<N::Workspace>) {
         self.history.push(self.record);
         let n = self.nlp.variables();
         let objective = self.system.scales.objective;
@@ -105,10 +149,9 @@ impl<N: Nlp> State<'_, N> {
         let x = self.system.unscaled(self.nlp, &self.x).to_vec();
         let residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
         let row_factors = self.system.scales.rows.clone();
-        self.analysis.rows_hold = !status.has_solution() || self.rows_hold();
         self.analysis.system = Some(self.system);
         self.analysis.is_unchanged = true;
-        Outcome {
+        let outcome = Outcome {
             status,
             x,
             row_multipliers,
@@ -120,7 +163,8 @@ impl<N: Nlp> State<'_, N> {
             qps: 0,
             history: self.history,
             seconds: self.begin.elapsed().as_secs_f64(),
-        }
+        };
+        (outcome, self.analysis)
     }
 
     /// The multipliers of the rows in the program's own units.

@@ -95,6 +95,7 @@ impl<'a, N: Nlp> State<'a, N> {
             history: Vec::with_capacity(options.max_iterations.min(HISTORY) + 1),
             iterations: 0,
             begin,
+            size_limits: vec![],
             x,
             slacks,
             system,

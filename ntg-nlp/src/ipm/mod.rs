@@ -42,7 +42,7 @@ use crate::check::refusal;
 use crate::contract::Nlp;
 use crate::options::Options;
 use crate::outcome::{Outcome, Start};
-use crate::remeasure::until_rows_hold;
+use crate::remeasure::{Measure, until_measured};
 use crate::status::Status;
 use line_search::SearchOutcome;
 pub use state::Analysis;
@@ -74,28 +74,22 @@ pub fn solve_again<N: Nlp>(
     from: Start<'_>,
     options: &Options,
 ) -> Outcome {
-    until_rows_hold(options, |next, options| {
-        let (start, from) = next.map_or((start, from), |start| (start, Start::Cold));
-        let outcome = solve_with_first_scales(analysis, nlp, start, from, options);
-        (outcome, analysis.rows_hold)
+    until_measured(nlp, options, |nlp, round, options| {
+        let (start, from) = round.start.map_or((start, from), |start| (start, Start::Cold));
+        let outcome = match initial(nlp, start, from, options, analysis) {
+            Ok(mut state) => {
+                if round.may_outgrow {
+                    state.watch_sizes();
+                }
+                iterate(state)
+            }
+            Err(status) => {
+                analysis.measure = Measure::Holds;
+                Outcome::failed(nlp, start, status)
+            }
+        };
+        (outcome, std::mem::take(&mut analysis.measure))
     })
-}
-
-/// Solves with the scales that the start gives.
-fn solve_with_first_scales<N: Nlp>(
-    analysis: &mut Analysis<N::Workspace>,
-    nlp: &N,
-    start: &[f64],
-    from: Start<'_>,
-    options: &Options,
-) -> Outcome {
-    match initial(nlp, start, from, options, analysis) {
-        Ok(state) => iterate(state),
-        Err(status) => {
-            analysis.rows_hold = true;
-            Outcome::failed(nlp, start, status)
-        }
-    }
 }
 
 /// A penalty parameter that is the same from beginning to end.
@@ -141,6 +135,9 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
     let mut tiny_steps = 0;
     loop {
         state.compute_residuals(); // 3
+        if let Some(sizes) = state.outgrown_sizes() {
+            return state.end_outgrown(sizes);
+        }
         state.leave_restoration();
         state.keep_nearest();
         let stop = state.stop();

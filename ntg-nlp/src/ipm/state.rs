@@ -14,6 +14,7 @@ use crate::kkt::System;
 use crate::options::Options;
 use crate::outcome::IterationRecord;
 use crate::reductions::{largest, sum};
+use crate::remeasure::Measure;
 use crate::residuals::{ACCEPTABLE, Residual, Residuals, SlotTerms, divisor};
 use crate::status::Status;
 use crate::stopping::Stage;
@@ -79,6 +80,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) history: Vec<IterationRecord>,
     pub(super) iterations: usize,
     pub(super) begin: Instant,
+    /// How large each scaled variable may become: beyond, it has outgrown its typical size. Empty: as large as it will.
+    pub(super) size_limits: Vec<f64>,
 }
 
 /// What one solve leaves to the next: the scaled system with its symbolic analysis. `W` is the program's workspace.
@@ -89,8 +92,8 @@ pub struct Analysis<W> {
     pub(super) system: Option<System<W>>,
     /// Whether the next program has the very numbers of the last one, but for the sizes of its variables.
     pub(super) is_unchanged: bool,
-    /// Whether the rows of the last solution hold by their slopes at the solution; true where there was none.
-    pub(super) rows_hold: bool,
+    /// What the end of the last solve says of its scales.
+    pub(super) measure: Measure,
 }
 
 impl<W> Analysis<W> {
@@ -103,7 +106,7 @@ impl<W> Analysis<W> {
 
 impl<W> Default for Analysis<W> {
     fn default() -> Self {
-        Self { system: None, is_unchanged: false, rows_hold: true }
+        Self { system: None, is_unchanged: false, measure: Measure::Holds }
     }
 }
 

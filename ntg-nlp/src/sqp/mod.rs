@@ -27,7 +27,7 @@ use crate::check::refusal;
 use crate::contract::Nlp;
 use crate::options::Options;
 use crate::outcome::{Multipliers, Outcome};
-use crate::remeasure::{rows_hold_at_end, until_rows_hold};
+use crate::remeasure::{measure_at_end, until_measured};
 use crate::status::Status;
 use run::Run;
 use std::time::Instant;
@@ -42,11 +42,11 @@ pub fn solve<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
 
 /// As [`solve`], with multipliers to start from, as after a small change of the program.
 pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
-    until_rows_hold(options, |next, options| {
-        let (start, from) = next.map_or((start, from), |start| (start, None));
+    until_measured(nlp, options, |nlp, round, options| {
+        let (start, from) = round.start.map_or((start, from), |start| (start, None));
         let outcome = solve_with_first_scales(nlp, start, from, options);
-        let rows_hold = rows_hold_at_end(nlp, &outcome, options);
-        (outcome, rows_hold)
+        let measure = measure_at_end(nlp, &outcome, options);
+        (outcome, measure)
     })
 }
 

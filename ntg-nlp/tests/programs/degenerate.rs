@@ -23,6 +23,7 @@ of_all_methods! {
     complementarity_without_multipliers
     a_start_far_outside_its_bounds
     a_start_that_is_far_too_steep
+    objectives_that_are_far_too_steep_at_the_start
     a_logarithm_and_a_root_and_a_reciprocal_beyond_their_domains
     rows_beyond_their_domains
     objectives_without_a_lower_bound
@@ -220,6 +221,19 @@ fn a_start_that_is_far_too_steep(method: Method) {
         assert!(violation(&p, &found.x) <= 1e-6, "{}: {:?}", found.status, found.x);
     }
     solved(method, &p, &[-0.04, 2.0], &[0.1, 1.0], 1e-6);
+}
+
+/// The objective's slope at the start is 1e10 times the one a hundredth before the solution: scaled by it, and by sizes of 1,
+/// any point far away would be stationary.
+fn objectives_that_are_far_too_steep_at_the_start(method: Method) {
+    let reciprocals = dense(&[POSITIVE; 2], &[], |x| vec![1.0 / x[0] + 2.0 / x[1] + (x[0] + x[1]) * 1e-10]);
+    solved(method, &reciprocals, &[1.0, 1.0], &[1e5, 2.0_f64.sqrt() * 1e5], 1e-5);
+    // Along the row rounding hides the curvature long before; no point a hundredth of the way is called a solution.
+    let along_a_row =
+        dense(&[POSITIVE; 2], &[(0.0, 0.0)], |x| vec![1.0 / x[0] + x[1] * 1e-10, x[0] * (1.0 / 3.0) - x[1]]);
+    let found = end(method, &along_a_row, &[1.0, 1.0]);
+    let x = (3e10_f64).sqrt();
+    assert!(!found.status.has_solution() || (found.x[0] - x).abs() <= 1e-5 * x, "{}: {:?}", found.status, found.x);
 }
 
 fn a_logarithm_and_a_root_and_a_reciprocal_beyond_their_domains(method: Method) {

@@ -1,7 +1,7 @@
 //! One budget of time and iterations for everything that a call does: coarse starts, steps of a continuation and all
 //! attempts (docs/maths.md, section 11.9).
 
-use crate::settings::Settings;
+use crate::settings::{Method, Settings};
 use ntg_nlp::{Outcome, Status};
 use std::time::Instant;
 
@@ -45,19 +45,29 @@ impl<'a> Budget<'a> {
         self.spent
     }
 
-    /// Settings of the next attempt; none where nothing is left.
+    /// Settings of the first attempt; none where nothing is left. A method that the user has chosen has all that is left.
     pub(super) fn attempt(&self) -> Option<Settings> {
-        self.at_most(ATTEMPT)
+        if self.settings.method == Method::Auto { self.at_most(self.share(ATTEMPT)) } else { self.rest() }
     }
 
     /// Settings of an attempt after a failed one; none where nothing is left.
     pub(super) fn further(&self) -> Option<Settings> {
-        self.at_most(FURTHER)
+        self.at_most(self.share(FURTHER))
+    }
+
+    /// Settings of an attempt that takes all that is left; none where nothing is.
+    pub(super) fn rest(&self) -> Option<Settings> {
+        self.at_most(usize::MAX)
     }
 
     /// Settings of a start on coarser knots, which is solved roughly.
     pub(super) fn coarse(&self) -> Option<Settings> {
         self.at_most(COARSE).map(|settings| settings.rough())
+    }
+
+    /// As many iterations, of the default limit; in proportion where the user allows more.
+    fn share(&self, iterations: usize) -> usize {
+        iterations.max(iterations.saturating_mul(self.settings.max_iterations) / Settings::default().max_iterations)
     }
 
     fn at_most(&self, iterations: usize) -> Option<Settings> {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! interior point -> sizes anew -> from beside the guess -> restoring by squares -> augmented Lagrangian -> from fewer knots
-//!                -> sequential quadratic programming
+//!                -> sequential quadratic programming -> on from the best point
 //! ```
 
 use super::beside::beside_infeasible;
@@ -15,13 +15,14 @@ use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Outcome, Start, Status, method};
 
 /// All of them, in their order.
-const ATTEMPTS: [Attempt; 6] = [
+const ATTEMPTS: [Attempt; 7] = [
     Attempt::SizesAnew,
     Attempt::Beside,
     Attempt::OtherWays,
     Attempt::AugmentedLagrangian,
     Attempt::FewerKnots,
     Attempt::Sqp,
+    Attempt::Onwards,
 ];
 
 /// How an attempt that follows a failed one solves a program.
@@ -42,6 +43,8 @@ enum Attempt {
     FewerKnots,
     /// By sequential quadratic programming from the first point.
     Sqp,
+    /// From the best point of all attempts before, with all that is left.
+    Onwards,
 }
 
 /// What the first attempt did not try.
@@ -144,6 +147,12 @@ impl Session {
                 let Some(settings) = budget.further() else { return Ok(None) };
                 let x = start(nlp, Some(&Guess::from(&solution)))?;
                 self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
+            }
+            Attempt::Onwards => {
+                let Some(settings) = budget.rest().filter(|_| failed.x.iter().all(|x| x.is_finite())) else {
+                    return Ok(None);
+                };
+                self.solve_once(nlp, FirstPoint { x: &failed.x, from: Start::Near }, &settings)
             }
             Attempt::Sqp => {
                 let max_subproblems = QUADRATIC;

@@ -125,7 +125,9 @@ impl<'p> Transcription<'p> {
         let elements = elements::elements(&frame)?;
         let linear = contradictions::linear_system(&frame, &elements, &bounds)?;
         let limits = limits(&elements, &bounds);
-        Ok(Self { problem, model: Arc::new(model), elements, limits, linear })
+        let mut transcription = Self { problem, model: Arc::new(model), elements, limits, linear };
+        transcription.limits.alike = transcription.alike();
+        Ok(transcription)
     }
 
     /// Changes to another structure of the same problem, and makes anew only what differs.
@@ -154,7 +156,8 @@ impl<'p> Transcription<'p> {
         let bounds = rows::variable_bounds(&frame)?;
         self.elements.take_data(&frame)?;
         self.linear = contradictions::linear_system(&frame, &self.elements, &bounds)?;
-        self.limits = limits(&self.elements, &bounds);
+        let alike = std::mem::take(&mut self.limits.alike);
+        self.limits = Limits { alike, ..limits(&self.elements, &bounds) };
         self.model = Arc::new(model);
         Ok(Change::Data)
     }
@@ -278,6 +281,7 @@ fn limits(elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
         lower: bounds.iter().map(|b| b.0).collect(),
         upper: bounds.iter().map(|b| b.1).collect(),
         scale: vec![1.0; bounds.len()],
+        alike: vec![],
         row_lower: elements.lower.clone(),
         row_upper: elements.upper.clone(),
         row_scale: vec![1.0; elements.rows.len()],

@@ -80,6 +80,18 @@ impl Transcription<'_> {
         self.balance_sizes(&outputs, guess, scale);
     }
 
+    /// The number of the size of each variable: the coefficients of one output in one agent share theirs.
+    pub(super) fn alike(&self) -> Vec<u32> {
+        let mut alike: Vec<u32> = (0..).take(self.limits.lower.len()).collect();
+        for agent in &self.model.layout.agents {
+            for output in self.outputs_of(agent.phases.clone()) {
+                let Some(first) = output.coefficients.first() else { continue };
+                output.coefficients.iter().for_each(|v| alike[*v as usize] = *first);
+            }
+        }
+        alike
+    }
+
     /// Every output of some phases once, with the coefficients of all of them.
     fn outputs_of(&self, phases: Range<usize>) -> Vec<WholeOutput<'_>> {
         let mut found: Vec<WholeOutput> = vec![];
