@@ -142,7 +142,7 @@ fn no_floor_of_the_solver_knows_a_floor_above_it() {
     let floors: &[&[&str]] = &[
         &["contract", "options", "reductions"],
         &["closures", "sparse", "status"],
-        &["check", "scaling"],
+        &["check", "scaling", "sizes"],
         &["kkt", "residuals"],
         &["outcome"],
         &["remeasure", "sensitivity", "stopping"],

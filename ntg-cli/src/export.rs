@@ -158,8 +158,15 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     let judged = judged.map_err(|error| format!("the point has no value: {}", nlp.in_words(error, &found.x)))?;
     let objective = sign * judged.objective / read.program.structure.objective_unit.factor;
     let worst = judged.optimality.iter().flatten().map(|residual| residual.relative).fold(judged.violation(), f64::max);
-    let said =
-        Said { nlp: &nlp, read: &read, found: &found, judged: &judged, objective, is_solution: worst <= tolerance };
+    let said = Said {
+        nlp: &nlp,
+        read: &read,
+        found: &found,
+        judged: &judged,
+        objective,
+        is_solution: worst <= tolerance,
+        tolerance,
+    };
     match arguments.format {
         Format::Text => files::print(&said.text()),
         Format::Json => files::print(&format!("{:#}", said.json())),
@@ -180,7 +187,10 @@ fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Solution, 
     if path.extension().is_none_or(|extension| extension != "sol") {
         let guess = guess::read(path, &read.problem)?;
         let x = start(nlp, Some(&guess)).map_err(|error| read.said(error))?;
-        return Ok(Solution { message: String::new(), x, multipliers: None });
+        let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
+        let saved = guess::row_multipliers(path, &read.problem).filter(|saved| saved.len() == nlp.rows());
+        let multipliers = saved.map(|saved| saved.iter().map(|y| sign * y).collect());
+        return Ok(Solution { message: String::new(), x, multipliers });
     }
     let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
     let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
@@ -195,9 +205,19 @@ struct Said<'a> {
     judged: &'a Judgement,
     objective: f64,
     is_solution: bool,
+    /// The largest relative violation of a solution.
+    tolerance: f64,
 }
 
 impl Said<'_> {
+    fn verdict(&self) -> &'static str {
+        match (self.is_solution, &self.judged.optimality) {
+            (true, Some(_)) => "a solution",
+            (true, None) => "it meets all constraints; whether it is optimal is not known without multipliers",
+            (false, _) => "no solution",
+        }
+    }
+
     fn text(&self) -> String {
         let unit = &self.read.program.structure.objective_unit.symbol;
         let mut lines = vec![];
@@ -211,16 +231,18 @@ impl Said<'_> {
             }
             None => lines.push("optimality:       not known, the point has no multipliers".to_owned()),
         }
-        for Missed { of, value, violation, relative } in self.judged.missed.iter().take(LISTED) {
+        let is_told = |missed: &&Missed| missed.relative > self.tolerance || missed.relative.is_nan();
+        let told = self.judged.missed.iter().filter(is_told);
+        for Missed { of, value, violation, relative } in told.clone().take(LISTED) {
             let name = name(self.nlp, *of);
             lines.push(format!(
                 "  {name} is {value:.6e} and misses its bound by {violation:.3e} ({relative:.1e} relative)"
             ));
         }
-        if let more @ 1.. = self.judged.missed.len().saturating_sub(LISTED) {
+        if let more @ 1.. = told.count().saturating_sub(LISTED) {
             lines.push(format!("  and {more} more"));
         }
-        lines.push(if self.is_solution { "a solution" } else { "no solution" }.to_owned());
+        lines.push(self.verdict().to_owned());
         lines.join("\n")
     }
 
@@ -235,7 +257,8 @@ impl Said<'_> {
                 .map(|all| json!({ "absolute": all[which].absolute, "relative": all[which].relative }))
         };
         json!({
-            "solution": self.is_solution,
+            // Not known without multipliers.
+            "solution": (!self.is_solution || self.judged.optimality.is_some()).then_some(self.is_solution),
             "solver": self.found.message,
             "objective": self.objective,
             "objective_unit": self.read.program.structure.objective_unit.symbol,

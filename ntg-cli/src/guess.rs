@@ -11,6 +11,13 @@ use serde_json::Value;
 use crate::files;
 use crate::runs::SAVED;
 
+/// The multipliers of the rows that a saved solution of the same splines has; none in files from before they were saved.
+pub(crate) fn row_multipliers(path: &Path, problem: &Interpreted) -> Option<Vec<f64>> {
+    let saved: Value = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
+    let is_same = saved["layout"] == layout(&problem.structure());
+    numbers(&saved["row_multipliers"]).filter(|multipliers| is_same && !multipliers.is_empty())
+}
+
 /// Reads a saved solution as a guess for a problem: its unknowns where the splines are the same,
 /// its sampled outputs, durations and variables otherwise.
 pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> {

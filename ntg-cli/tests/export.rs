@@ -51,12 +51,42 @@ fn a_saved_solution_is_judged_and_a_changed_problem_is_not_solved_by_it() {
     };
     let (code, found) = check(&[]);
     assert_eq!((code, &found["solution"]), (Some(0), &Value::Bool(true)), "{found:#}");
+    let stationarity = found["stationarity"]["relative"].as_f64().expect("judged by its multipliers");
+    assert!(stationarity < 1e-6, "{stationarity}");
     let objective = found["objective"].as_f64().expect("a number");
     assert!((objective / 130.907_227_498 - 1.0).abs() < 1e-6, "{objective}");
     let (code, found) = check(&["--set", "signature_max=4"]);
     assert_eq!((code, &found["solution"]), (Some(1), &Value::Bool(false)), "{found:#}");
     let worst = found["missed"][0]["name"].as_str().expect("a name");
     assert!(worst.starts_with("`low_observable`"), "{worst}");
+}
+
+/// A feasible point that is none: a saved solution of another price, with its multipliers and without.
+#[test]
+fn a_point_that_meets_all_constraints_is_called_a_solution_only_by_its_multipliers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = |price: f64| {
+        format!(
+            "problem Force {{\n    duration T = 1;\n    output x: spline(order = 5, intervals = 4);\n    minimize integral(der(x, 2)^2) + {price} * at(T / 2, x)^2;\n    initial {{ x == 0;  der(x) == 0; }}\n    final {{ x == 1;  der(x) == 0; }}\n}}\n"
+        )
+    };
+    for (name, price) in [("dear", 100.0), ("cheap", 0.0)] {
+        std::fs::write(folder.path().join(format!("{name}.ntg")), spec(price)).expect("written");
+    }
+    let solved = ntg(&["solve", "cheap.ntg", "--save", "run.json"], folder.path());
+    assert_eq!(solved.status.code(), Some(0), "{}", text(&solved.stderr));
+    let check = |of: &str, point: &str| ntg(&["check-solution", of, point], folder.path());
+    let [same, other] = ["cheap.ntg", "dear.ntg"].map(|of| check(of, "run.json"));
+    assert!(text(&same.stdout).ends_with("\na solution\n"), "{}", text(&same.stdout));
+    assert_eq!((other.status.code(), text(&other.stdout).ends_with("\nno solution\n")), (Some(1), true));
+    // A file from before multipliers were saved.
+    let saved = std::fs::read_to_string(folder.path().join("run.json")).expect("saved");
+    let mut saved: Value = serde_json::from_str(&saved).expect("JSON");
+    saved.as_object_mut().expect("an object").remove("row_multipliers");
+    std::fs::write(folder.path().join("old.json"), saved.to_string()).expect("written");
+    let old = text(&check("dear.ntg", "old.json").stdout);
+    let words = "it meets all constraints; whether it is optimal is not known without multipliers\n";
+    assert!(old.contains("the point has no multipliers") && old.ends_with(words), "{old}");
 }
 
 #[test]

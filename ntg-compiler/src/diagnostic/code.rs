@@ -138,6 +138,7 @@ codes! {
     AlwaysHolds "N004" "a constraint that always holds";
     FreeStart "N005" "an end without a start";
     UnitTaken "N006" "a name in a list takes the next unit";
+    UnboundedInList "N007" "a name in a list without the bounds of the next one";
 }
 
 impl Code {

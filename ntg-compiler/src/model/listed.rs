@@ -1,8 +1,8 @@
 //! Units in lists of names: which unit a name takes that has none of its own.
 //!
 //! Takes a declaration whose names have got their units. A name without one took the next to its right, else the last
-//! of the list (`syntax::parse`). Finds: names that take another unit than they did before version 2, and names for
-//! which a reader may take the unit in the bounds of another name.
+//! of the list (`syntax::parse`). Finds: names that take another unit than they did before version 2, names for which a
+//! reader may take the unit in the bounds of another name, and names for which a reader may take these bounds.
 
 use ntg_structure::Unit;
 
@@ -55,15 +55,41 @@ impl Elaborator<'_> {
             self.report(finding.help(format!("write the unit that is meant: `{text} {bounds}`, or `{text} {unit}`")));
             in_doubt.push(i);
         }
+        if in_doubt.is_empty() {
+            self.note_unbounded(names);
+        }
         in_doubt
     }
+
+    /// Notes names right before one with bounds that have neither bounds nor a unit of their own: the bounds look as if they
+    /// were about all of them.
+    fn note_unbounded(&mut self, names: &[DeclaredName]) {
+        for bounded in (1..names.len()).filter(|i| names[*i].bounds.is_some()) {
+            let before = names[..bounded].iter().rev().take_while(|name| is_bare(name)).count();
+            let unbounded = &names[bounded - before..bounded];
+            let Some(first) = unbounded.first() else { continue };
+            let texts: Vec<String> = unbounded.iter().map(|name| format!("`{}`", name.name.text)).collect();
+            let (near, whole) = (&names[bounded], self.text(names[bounded].span));
+            let (text, verb) = (&near.name.text, if before == 1 { "has" } else { "have" });
+            let bounds = whole.find(" in ").map_or("", |at| &whole[at..]).to_owned();
+            let message = format!("{} {verb} no bounds: these are about `{text}` alone", texts.join(", "));
+            let note = Diagnostic::new(Code::UnboundedInList, first.name.span, message).label(near.span, "the bounds");
+            let both = unbounded.iter().map(|name| format!("{}{bounds}", self.text(name.span)));
+            let help = format!("if they are meant to have them: `{}, {whole}`", both.collect::<Vec<_>>().join(", "));
+            self.report(note.help(help));
+        }
+    }
+}
+
+/// Whether a name has neither bounds nor a unit of its own.
+fn is_bare(name: &DeclaredName) -> bool {
+    name.bounds.is_none() && name.unit.as_ref().is_none_or(|unit| !name.span.contains(unit.span))
 }
 
 /// The name with bounds and no unit of its own that stands nearer to a bare name than the unit which that one takes.
 fn rival(names: &[DeclaredName], i: usize) -> Option<usize> {
     let name = &names[i];
-    let is_bare = name.bounds.is_none() && name.unit.as_ref().is_none_or(|unit| !name.span.contains(unit.span));
-    if !is_bare {
+    if !is_bare(name) {
         return None;
     }
     let is_bounded = |at: &usize| names[*at].bounds.is_some() && names[*at].unit.is_none();

@@ -81,6 +81,10 @@ pub struct Run {
     /// All variables of the optimisation problem, SI.
     #[serde(with = "numbers::many")]
     pub unknowns: Vec<f64>,
+    /// How much the minimised objective changes by the active bound of each row of the optimisation problem, SI; empty in
+    /// files from before it was saved.
+    #[serde(with = "numbers::many", default)]
+    pub row_multipliers: Vec<f64>,
     /// Outputs by path.
     pub outputs: IndexMap<String, Series>,
     /// Named expressions by path.

@@ -80,6 +80,7 @@ impl Recording<'_> {
             estimate: report.estimate.as_ref().map(Into::into),
             layout: layout(structure),
             unknowns: solution.coefficients().to_vec(),
+            row_multipliers: solution.row_multipliers().to_vec(),
             outputs: self.outputs(),
             lets: self.lets(),
             times: solution.event_times().into_iter().collect(),

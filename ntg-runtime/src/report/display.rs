@@ -1,6 +1,6 @@
 //! A report as a person reads it.
 
-use super::{ConstraintReport, Estimate, Report, Warning};
+use super::{ConstraintReport, Estimate, Report, Warning, Worst};
 use crate::digits::brief;
 use crate::transcribe::rows::member_words;
 use ntg_structure::{Independent, Unit};
@@ -8,6 +8,8 @@ use std::fmt;
 
 /// Relative violations below this are not worth a line.
 const NEGLIGIBLE: f64 = 1e-6;
+/// Most lines of constraints that are missed.
+const LISTED: usize = 8;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -17,11 +19,8 @@ impl fmt::Display for Report {
             writeln!(f, "  try: {}", self.advice)?;
         }
         let unit = symbol(&self.objective_unit);
-        writeln!(
-            f,
-            "  objective   {:.9}{unit}  (finely integrated: {:.9}{unit})",
-            self.objective, self.objective_fine
-        )?;
+        let (objective, fine) = (digits(self.objective), digits(self.objective_fine));
+        writeln!(f, "  objective   {objective}{unit}  (finely integrated: {fine}{unit})")?;
         if self.terms.len() > 1 {
             for term in &self.terms {
                 writeln!(f, "    {:<24} {}{}", term.name, brief(term.value), symbol(&term.unit))?;
@@ -56,7 +55,24 @@ impl fmt::Display for Report {
         self.warnings().iter().filter(is_new).try_for_each(|warning| write!(f, "\n  warning: {warning}"))?;
         let told = self.violated_between();
         let is_told = |constraint: &ConstraintReport| told.iter().any(|other| std::ptr::eq(*other, constraint));
-        self.constraints.iter().try_for_each(|constraint| violated(f, constraint, (is_told(constraint), independent)))
+        let noticeable = 0.1 * self.between_tolerance;
+        let missed = self.constraints.iter().filter_map(|constraint| {
+            let between =
+                constraint.between.as_ref().filter(|worst| !is_told(constraint) && is_above(worst, noticeable));
+            let points = constraint.points.as_ref().filter(|worst| is_above(worst, NEGLIGIBLE));
+            let points = points.map(|worst| (worst, "at a point"));
+            let between = between.map(|worst| (worst, "between points"));
+            points.or(between).map(|(worst, where_)| (constraint, worst, where_))
+        });
+        let mut missed: Vec<_> = missed.collect();
+        missed.sort_by(|(_, a, _), (_, b, _)| b.relative.total_cmp(&a.relative));
+        missed.iter().take(LISTED).try_for_each(|(constraint, worst, where_)| {
+            write!(f, "\n  {}", missed_words(constraint, worst, where_, independent))
+        })?;
+        match missed.len().saturating_sub(LISTED) {
+            0 => Ok(()),
+            more => write!(f, "\n  and {more} more"),
+        }
     }
 }
 
@@ -80,26 +96,22 @@ fn estimated(f: &mut fmt::Formatter<'_>, estimate: &Estimate) -> fmt::Result {
     Ok(())
 }
 
-/// A line for a constraint that is violated noticeably; a warning has told of some what is between the points.
-fn violated(
-    f: &mut fmt::Formatter<'_>,
-    constraint: &ConstraintReport,
-    (is_told, independent): (bool, &Independent),
-) -> fmt::Result {
-    let between = constraint.between.as_ref().filter(|_| !is_told);
-    for (worst, where_) in [(constraint.points.as_ref(), "at a point"), (between, "between points")] {
-        let Some(worst) = worst.filter(|w| w.relative > NEGLIGIBLE || w.relative.is_nan()) else { continue };
-        let unit = symbol(&constraint.unit);
-        let member = member_words(&constraint.name, &worst.indices);
-        write!(f, "\n  {member} is missed by {}{unit} {where_}", brief(worst.violation))?;
-        if let Some(time) = worst.time {
-            write!(f, ", {}", independent.place(time, brief))?;
-        }
-        if !worst.phase.is_empty() {
-            write!(f, " in `{}`", worst.phase)?;
-        }
-    }
-    Ok(())
+/// Whether a relative violation is above something; one that is no number is above all.
+fn is_above(worst: &Worst, relative: f64) -> bool {
+    worst.relative > relative || worst.relative.is_nan()
+}
+
+/// By how much a constraint is missed, and where.
+fn missed_words(constraint: &ConstraintReport, worst: &Worst, where_: &str, independent: &Independent) -> String {
+    let member = member_words(&constraint.name, &worst.indices);
+    let time = worst.time.map_or(String::new(), |time| format!(", {}", independent.place(time, brief)));
+    let phase = if worst.phase.is_empty() { String::new() } else { format!(" in `{}`", worst.phase) };
+    format!("{member} is missed by {}{} {where_}{time}{phase}", brief(worst.violation), symbol(&constraint.unit))
+}
+
+/// Nine digits behind the point, of small numbers behind the first one.
+fn digits(number: f64) -> String {
+    if number != 0.0 && number.abs() < 1e-3 { format!("{number:.9e}") } else { format!("{:.9}", number + 0.0) }
 }
 
 fn symbol(unit: &Unit) -> String {

@@ -53,7 +53,29 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        singular.chain(shortest).chain(between).chain(unmet).collect()
+        singular.chain(shortest).chain(self.cost_is_off()).chain(between).chain(unmet).collect()
+    }
+
+    /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to
+    /// the larger of both. A refined solution tells of it there.
+    fn cost_is_off(&self) -> Option<Warning> {
+        /// An objective below this, in its unit, is what a solve to tolerances of 1e-8 leaves of zero.
+        const ZERO: f64 = 1e-9;
+        let (points, fine) = (self.objective, self.objective_fine);
+        let size = points.abs().max(fine.abs());
+        let apart = (fine - points).abs() / size;
+        let is_off = self.meets_points() && self.refined.is_none() && size > ZERO && apart > self.between_tolerance;
+        is_off.then(|| Warning {
+            message: format!(
+                "finely integrated, the objective is {} instead of {}, {} % of the larger: the points are too few for it",
+                brief(fine),
+                brief(points),
+                brief((1e3 * apart).round() / 10.0)
+            ),
+            place: self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone()),
+            constraint: String::new(),
+            time: None,
+        })
     }
 
     /// The constraints of a solution that are violated between the points of the transcription by more than
