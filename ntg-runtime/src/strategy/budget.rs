@@ -15,7 +15,8 @@ const FURTHER: usize = 300;
 /// iterations. A fit to the gallery from four starts: ten of the twelve solves that it rescues take fewer iterations
 /// than that.
 pub(super) const QUADRATIC: usize = 60;
-/// Most iterations of a start on coarser knots. A fit to the gallery: where it takes more, it does not help.
+/// Most iterations of a start on coarser knots, and of an attempt from there. A fit to the gallery: where either takes more,
+/// it does not help.
 const COARSE: usize = 150;
 
 /// What is left of the settings' limits.
@@ -48,6 +49,12 @@ impl<'a> Budget<'a> {
     /// Settings of the first attempt; none where nothing is left. A method that the user has chosen has all that is left.
     pub(super) fn attempt(&self) -> Option<Settings> {
         if self.settings.method == Method::Auto { self.at_most(self.share(ATTEMPT)) } else { self.rest() }
+    }
+
+    /// Settings of a first attempt from a solution on coarser knots, which is followed by one from the guess; none where
+    /// nothing is left.
+    pub(super) fn near(&self) -> Option<Settings> {
+        self.at_most(self.share(COARSE))
     }
 
     /// Settings of an attempt after a failed one; none where nothing is left.

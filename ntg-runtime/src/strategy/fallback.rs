@@ -1,7 +1,7 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
 //!
 //! ```text
-//! interior point -> sizes anew -> from beside the guess -> restoring by squares -> augmented Lagrangian -> from fewer knots
+//! from coarser knots, where they are many -> interior point -> sizes anew -> from beside the guess -> restoring by squares -> augmented Lagrangian -> from fewer knots
 //!                -> sequential quadratic programming -> on from the best point
 //! ```
 
@@ -72,24 +72,34 @@ impl Attempt {
 }
 
 impl Session {
-    /// Solves by the method of the settings, from beside the first point where something is not finite there. An
+    /// Solves by the method of the settings from the first point, which may be a solution on coarser knots, `guessed` being the
+    /// guess then; from beside it where something is not finite there. An
     /// automatic method makes further attempts where that fails, unless the solution only serves as a guess (a step of
     /// a continuation) and there seems to be none. Iterations are those of all attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
         nlp: &mut Transcription,
         task: Task<'_>,
-        first: FirstPoint<'_>,
+        (first, guessed): (FirstPoint<'_>, Option<&[f64]>),
         is_guess: bool,
         budget: &mut Budget<'_>,
     ) -> Result<Outcome, SetupError> {
         let Some(settings) = budget.attempt() else {
             return Ok(Outcome::failed(nlp, first.x, Status::IterationLimit));
         };
+        let guessed = guessed.filter(|_| settings.method == Method::Auto);
         let spent = budget.spent();
-        let (mut outcome, moved) = self.begin(nlp, first, &settings)?;
+        let near = guessed.and_then(|_| budget.near());
+        let (mut outcome, moved) = self.begin(nlp, first, near.as_ref().unwrap_or(&settings))?;
         budget.spend(outcome.iterations);
         let x = moved.as_deref().unwrap_or(first.x);
+        if let Some((guess, settings)) = guessed.filter(|_| !outcome.status.is_final()).zip(budget.attempt()) {
+            nlp.set_scales(guess, &settings)?;
+            let (next, _) = self.begin(nlp, FirstPoint { x: guess, from: Start::Cold }, &settings)?;
+            budget.spend(next.iterations);
+            outcome = better(outcome, next);
+            nlp.set_scales(x, &settings)?;
+        }
         if settings.method == Method::Auto {
             let mut seems_infeasible = is_infeasible(&outcome);
             for attempt in ATTEMPTS {

@@ -59,10 +59,11 @@ impl Session {
                     (first, Start::Cold)
                 }
             };
+            let mut guessed = None;
             if i == 0 {
                 let level = &nlp.model.structure;
                 if let Some(solution) = &self.start_from_coarse(task, level, &mut budget)? {
-                    first = start(&nlp, Some(&Guess::from(solution)))?;
+                    guessed = Some(std::mem::replace(&mut first, start(&nlp, Some(&Guess::from(solution)))?));
                     from = Start::Near;
                 }
             }
@@ -71,7 +72,7 @@ impl Session {
                 from = Start::Warm(last.multipliers());
             }
             budget.set_settings(if is_last { settings } else { &rough });
-            let first_point = FirstPoint { x: &first, from };
+            let first_point = (FirstPoint { x: &first, from }, guessed.as_deref());
             let mut outcome = self.solve_with_fallback(&mut nlp, task, first_point, !is_last, &mut budget)?;
             outcome.iterations = budget.spent() - spent;
             history.push(record(&nlp, step, &outcome, step_began));
