@@ -69,6 +69,7 @@ def publish(text):
 def main():
     parser = argparse.ArgumentParser(description="Performance profiles of ntg and IPOPT; bench/profile/run says more.")
     parser.add_argument("--quick", action="store_true", help="only the specs' own meshes and starts")
+    parser.add_argument("--held-out", action="store_true", help="the specs of held_out/, to which nothing is fitted")
     parser.add_argument("--only", type=lambda text: text.split(","), help="names of specs, by commas")
     parser.add_argument("--seconds", type=float, default=20, help="limit of each solve")
     parser.add_argument("--jobs", type=int, default=1, help="questions at once")
@@ -76,6 +77,10 @@ def main():
     parser.add_argument("--report", action="store_true", help="measure nothing")
     parser.add_argument("--publish", action="store_true", help="write pictures and docs/performance.md")
     options = parser.parse_args()
+    if options.held_out and options.publish:
+        parser.error("what is published is about specs/: --publish goes without --held-out")
+    if options.held_out:
+        measure.hold_out()
     answers = measure.known() if options.report else measure.measure(options)
     problems = profiles.by_problem(answers)
     found = profiles.summary(problems, measure.SOLVERS)
