@@ -69,6 +69,7 @@ def publish(text):
 def main():
     parser = argparse.ArgumentParser(description="Performance profiles of ntg and IPOPT; bench/profile/run says more.")
     parser.add_argument("--quick", action="store_true", help="only the specs' own meshes and starts")
+    parser.add_argument("--sample", action="store_true", help="five pairs of mesh and start a spec")
     parser.add_argument("--held-out", action="store_true", help="the specs of held_out/, to which nothing is fitted")
     parser.add_argument("--only", type=lambda text: text.split(","), help="names of specs, by commas")
     parser.add_argument("--seconds", type=float, default=20, help="limit of each solve")

@@ -31,14 +31,6 @@ impl<'a, N: Nlp> Resized<'a, N> {
 impl<N: Nlp> Nlp for Resized<'_, N> {
     type Workspace = N::Workspace;
 
-    fn variables(&self) -> usize {
-        self.nlp.variables()
-    }
-
-    fn rows(&self) -> usize {
-        self.nlp.rows()
-    }
-
     fn limits(&self) -> &Limits {
         &self.limits
     }

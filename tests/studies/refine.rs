@@ -163,3 +163,27 @@ fn an_objective_of_nothing_is_settled_at_once() {
     let (report, refined) = to(&problem, 1e-6);
     assert!(report.objective.abs() < 1e-12 && refined.rounds.len() <= 2, "{report}");
 }
+
+/// A price at a moment that no point sees: the finer integral does, and says so until the points do. Twelve over the cube of
+/// the time, and the price itself, `50 * 0.05 * sqrt(pi)`.
+#[test]
+fn a_cost_that_the_points_do_not_see_is_warned_of() {
+    let priced = |intervals: usize| {
+        let spec = Shipped::text(&format!(
+            "problem Priced {{
+                duration T = 10;
+                output x: spline(order = 5, intervals = {intervals});
+                minimize integral(der(x, 2)^2 + 50 * exp(-((t - 5.13) / 0.05)^2));
+                initial {{ x == 0;  der(x) == 0; }}
+                final {{ x == 1;  der(x) == 0; }}
+            }}"
+        ));
+        let report = spec.solve();
+        let warned = report.warnings().iter().any(|warning| warning.message.contains("finely integrated"));
+        (report.objective_fine, warned)
+    };
+    assert!(priced(4).1);
+    let (fine, warned) = priced(400);
+    close(fine, 12.0 / 1000.0 + 50.0 * 0.05 * std::f64::consts::PI.sqrt(), 1e-6);
+    assert!(!warned);
+}

@@ -117,3 +117,15 @@ fn digits(number: f64) -> String {
 fn symbol(unit: &Unit) -> String {
     if unit.symbol.is_empty() { String::new() } else { format!(" {}", unit.symbol) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::digits;
+
+    #[test]
+    fn small_numbers_keep_their_digits_and_zero_has_no_sign() {
+        assert_eq!(digits(7.601_260_400_1), "7.601260400");
+        assert_eq!(digits(-3.764_163_6e-5), "-3.764163600e-5");
+        assert_eq!(digits(-0.0), "0.000000000");
+    }
+}

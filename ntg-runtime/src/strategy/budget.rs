@@ -140,6 +140,21 @@ mod tests {
         }
     }
 
+    /// Most iterations of the first attempt and of a further one.
+    fn shares(method: Method, max_iterations: usize) -> [usize; 2] {
+        let settings = Settings { method, max_iterations, ..Settings::default() };
+        let budget = Budget::new(&settings);
+        [budget.attempt(), budget.further()].map(|settings| settings.expect("something is left").max_iterations)
+    }
+
+    #[test]
+    fn attempts_share_what_is_allowed_and_a_chosen_method_has_all_of_it() {
+        assert_eq!(shares(Method::Auto, 2000), [500, 300]);
+        assert_eq!(shares(Method::Auto, 10_000), [2500, 1500]);
+        assert_eq!(shares(Method::Auto, 400), [400, 300]);
+        assert_eq!(shares(Method::InteriorPoint, 5000)[0], 5000);
+    }
+
     /// Which of two ends is the better one: 1 or 2.
     fn better_of(first: (Status, f64, f64), second: (Status, f64, f64)) -> i32 {
         let of = |(status, _, violation): (Status, f64, f64), objective| outcome(status, objective, violation);

@@ -1,8 +1,9 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
 //!
 //! ```text
-//! from coarser knots, where they are many -> interior point -> sizes anew -> from beside the guess -> restoring by squares -> augmented Lagrangian -> from fewer knots
-//!                -> sequential quadratic programming -> on from the best point
+//! interior point, from coarser knots where there are many -> from the guess itself -> sizes anew -> from beside the guess
+//!                -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
+//!                -> on from the best point
 //! ```
 
 use super::beside::beside_infeasible;
@@ -43,7 +44,7 @@ enum Attempt {
     FewerKnots,
     /// By sequential quadratic programming from the first point.
     Sqp,
-    /// From the best point of all attempts before, with all that is left.
+    /// From the best point of all attempts before, where that ended at its own limit, with all that is left.
     Onwards,
 }
 
@@ -66,16 +67,18 @@ impl Attempt {
     fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
         match status {
             Status::Acceptable => matches!(self, Self::SizesAnew | Self::OtherWays),
+            Status::IterationLimit if self == Self::Onwards => true,
+            _ if self == Self::Onwards => false,
             _ => !status.is_final() && (seems_infeasible || self != Self::Beside),
         }
     }
 }
 
 impl Session {
-    /// Solves by the method of the settings from the first point, which may be a solution on coarser knots, `guessed` being the
-    /// guess then; from beside it where something is not finite there. An
-    /// automatic method makes further attempts where that fails, unless the solution only serves as a guess (a step of
-    /// a continuation) and there seems to be none. Iterations are those of all attempts.
+    /// Solves by the method of the settings, from beside the first point where something is not finite there. The first point
+    /// may be a solution on coarser knots; `guessed` is the guess then. An automatic method makes further attempts where that
+    /// fails, unless the solution only serves as a guess (a step of a continuation) and there seems to be none. Iterations
+    /// are those of all attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
         nlp: &mut Transcription,
