@@ -69,6 +69,7 @@ pub use contract::{Block, BlockValues, Entry, Evaluation, Limits, Nlp, NotFinite
 pub use method::{solve, solve_from};
 pub use options::{Control, InertiaCorrection, Method, OnIteration, Options, Progress, Scaling, Violations};
 pub use outcome::{IterationRecord, Multipliers, Outcome, Start};
+pub use remeasure::is_solution_by;
 pub use scaling::Scales;
 pub use sparse::{Assembly, Csc, Pattern};
 pub use status::Status;

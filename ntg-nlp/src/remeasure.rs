@@ -92,8 +92,9 @@ pub(crate) fn until_measured<N: Nlp>(
                 resized.resize(sizes);
                 continue;
             }
-            Measure::Rows if rounds == ROUNDS => return outcome,
-            Measure::Sizes(_) if rounds == ROUNDS => return Outcome { status: Status::StepTooSmall, ..outcome },
+            Measure::Rows | Measure::Sizes(_) if rounds == ROUNDS => {
+                return Outcome { status: Status::StepTooSmall, ..outcome };
+            }
             Measure::Rows => {}
             Measure::Sizes(sizes) => resized.resize(sizes),
         }
@@ -122,10 +123,15 @@ pub(crate) fn is_near_scales<N: Nlp>(nlp: &N, (objective, at): (f64, &Evaluation
 /// None where it is a solution by them, too.
 pub(crate) fn sizes_at_end<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<Vec<f64>> {
     let (sizes, _) = sizes_at(nlp, &end.x);
-    let found = residual_by(nlp, &sizes, end, options)?;
+    (!is_solution_by(nlp, &sizes, end, options)).then_some(sizes)
+}
+
+/// Whether the end of an outcome is a solution by given sizes of the variables and the slopes there: up to a hundred
+/// tolerances. Where the program has no derivatives there, nothing says that it is none.
+pub fn is_solution_by<N: Nlp>(nlp: &N, sizes: &[f64], end: &Outcome, options: &Options) -> bool {
     let tolerance = |of: f64| LOOSER * of;
-    let holds = found.is_acceptable(tolerance(options.constraint_tolerance), tolerance(options.tolerance));
-    (!holds).then_some(sizes)
+    let (constraint, optimality) = (tolerance(options.constraint_tolerance), tolerance(options.tolerance));
+    residual_by(nlp, sizes, end, options).is_none_or(|found| found.is_acceptable(constraint, optimality))
 }
 
 /// The sizes of the variables at a point, where they are larger than their typical ones; and by how much at most.

@@ -17,6 +17,7 @@ mod phases;
 mod places;
 mod resolve;
 mod scenarios;
+mod simulations;
 mod support;
 mod vectors;
 mod vehicles;

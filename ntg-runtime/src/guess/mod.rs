@@ -10,11 +10,13 @@ mod defaults;
 mod earlier;
 mod program;
 mod route;
+mod simulate;
 mod start;
 mod statements;
 
 pub(crate) use defaults::bounds as constant_bounds;
 pub use program::Guess;
 pub(crate) use route::Route;
+pub(crate) use simulate::simulated;
 pub use start::start;
 pub(crate) use start::{Curve, apply, finish, pointwise, set};

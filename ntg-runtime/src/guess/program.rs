@@ -91,6 +91,11 @@ impl Guess {
             || self.statements.iter().any(|statement| matches!(statement, Statement::Coefficients { .. }))
     }
 
+    /// Whether it is the spec's own guess and no more.
+    pub(crate) fn is_empty(&self) -> bool {
+        matches!(self.base, Base::Spec) && self.statements.is_empty()
+    }
+
     /// Outputs along a polygon, at constant speed over the agent's whole time, ends exact.
     pub fn route<const N: usize>(self, outputs: &[&str; N], points: &[[f64; N]]) -> Self {
         let outputs = outputs.iter().map(|name| (*name).to_owned()).collect();

@@ -91,6 +91,8 @@ pub struct Report {
     /// Durations without a lower bound that the solve has made as short as it may, in words, each with the place of its
     /// declaration.
     pub(crate) shortest: Vec<(String, Place)>,
+    /// Whether nothing was found where a simulation follows the motion.
+    pub(crate) mesh_is_coarse: bool,
     /// The residuals of the optimality conditions.
     pub residuals: Residuals,
     /// Iterations of all steps of a continuation.
@@ -207,6 +209,17 @@ impl Report {
         self.status.has_solution()
     }
 
+    /// What violates a constraint at a point by more than a hundred tolerances, relative to the constraint's terms at the
+    /// solution, is none, whatever the scales of the solve said.
+    pub(crate) fn judge_points(&mut self, tolerance: f64) {
+        /// That of the acceptable end (1e-6) to the default tolerance.
+        const LOOSER: f64 = 100.0;
+        if self.has_solution() && self.violation.points > LOOSER * tolerance {
+            self.status = Status::StepTooSmall;
+            self.advice = self.status.advice().to_owned();
+        }
+    }
+
     /// Whether constraints and conditions of optimality hold at the points, whatever is between them.
     fn meets_points(&self) -> bool {
         self.has_solution() || matches!(self.status, Status::ViolatedBetween { .. })
@@ -284,6 +297,7 @@ impl Report {
             between_tolerance: Settings::default().between_tolerance,
             singular: vec![],
             shortest,
+            mesh_is_coarse: false,
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),
             seconds: history.iter().map(|step| step.seconds).sum(),
@@ -299,7 +313,7 @@ pub(crate) fn user(nlp: &Transcription, minimised: f64) -> f64 {
     let structure = &nlp.model.structure;
     let value = minimised / structure.objective_unit.factor;
     // No negative zero: a person would wonder.
-    if structure.maximize { 0.0 - value } else { value }
+    if structure.maximize { 0.0 - value } else { 0.0 + value }
 }
 
 /// Every relative violation on the finer grid: phase, scaled time, and by how much.

@@ -30,7 +30,7 @@ impl fmt::Display for Warning {
 
 impl Report {
     /// What is to be known beside the status: expressions that are singular at the guess, durations that are as short as
-    /// they may be, constraints of a solution that are violated between the points by more than
+    /// they may be, a mesh that is too coarse for a simulated motion, constraints of a solution that are violated between the points by more than
     /// `Settings::between_tolerance`, the worst first, and a refinement that has not come to its tolerance.
     pub fn warnings(&self) -> Vec<Warning> {
         let singular = self.singular.iter().map(|singular| Warning {
@@ -45,6 +45,14 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
+        let coarse = self.mesh_is_coarse.then(|| Warning {
+            message: "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more \
+                      intervals, or points where it changes fast"
+                .into(),
+            place: Place::default(),
+            constraint: String::new(),
+            time: None,
+        });
         let independent = &self.solution.structure().independent;
         let between = self.violated_between().into_iter().map(|constraint| violated_between(constraint, independent));
         let unmet = self.refined.iter().filter(|refined| refined.status != RefineStatus::Met).map(|refined| Warning {
@@ -53,7 +61,7 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        singular.chain(shortest).chain(self.cost_is_off()).chain(between).chain(unmet).collect()
+        singular.chain(shortest).chain(coarse).chain(self.cost_is_off()).chain(between).chain(unmet).collect()
     }
 
     /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to
@@ -112,7 +120,7 @@ pub(super) fn shortest(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
         let least = structure.independent.amount(lower, brief);
         let message = format!(
             "{name} is as short as a duration may be, {least}: a millionth of its upper bound; give it a lower bound \
-             above 0"
+             above 0, or a smaller upper bound where it should be shorter"
         );
         (message, declared.place.clone())
     });

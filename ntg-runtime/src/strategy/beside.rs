@@ -24,13 +24,13 @@ impl Session {
         first: FirstPoint<'_>,
         settings: &Settings,
     ) -> Result<(Outcome, Option<Vec<f64>>), SetupError> {
-        let outcome = self.solve_once(nlp, first, settings);
+        let outcome = self.solve_measured(nlp, first, settings);
         if !is_singular(&outcome) {
             return Ok((outcome, None));
         }
         let moved = beside(nlp, first.x, SINGULAR);
         nlp.set_scales(&moved, settings)?;
-        let next = self.solve_once(nlp, FirstPoint { x: &moved, from: Start::Cold }, settings);
+        let next = self.solve_measured(nlp, FirstPoint { x: &moved, from: Start::Cold }, settings);
         // Else the guess itself has the reason that is told.
         Ok(if is_singular(&next) { (outcome, None) } else { (next, Some(moved)) })
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! interior point, from coarser knots where there are many -> from the guess itself -> sizes anew -> from beside the guess
-//!                -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
+//!                -> from a simulation -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
 //!                -> on from the best point
 //! ```
 
@@ -10,15 +10,17 @@ use super::beside::beside_infeasible;
 use super::budget::{Budget, QUADRATIC, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
-use crate::guess::{Guess, start};
+use crate::guess::{Guess, simulated, start};
 use crate::settings::{InertiaCorrection, Method, Settings, Violations};
 use crate::transcribe::{SetupError, Transcription};
-use ntg_nlp::{Outcome, Start, Status, method};
+use ntg_nlp::residuals::violation;
+use ntg_nlp::{Nlp, Outcome, Start, Status, method};
 
 /// All of them, in their order.
-const ATTEMPTS: [Attempt; 7] = [
+const ATTEMPTS: [Attempt; 8] = [
     Attempt::SizesAnew,
     Attempt::Beside,
+    Attempt::Simulated,
     Attempt::OtherWays,
     Attempt::AugmentedLagrangian,
     Attempt::FewerKnots,
@@ -35,6 +37,8 @@ enum Attempt {
     /// From beside the first point: near a symmetric guess violations may have a local minimum, or a saddle that nothing
     /// leaves.
     Beside,
+    /// From a simulation with the guessed inputs: what the guess says of the motion may be far from any motion.
+    Simulated,
     /// From the first point, with the other restoration and the other correction of the inertia: in place of the default
     /// ones, squares of violations and shifts of the diagonal.
     OtherWays,
@@ -62,6 +66,11 @@ fn other_ways(settings: Settings) -> Settings {
 }
 
 impl Attempt {
+    /// Whether it measures by other sizes than those of the first point.
+    fn has_other_sizes(self) -> bool {
+        matches!(self, Self::SizesAnew | Self::Simulated)
+    }
+
     /// Whether it follows an outcome of this status: any that is not final. After an acceptable point only what has been
     /// seen to solve the problem then. From beside the guess only where an attempt has ended as infeasible.
     fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
@@ -76,14 +85,16 @@ impl Attempt {
 
 impl Session {
     /// Solves by the method of the settings, from beside the first point where something is not finite there. The first point
-    /// may be a solution on coarser knots; `guessed` is the guess then. An automatic method makes further attempts where that
-    /// fails, unless the solution only serves as a guess (a step of a continuation) and there seems to be none. Iterations
-    /// are those of all attempts.
+    /// may be a solution on coarser knots; `guessed` is the guess then. `simulated` is how an attempt from a simulation has
+    /// failed before. An automatic method makes further attempts where that fails, unless there seems to be no solution and
+    /// it would only serve as a guess (a step of a continuation), or all constraints are linear. Iterations are those of all
+    /// attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
         nlp: &mut Transcription,
         task: Task<'_>,
         (first, guessed): (FirstPoint<'_>, Option<&[f64]>),
+        simulated: Option<Outcome>,
         is_guess: bool,
         budget: &mut Budget<'_>,
     ) -> Result<Outcome, SetupError> {
@@ -96,21 +107,32 @@ impl Session {
         let (mut outcome, moved) = self.begin(nlp, first, near.as_ref().unwrap_or(&settings))?;
         budget.spend(outcome.iterations);
         let x = moved.as_deref().unwrap_or(first.x);
-        if let Some((guess, settings)) = guessed.filter(|_| !outcome.status.is_final()).zip(budget.attempt()) {
+        let is_settled = outcome.status.is_final() || (is_infeasible(&outcome) && nlp.is_linear());
+        if let Some((guess, settings)) = guessed.filter(|_| !is_settled).zip(budget.attempt()) {
             nlp.set_scales(guess, &settings)?;
             let (next, _) = self.begin(nlp, FirstPoint { x: guess, from: Start::Cold }, &settings)?;
             budget.spend(next.iterations);
             outcome = better(outcome, next);
             nlp.set_scales(x, &settings)?;
         }
+        let was_simulated = simulated.is_some();
+        if let Some(simulated) = simulated {
+            outcome = better(simulated, outcome);
+        }
         if settings.method == Method::Auto {
             let mut seems_infeasible = is_infeasible(&outcome);
             for attempt in ATTEMPTS {
-                let is_believed = is_guess && is_infeasible(&outcome);
-                if is_believed || !attempt.follows(&outcome.status, seems_infeasible) {
+                let is_believed = is_infeasible(&outcome) && (is_guess || nlp.is_linear());
+                if is_believed
+                    || !attempt.follows(&outcome.status, seems_infeasible)
+                    || (was_simulated && attempt == Attempt::Simulated)
+                {
                     continue;
                 }
-                if let Some(next) = self.attempt(attempt, nlp, task, x, &outcome, budget)? {
+                if let Some(mut next) = self.attempt(attempt, nlp, task, x, &outcome, budget)? {
+                    if attempt.has_other_sizes() {
+                        next.residuals.scaled.primal = violation_by(nlp, &outcome.row_factors, &next.x);
+                    }
                     seems_infeasible |= is_infeasible(&next);
                     outcome = better(outcome, next);
                 }
@@ -131,24 +153,29 @@ impl Session {
         budget: &mut Budget<'_>,
     ) -> Result<Option<Outcome>, SetupError> {
         let Some(settings) = budget.further() else { return Ok(None) };
+        // The attempt before may have had others.
+        nlp.set_scales(x, &settings)?;
         let next = match attempt {
+            Attempt::Simulated => {
+                let Some(simulated) = simulated(nlp, x) else { return Ok(None) };
+                nlp.set_scales(&simulated, &settings)?;
+                self.solve_measured(nlp, FirstPoint { x: &simulated, from: Start::Cold }, &settings)
+            }
             Attempt::SizesAnew => {
                 if failed.x.iter().any(|x| !x.is_finite()) {
                     return Ok(None);
                 }
                 nlp.set_scales(&failed.x, &settings)?;
-                let next = self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings);
-                nlp.set_scales(x, &settings)?;
-                next
+                self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &settings)
             }
             Attempt::Beside => {
                 let x = beside_infeasible(nlp, x);
-                self.solve_once(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings)
+                self.solve_measured(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings)
             }
-            Attempt::OtherWays => self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &other_ways(settings)),
+            Attempt::OtherWays => self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &other_ways(settings)),
             Attempt::AugmentedLagrangian => {
                 let settings = Settings { method: Method::AugmentedLagrangian, ..settings };
-                self.solve_once(nlp, FirstPoint { x, from: Start::Cold }, &settings)
+                self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &settings)
             }
             Attempt::FewerKnots => {
                 // Coefficients of this transcription fit no other one; the curves that they are do.
@@ -159,13 +186,13 @@ impl Session {
                 let Some(solution) = start_from_fewer(task, &structure, budget)? else { return Ok(None) };
                 let Some(settings) = budget.further() else { return Ok(None) };
                 let x = start(nlp, Some(&Guess::from(&solution)))?;
-                self.solve_once(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
+                self.solve_measured(nlp, FirstPoint { x: &x, from: Start::Near }, &settings)
             }
             Attempt::Onwards => {
                 let Some(settings) = budget.rest().filter(|_| failed.x.iter().all(|x| x.is_finite())) else {
                     return Ok(None);
                 };
-                self.solve_once(nlp, FirstPoint { x: &failed.x, from: Start::Near }, &settings)
+                self.solve_measured(nlp, FirstPoint { x: &failed.x, from: Start::Near }, &settings)
             }
             Attempt::Sqp => {
                 let max_subproblems = QUADRATIC;
@@ -176,6 +203,18 @@ impl Session {
         budget.spend(next.iterations);
         Ok(Some(next))
     }
+}
+
+/// The largest violation of a row at a point, times the row's factor; infinite where a row has no value.
+fn violation_by(nlp: &Transcription, factors: &[f64], x: &[f64]) -> f64 {
+    let (mut work, mut at) = nlp.workspace();
+    if nlp.values(x, &mut work, &mut at).is_err() {
+        return f64::INFINITY;
+    }
+    let limits = nlp.limits();
+    let bounds = limits.row_lower.iter().zip(&limits.row_upper);
+    let missed = at.rows.iter().zip(bounds).map(|(value, (lower, upper))| violation(*value, *lower, *upper));
+    missed.zip(factors).map(|(missed, factor)| missed * factor).fold(0.0, f64::max)
 }
 
 fn is_infeasible(outcome: &Outcome) -> bool {

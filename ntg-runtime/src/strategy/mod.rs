@@ -6,7 +6,7 @@
 //! ```
 //!
 //! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
-//! `coarse_start` finds starts on fewer knots, `fallback` is the sequence of attempts where a solve fails.
+//! `coarse_start` finds starts on fewer knots, `simulated_start` by simulation, `fallback` is the sequence of attempts where a solve fails.
 
 mod beside;
 mod budget;
@@ -14,6 +14,7 @@ mod coarse_start;
 mod continuation;
 mod fallback;
 mod session;
+mod simulated_start;
 mod solve;
 
 pub(crate) use session::{Session, Task};

@@ -4,6 +4,7 @@
 //! problem on coarser knots; each is made anew only as far as parameters have changed what it depends on.
 
 use super::continuation::Setting;
+use super::simulated_start::can_be_simulated;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
 use crate::report::fine::Plan;
@@ -12,10 +13,20 @@ use crate::report::{Report, StepReport, user};
 use crate::settings::{Method, Settings};
 use crate::solution::{Inner, Solution, Value};
 use crate::transcribe::{Change, Kept, Model, SetupError, Singular, Transcription, Workspace, singular};
-use ntg_nlp::{Evaluation, Nlp, Outcome, Start, ipm, method};
+use ntg_nlp::{Evaluation, Nlp, Outcome, Start, Status, ipm, is_solution_by, method};
 use ntg_structure::Structure;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
+/// by as much. A law: that of the acceptable end (1e-6) to the default tolerance.
+const TOO_LARGE: f64 = 1e-2;
+/// How often a solve goes on with smaller sizes. A law: each time the equations at the end say the sizes, so that no third
+/// round is needed but where they say nothing.
+const ROUNDS: usize = 3;
+
+/// Objectives, and variables of one size, that differ by less are the same. A law: the acceptable end.
+const SAME: f64 = 1e-6;
 
 /// What is kept of a problem between its solves.
 #[derive(Default)]
@@ -126,6 +137,44 @@ impl Session {
         }
     }
 
+    /// As [`Session::solve_once`]; where the solution shows that sizes were too large, and is none by smaller ones, the solve
+    /// goes on with these (docs/maths.md, section 11.12).
+    pub(super) fn solve_measured(
+        &mut self,
+        nlp: &mut Transcription,
+        first: FirstPoint<'_>,
+        settings: &Settings,
+    ) -> Outcome {
+        let mut outcome = self.solve_once(nlp, first, settings);
+        for round in 0.. {
+            let sizes = Some(&outcome).filter(|outcome| outcome.status.has_solution());
+            let Some(sizes) = sizes.and_then(|outcome| nlp.smaller_sizes(&outcome.x, TOO_LARGE)) else { break };
+            if is_solution_by(nlp, &sizes, &outcome, &settings.solver_options()) {
+                break;
+            }
+            if round == ROUNDS {
+                outcome.status = Status::StepTooSmall;
+                break;
+            }
+            let left = settings.max_iterations.saturating_sub(outcome.iterations);
+            let rest = Settings { max_iterations: left, ..settings.after(Duration::from_secs_f64(outcome.seconds)) };
+            let before = std::mem::replace(&mut nlp.limits.scale, sizes);
+            let from = Start::Warm(outcome.multipliers());
+            let next = self.solve_once(nlp, FirstPoint { x: &outcome.x, from }, &rest);
+            let (iterations, seconds) = (outcome.iterations + next.iterations, outcome.seconds + next.seconds);
+            let is_the_same = is_the_same(&outcome, &next, &before, &nlp.limits.scale);
+            if !is_the_same || next.status.has_solution() {
+                outcome = Outcome { iterations, seconds, ..next };
+            }
+            if is_the_same {
+                // What is small is rounding of 0, which has no size.
+                nlp.limits.scale = before;
+                break;
+            }
+        }
+        outcome
+    }
+
     /// Keeps the program and says what was found.
     pub(super) fn report(
         &mut self,
@@ -149,10 +198,20 @@ impl Session {
         }
         let mut report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.buffers), history)?;
         report.between_tolerance = settings.between_tolerance;
+        report.judge_points(settings.constraint_tolerance);
+        report.mesh_is_coarse = !report.has_solution() && can_be_simulated(&nlp, report.solution.coefficients());
         self.fine = Some(fine);
         self.kept = Some(nlp.keep());
         Ok(report)
     }
+}
+
+/// Whether two outcomes have one objective, and differ at most in variables whose size is not the same.
+fn is_the_same(first: &Outcome, second: &Outcome, first_sizes: &[f64], second_sizes: &[f64]) -> bool {
+    let objective = (first.objective - second.objective).abs() <= SAME * first.objective.abs().max(f64::MIN_POSITIVE);
+    let sizes = first_sizes.iter().zip(second_sizes);
+    let mut variables = first.x.iter().zip(&second.x).zip(sizes);
+    objective && variables.all(|((a, b), (size, new))| size != new || (a - b).abs() <= SAME * size)
 }
 
 /// The solution that an outcome is, solved or not.

@@ -50,6 +50,7 @@ impl Session {
             set(&mut structure, step);
             let mut nlp = self.program(problem, &structure)?;
             // The layout is the same in every step: only parameters change.
+            budget.set_settings(if is_last { settings } else { &rough });
             let spent = budget.spent();
             let (mut first, mut from) = match &last {
                 Some(last) => (start(&nlp, Some(&Guess::raw(last.x.clone())))?, Start::Cold),
@@ -60,7 +61,12 @@ impl Session {
                 }
             };
             let mut guessed = None;
-            if i == 0 {
+            let simulated = match i {
+                0 => self.solve_simulated(&mut nlp, (task, &first), settings, &mut budget)?,
+                _ => None,
+            };
+            let is_simulated = simulated.as_ref().is_some_and(|outcome| outcome.status.is_final());
+            if i == 0 && !is_simulated {
                 let level = &nlp.model.structure;
                 if let Some(solution) = &self.start_from_coarse(task, level, &mut budget)? {
                     guessed = Some(std::mem::replace(&mut first, start(&nlp, Some(&Guess::from(solution)))?));
@@ -71,9 +77,11 @@ impl Session {
             if let Some(last) = last.as_ref().filter(|last| last.status.has_solution()) {
                 from = Start::Warm(last.multipliers());
             }
-            budget.set_settings(if is_last { settings } else { &rough });
             let first_point = (FirstPoint { x: &first, from }, guessed.as_deref());
-            let mut outcome = self.solve_with_fallback(&mut nlp, task, first_point, !is_last, &mut budget)?;
+            let mut outcome = match simulated {
+                Some(outcome) if is_simulated => outcome,
+                failed => self.solve_with_fallback(&mut nlp, task, first_point, failed, !is_last, &mut budget)?,
+            };
             outcome.iterations = budget.spent() - spent;
             history.push(record(&nlp, step, &outcome, step_began));
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
@@ -159,7 +167,7 @@ impl Session {
             true => Start::Warm(last.inner.multipliers()),
             false => Start::Near,
         };
-        let once = self.solve_once(&nlp, FirstPoint { x: &first, from }, settings);
+        let once = self.solve_measured(&mut nlp, FirstPoint { x: &first, from }, settings);
         Ok((nlp, once))
     }
 }

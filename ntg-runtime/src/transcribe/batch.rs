@@ -168,6 +168,34 @@ impl Batch {
         out: &mut BlockValues,
     ) {
         self.inputs(problem, tables, x, work);
+        self.derivatives_of_inputs(problem, kernels, tables, work, out);
+    }
+
+    /// As [`Batch::derivatives`], where slot `s` of element `e` is `slots[s * elements + e]`, whatever it stands for.
+    pub(crate) fn derivatives_of_slots(
+        &self,
+        problem: &dyn Problem,
+        kernels: &[Kernel],
+        tables: &[Table],
+        slots: &[f64],
+        work: &mut BatchWork,
+        out: &mut BlockValues,
+    ) {
+        match self.is_plain {
+            true => work.node.inputs[..slots.len()].copy_from_slice(slots),
+            false => self.node.inputs(problem, tables, slots, &mut work.node),
+        }
+        self.derivatives_of_inputs(problem, kernels, tables, work, out);
+    }
+
+    fn derivatives_of_inputs(
+        &self,
+        problem: &dyn Problem,
+        kernels: &[Kernel],
+        tables: &[Table],
+        work: &mut BatchWork,
+        out: &mut BlockValues,
+    ) {
         match &self.composition {
             Some(composition) => {
                 self.node.derivatives(problem, kernels, tables, &mut work.node);

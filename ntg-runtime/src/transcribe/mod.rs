@@ -55,7 +55,7 @@ use layout::Layout;
 use linear::LinearSystem;
 use ntg_nlp::Limits;
 use ntg_splines::Table;
-use ntg_structure::{Place, Structure, Unit};
+use ntg_structure::{Degree, Place, Row, Structure, Unit};
 use rows::RowKind;
 use std::sync::Arc;
 use times::Clock;
@@ -76,6 +76,8 @@ pub struct Transcription<'p> {
     pub(crate) model: Arc<Model>,
     pub(crate) elements: Elements,
     pub(crate) limits: Limits,
+    /// Whether the settings say the size of a variable; empty before there are sizes.
+    pub(crate) has_named_size: Vec<bool>,
     pub(crate) linear: LinearSystem,
 }
 
@@ -103,7 +105,7 @@ impl Kept {
     /// The transcription again; `problem` is the one that it had, or one that differs in parameters.
     pub(crate) fn of(self, problem: &dyn Problem) -> Transcription<'_> {
         let Self { model, elements, limits, linear } = self;
-        Transcription { problem, model, elements, limits, linear }
+        Transcription { problem, model, elements, limits, has_named_size: vec![], linear }
     }
 }
 
@@ -125,7 +127,8 @@ impl<'p> Transcription<'p> {
         let elements = elements::elements(&frame)?;
         let linear = contradictions::linear_system(&frame, &elements, &bounds)?;
         let limits = limits(&elements, &bounds);
-        let mut transcription = Self { problem, model: Arc::new(model), elements, limits, linear };
+        let mut transcription =
+            Self { problem, model: Arc::new(model), elements, limits, has_named_size: vec![], linear };
         transcription.limits.alike = transcription.alike();
         Ok(transcription)
     }
@@ -172,6 +175,16 @@ impl<'p> Transcription<'p> {
     /// starts, declared variables, integrals) follow them.
     pub fn coefficients(&self) -> usize {
         self.model.layout.coefficients
+    }
+
+    /// Whether every constraint is linear: then points that violate them least have no others beside them.
+    pub(crate) fn is_linear(&self) -> bool {
+        let groups = &self.model.structure.groups;
+        let is_cost = |row: &Row| matches!(row, Row::Cost { .. });
+        self.elements.batches.iter().all(|batch| {
+            let rows = groups[batch.group].rows.iter().zip(&batch.degree);
+            rows.into_iter().all(|(row, degree)| is_cost(row) || matches!(degree, Degree::Constant | Degree::Linear))
+        })
     }
 
     /// Everything that gives calls their meaning.

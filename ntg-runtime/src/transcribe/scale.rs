@@ -31,9 +31,11 @@ impl Transcription<'_> {
         if automatic {
             self.automatic(guess, &mut scale);
         }
+        let from_guess = scale.clone();
         for (name, size) in &settings.scales {
             self.named(name, *size, &mut scale)?;
         }
+        self.has_named_size = from_guess.iter().zip(&scale).map(|(before, now)| !automatic || before != now).collect();
         self.limits.scale = scale;
         self.limits.row_scale = if automatic { self.row_scales() } else { vec![1.0; self.limits.row_lower.len()] };
         Ok(())
@@ -77,7 +79,51 @@ impl Transcription<'_> {
                 scale[variable] = size(variable, &declared.unit);
             }
         }
-        self.balance_sizes(&outputs, guess, scale);
+        self.balance_sizes(&outputs, (guess, guess), scale);
+    }
+
+    /// Smaller sizes, where a solution shows that the guess told too large ones: the larger of what balances constraints at
+    /// `x` and what the variables are there, where that is below `fraction` of the size that they have. None where no size
+    /// is so much too large. What would be `NOTHING` beside its bound or unit is rounding of 0.
+    pub(crate) fn smaller_sizes(&self, x: &[f64], fraction: f64) -> Option<Vec<f64>> {
+        const NOTHING: f64 = 1e-8;
+        let scale = &self.limits.scale;
+        let groups = self.groups();
+        let mut largest: Vec<f64> = x.iter().map(|x| x.abs()).collect();
+        for (group, _) in &groups {
+            let most = group.iter().map(|v| largest[*v as usize]).fold(0.0, f64::max);
+            group.iter().for_each(|v| largest[*v as usize] = most);
+        }
+        let is_small =
+            |v: usize| !self.has_named_size.get(v).is_some_and(|named| *named) && largest[v] < fraction * scale[v];
+        if !(0..scale.len()).any(is_small) {
+            return None;
+        }
+        // What balances constraints at `x`, where all other sizes are known.
+        let known: Vec<f64> = (0..scale.len()).map(|v| if is_small(v) { 0.0 } else { scale[v] }).collect();
+        let mut balanced = vec![0.0; scale.len()];
+        let variables: Vec<Vec<u32>> = groups.iter().map(|(group, _)| group.clone()).collect();
+        self.balance_sizes(&variables, (x, &known), &mut balanced);
+        let mut units = vec![1.0; scale.len()];
+        groups.iter().for_each(|(group, unit)| group.iter().for_each(|v| units[*v as usize] = *unit));
+        let smaller = |v: usize| {
+            let size = balanced[v].max(largest[v]);
+            let least = match bound_size((self.limits.lower[v], self.limits.upper[v])) {
+                0.0 => units[v],
+                bound => bound,
+            };
+            (is_small(v) && size < fraction * scale[v] && size > NOTHING * least).then_some(size)
+        };
+        let sizes: Vec<Option<f64>> = (0..scale.len()).map(smaller).collect();
+        let differs = sizes.iter().any(Option::is_some);
+        differs.then(|| sizes.into_iter().zip(scale).map(|(smaller, size)| smaller.unwrap_or(*size)).collect())
+    }
+
+    /// The coefficients of each output, and its unit.
+    fn groups(&self) -> Vec<(Vec<u32>, f64)> {
+        let agents = self.model.layout.agents.iter();
+        let outputs = agents.flat_map(|agent| self.outputs_of(agent.phases.clone()));
+        outputs.map(|output| (output.coefficients, output.unit.factor)).collect()
     }
 
     /// The number of the size of each variable: the coefficients of one output in one agent share theirs.

@@ -54,13 +54,13 @@ pub(super) fn slot_group(block: &Block, e: usize, slot: usize, balance: &Balance
 }
 
 impl Transcription<'_> {
-    /// Replaces the sizes of all groups that are 0 in the guess. `groups` are variables that share a size; every other
-    /// variable is a group of its own.
-    pub(super) fn balance_sizes(&self, groups: &[Vec<u32>], guess: &[f64], scale: &mut [f64]) {
+    /// Replaces the sizes of all groups that are 0 in the guess, by the slopes at a point, which may be that guess.
+    /// `groups` are variables that share a size; every other variable is a group of its own.
+    pub(super) fn balance_sizes(&self, groups: &[Vec<u32>], (x, guess): (&[f64], &[f64]), scale: &mut [f64]) {
         let mut balance = self.balance(groups, guess);
         let (mut workspace, mut at) = self.workspace();
         let multipliers = vec![0.0; self.elements.rows.len()];
-        if self.derivatives(guess, 1.0, &multipliers, &mut workspace, &mut at).is_err() {
+        if self.derivatives(x, 1.0, &multipliers, &mut workspace, &mut at).is_err() {
             return;
         }
         self.collect_slopes(&at, &mut balance);
@@ -69,7 +69,7 @@ impl Transcription<'_> {
         balance.propagate(&[Balance::balanced]);
         if balance.size.contains(&None) {
             balance.objective = self.objective_size(&at, &balance);
-            balance.curvature = self.curvatures(guess, &balance);
+            balance.curvature = self.curvatures(x, &balance);
             balance.propagate(&[Balance::balanced, Balance::curved, Balance::partly_balanced]);
         }
         for (scale, group) in scale.iter_mut().zip(&balance.group) {

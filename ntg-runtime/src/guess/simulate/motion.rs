@@ -1,0 +1,178 @@
+//! The equations of motion of one phase: the equalities that hold all along it.
+
+use super::call::AtPlaces;
+use super::radau::{Instant, Linear, Motion};
+use crate::transcribe::Transcription;
+use crate::transcribe::elements::domain_sites;
+use crate::transcribe::frame::Frame;
+use crate::transcribe::node::Site;
+use crate::transcribe::points::Point;
+use crate::transcribe::rows::group_bounds;
+use crate::transcribe::shape::trace;
+use crate::transcribe::slots::Source;
+use ntg_structure::{At, Domain, Group, Row};
+use std::collections::BTreeMap;
+
+/// One member of a group with equalities.
+pub(super) struct Member<'a> {
+    pub(super) group: &'a Group,
+    pub(super) site: Site,
+    /// What its slots stand for.
+    pub(super) sources: Vec<Source>,
+    /// Its equalities: their rows, and what these are equal to.
+    pub(super) rows: Vec<(usize, f64)>,
+    /// Row and slot of every first derivative.
+    pub(super) pattern: Vec<(usize, usize)>,
+}
+
+impl<'a> Member<'a> {
+    /// The member of a group at a site; none where that has no equality.
+    pub(super) fn new(frame: &Frame<'a>, group: &'a Group, site: Site) -> Option<Self> {
+        let equal = |row: &Row| matches!(row, Row::Constraint { lower: Some(l), upper: Some(u), .. } if l == u);
+        if !group.rows.iter().any(equal) {
+            return None;
+        }
+        let bounds = group_bounds(frame, group, &site.indices).ok()?;
+        let rows =
+            (0..group.rows.len()).filter(|row| equal(&group.rows[*row])).map(|row| (row, bounds[row].0)).collect();
+        let sources = trace(frame, &group.call, &site).ok()?.sources;
+        let pattern = crate::transcribe::batch::batches(frame, &group.call, vec![site.clone()]).ok()?;
+        let [pattern, _] = pattern.first()?.patterns(&frame.structure.kernels);
+        Some(Self { group, site, sources, rows, pattern })
+    }
+
+    /// What a row depends on.
+    pub(super) fn sources_of(&self, row: usize) -> impl Iterator<Item = Source> {
+        self.pattern.iter().filter(move |(r, _)| *r == row).map(|(_, slot)| self.sources[*slot])
+    }
+}
+
+/// The equations of one phase for given times, variables and inputs.
+pub(super) struct Equations<'a> {
+    frame: Frame<'a>,
+    x: &'a [f64],
+    pub(super) phase: usize,
+    members: Vec<Member<'a>>,
+    /// The outputs that move, as members of the phase.
+    pub(super) outputs: Vec<usize>,
+    pub(super) orders: Vec<usize>,
+    sizes: Vec<f64>,
+    /// Where the value of a derivative of a member of the phase stands among all values.
+    pub(super) columns: BTreeMap<(usize, usize), usize>,
+    calls: Vec<AtPlaces>,
+}
+
+impl<'a> Equations<'a> {
+    /// The equations of a phase; none where they do not decide how its outputs move.
+    pub(super) fn new(nlp: &'a Transcription, phase: usize, x: &'a [f64]) -> Option<Self> {
+        let frame = nlp.frame();
+        let middle = Point { tau: 0.5, ..Point::start(phase) };
+        let mut members = vec![];
+        for group in &frame.structure.groups {
+            let Domain::Path { part, .. } = &group.domain else { continue };
+            if !part.is_whole() {
+                continue;
+            }
+            let here = |_: &_, _: &[f64], of: usize| if of == phase { vec![middle] } else { vec![] };
+            let sites = domain_sites(&frame, &group.loops, &group.domain, here).ok()?;
+            members.extend(sites.into_iter().filter_map(|site| Member::new(&frame, group, site)));
+        }
+        let mut orders = BTreeMap::new();
+        for member in &members {
+            for source in member.rows.iter().flat_map(|(row, _)| member.sources_of(*row)) {
+                if let Source::Flat { phase: of, at: At::Here, output, derivative } = source {
+                    debug_assert_eq!(of, phase, "a point is of one phase");
+                    let order = orders.entry(output).or_insert(0);
+                    *order = derivative.max(*order);
+                }
+            }
+        }
+        // What has no derivative is an input, unless the equations decide that too.
+        let equations: usize = members.iter().map(|member| member.rows.len()).sum();
+        if equations != orders.len() {
+            orders.retain(|_, order| *order > 0);
+        }
+        if equations != orders.len() || orders.is_empty() {
+            return None;
+        }
+        let mut columns = BTreeMap::new();
+        for (output, order) in &orders {
+            for derivative in 0..=*order {
+                columns.insert((*output, derivative), columns.len());
+            }
+        }
+        let size = |output: &usize| {
+            let coefficients = &nlp.model.layout.phases[phase].outputs[*output].coefficients;
+            coefficients.iter().map(|variable| nlp.limits.scale[*variable as usize]).fold(0.0, f64::max)
+        };
+        let sizes = orders.keys().map(size).collect();
+        let (outputs, orders) = orders.into_iter().unzip();
+        Some(Self { frame, x, phase, members, outputs, orders, sizes, columns, calls: vec![] })
+    }
+
+    /// What the guess says about all values at the start.
+    pub(super) fn guessed(&self, nlp: &Transcription) -> Vec<f64> {
+        let at = (0.0, Point::start(self.phase).side);
+        let value =
+            |(output, derivative): &(usize, usize)| nlp.model.layout.flat(self.phase, *output, *derivative, at, self.x);
+        self.columns.keys().map(value).collect()
+    }
+}
+
+impl Motion for Equations<'_> {
+    fn orders(&self) -> &[usize] {
+        &self.orders
+    }
+
+    fn sizes(&self) -> &[f64] {
+        &self.sizes
+    }
+
+    fn place(&mut self, at: &[Instant]) -> Option<()> {
+        self.calls.clear();
+        for member in &self.members {
+            let point = |at: &Instant| Point { tau: at.tau, side: at.side, ..member.site.point };
+            let site = |at: &Instant| Site { indices: member.site.indices.clone(), point: point(at) };
+            let sites = at.iter().map(site).collect();
+            self.calls.push(AtPlaces::new(&self.frame, &member.group.call, sites, self.x)?);
+        }
+        Some(())
+    }
+
+    fn evaluate(&mut self, values: &[Vec<f64>], out: &mut [Linear]) -> Option<()> {
+        let mut equation = 0;
+        out.iter_mut().for_each(|linear| linear.jacobian.fill(0.0));
+        for (member, call) in self.members.iter().zip(&mut self.calls) {
+            let places = call.places();
+            let column = |source: &Source| match source {
+                Source::Flat { at: At::Here, output, derivative, .. } => self.columns.get(&(*output, *derivative)),
+                _ => None,
+            };
+            for (slot, source) in member.sources.iter().enumerate() {
+                let Some(column) = column(source) else { continue };
+                for (place, values) in values.iter().enumerate() {
+                    call.slots[slot * places + place] = values[*column];
+                }
+            }
+            call.evaluate(&self.frame);
+            for (row, wanted) in &member.rows {
+                for (place, linear) in out.iter_mut().enumerate() {
+                    let residual = call.out.values[row * places + place] - wanted;
+                    if !residual.is_finite() {
+                        return None;
+                    }
+                    linear.residual[equation] = residual;
+                }
+                for (entry, (_, slot)) in call.pattern.iter().enumerate().filter(|(_, (r, _))| r == row) {
+                    let Some(column) = column(&member.sources[*slot]) else { continue };
+                    for (place, linear) in out.iter_mut().enumerate() {
+                        linear.jacobian[(equation, *column)] += call.out.jacobian[entry * places + place];
+                    }
+                }
+                equation += 1;
+            }
+        }
+        let all_finite = out.iter().all(|linear| linear.jacobian.iter().all(|value| value.is_finite()));
+        all_finite.then_some(())
+    }
+}

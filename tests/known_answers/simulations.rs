@@ -1,0 +1,159 @@
+//! Motions that initial conditions decide, and guesses so steep that they tell wrong sizes (docs/maths.md, sections 8.6 and
+//! 11.12).
+
+use std::f64::consts::PI;
+
+use ntg::prelude::*;
+
+use crate::support::{Shipped, close};
+
+/// The complete elliptic integral of the first kind, by the arithmetic-geometric mean.
+fn elliptic(modulus: f64) -> f64 {
+    let (mut a, mut b) = (1.0, (1.0 - modulus * modulus).sqrt());
+    for _ in 0..20 {
+        (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
+    }
+    0.5 * PI / a
+}
+
+/// From 170 degrees, three periods of `4 K(sin(85 deg))` later, on two meshes, without a guess: no objective, nothing free.
+/// From the constant guess no method gets there.
+#[test]
+fn a_pendulum_is_back_where_it_began_after_three_periods() {
+    let periods = 12.0 * elliptic(85_f64.to_radians().sin());
+    for intervals in [120, 240] {
+        let spec = Shipped::text(&format!(
+            "problem Pendulum {{
+                duration T = {periods} [s];
+                state a [deg], w [deg/s];
+                collocation gauss(points = 4, intervals = {intervals});
+                dynamics {{ der(a) == w;  der(w) == -1 [1/s^2] * sin(a); }}
+                initial {{ a == 170 [deg];  w == 0; }}
+            }}"
+        ));
+        let report = spec.solve();
+        assert!(report.iterations <= 10, "{} iterations", report.iterations);
+        let end = report.solution.output("a").expect("an angle").derivative(periods, 0);
+        close(end, 170.0, 1e-4);
+    }
+}
+
+/// A motion of which the spec has another idea: chaos, guessed as a straight line.
+#[test]
+fn a_wrong_guess_of_a_motion_does_no_harm() {
+    let spec = |guess: &str| {
+        Shipped::text(&format!(
+            "problem Lorenz {{
+                duration T = 5;
+                state x, y, z;
+                collocation gauss(points = 4, intervals = 100);
+                dynamics {{ der(x) == 10 * (y - x);  der(y) == x * (28 - z) - y;  der(z) == x * y - 8 / 3 * z; }}
+                initial {{ x == 1;  y == 1;  z == 1; }}
+                {guess}
+            }}"
+        ))
+    };
+    let end = |guess: &str| {
+        let spec = spec(guess);
+        let report = spec.solve();
+        ["x", "y", "z"].map(|name| report.solution.output(name).expect("a state").derivative(5.0, 0))
+    };
+    let (without, with) = (end(""), end("guess { x = 100 * tau;  y = -50;  z = 3; }"));
+    for (without, with) in without.into_iter().zip(with) {
+        close(with, without, 1e-6);
+    }
+}
+
+/// A relaxation oscillation jumps within a hundredth of an interval of this mesh.
+#[test]
+fn a_mesh_that_cannot_follow_a_simulated_motion_is_told_of() {
+    let report = Shipped::text(
+        "problem Relaxation {
+            duration T = 40;
+            state x, v;
+            collocation gauss(points = 3, intervals = 60);
+            dynamics { der(x) == v;  der(v) == 10 * (1 - x^2) * v - x; }
+            initial { x == 2;  v == 0; }
+        }",
+    )
+    .solver()
+    .solve()
+    .expect("it can be set up");
+    assert!(!report.has_solution(), "{report}");
+    let told = report.warnings().iter().map(ToString::to_string).collect::<Vec<_>>();
+    let expected = "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more \
+                    intervals, or points where it changes fast";
+    assert!(told.iter().any(|warning| warning == expected), "{told:?}");
+}
+
+/// Overpotential `v = 0.0514 asinh(j / 20)` under a given current: energy by Simpson's rule. From the middle of its bounds, at
+/// which the current is 1e20 A/m^2, the energy has a size beside which any initial value is 0.
+#[test]
+fn a_guess_at_which_terms_explode_does_not_hide_what_a_constraint_says() {
+    let report = Shipped::text(
+        "problem Electrolyser {
+            domain t [h];
+            duration T = 24 [h];
+            state energy [kWh/m^2];
+            input v in 0 .. 5 [V];
+            collocation gauss(points = 3, intervals = 24);
+            let j [A/m^2] = 20 [A/m^2] * sinh(v / 0.0514 [V]);
+            minimize used [kWh/m^2]: final(energy);
+            dynamics { der(energy) == j * v; }
+            trajectory { j == 2000 [A/m^2] - 1500 [A/m^2] * cos(2 * pi * t / 24 [h]); }
+            initial { energy == 0; }
+        }",
+    )
+    .solve();
+    let power = |t: f64| {
+        let j = 2000.0 - 1500.0 * (2.0 * PI * t / 24.0).cos();
+        j * 0.0514 * (j / 20.0).asinh() / 1000.0
+    };
+    let n = 1000;
+    let sum: f64 = (0..=n)
+        .map(|i| {
+            let weight = if i == 0 || i == n { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+            weight * power(24.0 * f64::from(i) / f64::from(n))
+        })
+        .sum();
+    close(report.objective, sum * 24.0 / f64::from(n) / 3.0, 1e-6);
+}
+
+/// An unstable plant, which a simulation from rest would carry to 1e43: `50 + sqrt(2501)`.
+#[test]
+fn a_motion_that_runs_off_is_no_guess() {
+    let report = Shipped::text(
+        "problem Unstable {
+            duration T = 2;
+            state x;
+            input u;
+            collocation gauss(points = 4, intervals = 100);
+            minimize integral(x^2 + u^2);
+            dynamics { der(x) == 50 * x + u; }
+            initial { x == 1; }
+        }",
+    )
+    .solve();
+    close(report.objective, 50.0 + 2501_f64.sqrt(), 1e-6);
+}
+
+/// `exp(190)` at the guess: where the rows do not hold at the end, nothing is "solved".
+#[test]
+fn what_misses_its_equations_at_the_end_is_no_solution() {
+    let report = Shipped::text(
+        "problem Rectifier {
+            domain t [ms];
+            duration T = 10 [ms];
+            state v in 0 .. 5 [V];
+            collocation gauss(points = 3, intervals = 40);
+            let across [V] = 5 [V] * sin(2 * pi * t / 20 [ms]) - v;
+            let i [A] = 1e-12 [A] * (exp(across / 0.026 [V]) - 1);
+            dynamics { 100 [uF] * der(v) == i - v / 1 [kohm]; }
+            initial { v == 0; }
+        }",
+    )
+    .solver()
+    .solve()
+    .expect("it can be set up");
+    assert!(report.has_solution() == (report.violation.points <= 1e-6), "{report}");
+}
