@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use ntg::prelude::*;
+use ntg::runtime::refine::{Refined, Refinement};
 
 use crate::support::{Shipped, close};
 
@@ -65,25 +66,60 @@ fn a_wrong_guess_of_a_motion_does_no_harm() {
 }
 
 /// A relaxation oscillation jumps within a hundredth of an interval of this mesh.
+const RELAXATION: &str = "problem Relaxation {
+    duration T = 40;
+    state x, v;
+    collocation gauss(points = 3, intervals = 60);
+    dynamics { der(x) == v;  der(v) == 10 * (1 - x^2) * v - x; }
+    initial { x == 2;  v == 0; }
+}";
+
+#[test]
+fn a_mesh_that_cannot_follow_a_simulated_motion_is_refined() {
+    let spec = Shipped::text(RELAXATION);
+    let settings = Settings { refine: Some(Refinement::to(1e-4)), ..Settings::default() };
+    let report = solve(spec.problem(), &settings).expect("it can be refined");
+    assert!(report.is_solved() && report.refined.as_ref().is_some_and(Refined::is_met), "{report}");
+    // By the method of Radau with steps for 1e-12 (scipy's `solve_ivp`).
+    let end = |name: &str| report.solution.output(name).expect("a state").derivative(40.0, 0);
+    close(end("x"), 1.872_808_28, 1e-4);
+    close(end("v"), -0.074_480_81, 1e-4);
+}
+
 #[test]
 fn a_mesh_that_cannot_follow_a_simulated_motion_is_told_of() {
+    let report = Shipped::text(RELAXATION).solver().solve().expect("it can be set up");
+    assert!(!report.has_solution(), "{report}");
+    let told = report.warnings().iter().map(ToString::to_string).collect::<Vec<_>>();
+    let expected = "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more \
+                    intervals where it changes fast, which refining the mesh finds";
+    assert!(told.iter().any(|warning| warning == expected), "{told:?}");
+}
+
+/// Growth until the substrate is gone, within a twentieth of an interval: the equations at the points have another solution,
+/// far from the motion.
+#[test]
+fn a_motion_that_only_the_points_have_is_told_of() {
     let report = Shipped::text(
-        "problem Relaxation {
-            duration T = 40;
-            state x, v;
-            collocation gauss(points = 3, intervals = 60);
-            dynamics { der(x) == v;  der(v) == 10 * (1 - x^2) * v - x; }
-            initial { x == 2;  v == 0; }
+        "problem Batch {
+            domain t [h];
+            duration T = 24 [h];
+            state X [g/L], S [g/L];
+            collocation gauss(points = 3, intervals = 24);
+            let mu [1/h] = 0.5 [1/h] * S / (0.05 [g/L] + S);
+            dynamics { der(X) == mu * X;  der(S) == -mu * X / 0.5; }
+            initial { X == 0.1 [g/L];  S == 20 [g/L]; }
         }",
     )
     .solver()
     .solve()
     .expect("it can be set up");
-    assert!(!report.has_solution(), "{report}");
     let told = report.warnings().iter().map(ToString::to_string).collect::<Vec<_>>();
-    let expected = "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more \
-                    intervals, or points where it changes fast";
-    assert!(told.iter().any(|warning| warning == expected), "{told:?}");
+    assert!(told.iter().any(|warning| warning.starts_with("a simulation ")), "{report}");
+    assert!(
+        !report.has_solution() || report.to_string().starts_with("Batch: solved at the points, and not"),
+        "{report}"
+    );
 }
 
 /// Overpotential `v = 0.0514 asinh(j / 20)` under a given current: energy by Simpson's rule. From the middle of its bounds, at

@@ -12,6 +12,8 @@ use ntg_structure::Points;
 const FEW: usize = 4;
 /// Intervals are split whose jumps are at least this part of the largest.
 const SHARE: f64 = 0.05;
+/// Where the tolerance of violations is not met, so much of it is what is split for. A choice.
+const MARGIN: f64 = 0.5;
 /// Intervals shorter than this, in scaled time, are not split.
 const SHORTEST: f64 = 1e-5;
 
@@ -31,6 +33,9 @@ pub(super) fn marks(
     let (moving, inexact) = (above(round.change), above(round.quadrature));
     let unsettled = moving || inexact;
     let violated = violations(nlp, report, samples)?;
+    let most = violated.iter().map(|(.., relative)| *relative).fold(0.0, f64::max);
+    // What only just meets the tolerance is split together with what does not: it would be the next round's worst.
+    let limit = if most > tolerance { MARGIN * tolerance } else { tolerance };
     for (phase, member) in layout.phases.iter().enumerate() {
         let intervals = member.breakpoints.len() - 1;
         let jumps = jumps(member, x);
@@ -39,9 +44,9 @@ pub(super) fn marks(
         let mut pieces: Vec<usize> = (0..intervals).map(|i| if halved(i) { 2 } else { 1 }).collect();
         let mut violated_here = false;
         for (_, tau, relative) in violated.iter().filter(|(p, ..)| *p == phase) {
-            violated_here |= *relative > tolerance;
+            violated_here |= *relative > limit;
             let pieces = &mut pieces[interval(&member.breakpoints, *tau)];
-            *pieces = (*pieces).max(wanted(*relative / tolerance));
+            *pieces = (*pieces).max(wanted(*relative / limit));
         }
         let own = &mut marks[member.phase];
         let uniform = |points: &Points| matches!(points, Points::Uniform { .. });

@@ -93,7 +93,7 @@ impl Run<'_> {
         let found = round(&nlp, &self.report, (&self.rounds, self.beside));
         let met = found.within(self.wanted.tolerance);
         self.rounds.push(found);
-        if !self.report.has_solution() {
+        if !can_go_on(&self.report) {
             return Ok(Some(ended(&self.report)));
         }
         if met {
@@ -118,7 +118,7 @@ impl Run<'_> {
         }
         let settings = Settings { time_limit: remaining, ..self.settings.clone() };
         let next = from(&finer, &self.report.solution, &settings)?;
-        if next.has_solution() {
+        if can_go_on(&next) {
             if !is_better(&self.best, &next, self.wanted.tolerance) {
                 self.best = next.clone();
             }
@@ -130,21 +130,38 @@ impl Run<'_> {
     }
 }
 
-/// Solves on a finer mesh, from the solution on the one before.
+/// Whether a finer mesh may help: there is a solution, or a simulated motion that the mesh does not follow.
+fn can_go_on(report: &Report) -> bool {
+    report.has_solution()
+        || (report.simulation.is_some() && !matches!(report.status, Status::Cancelled | Status::TimeLimit))
+}
+
+/// Solves on a finer mesh, from the solution on the one before; a motion without an objective from its simulation, as on the
+/// mesh before.
 fn from(mesh: &WithStructure, before: &Solution, settings: &Settings) -> Result<Report, Error> {
     let mut session = Session::default();
+    if mesh.structure.terms.is_empty() {
+        return session.solve(Task { problem: mesh, guess: None }, settings);
+    }
     match session.solve_again(mesh, before, settings)? {
         Some(report) => Ok(report),
         None => session.solve(Task { problem: mesh, guess: Some(&Guess::from(before)) }, settings),
     }
 }
 
-/// Whether a solution is better than another: it violates less, or as little and its objective is better. Below the
-/// tolerance all violations are alike, and so are objectives that differ by less.
+/// Whether a solution is better than another: it violates much less, or about as little and its objective is better. Below
+/// the tolerance all violations are alike, and so are objectives that differ by less.
 fn is_better(one: &Report, other: &Report, tolerance: f64) -> bool {
+    /// Violations between the points are those of the worst of some samples: where they differ by less than this factor,
+    /// where the samples are says as much. A choice.
+    const ALIKE: f64 = 2.0;
+    if one.has_solution() != other.has_solution() {
+        return one.has_solution();
+    }
     let violation = |report: &Report| crate::math::max(report.violation.between, tolerance);
-    if violation(one) != violation(other) {
-        return violation(one) < violation(other);
+    let (a, b) = (violation(one), violation(other));
+    if a.max(b) > ALIKE * a.min(b) {
+        return a < b;
     }
     let (a, b) = (one.objective_fine, other.objective_fine);
     let better_by = if one.solution.structure().maximize { a - b } else { b - a };

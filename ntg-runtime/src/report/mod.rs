@@ -91,8 +91,8 @@ pub struct Report {
     /// Durations without a lower bound that the solve has made as short as it may, in words, each with the place of its
     /// declaration.
     pub(crate) shortest: Vec<(String, Place)>,
-    /// Whether nothing was found where a simulation follows the motion.
-    pub(crate) mesh_is_coarse: bool,
+    /// What a simulation tells of the motion that was to be found.
+    pub(crate) simulation: Option<String>,
     /// The residuals of the optimality conditions.
     pub residuals: Residuals,
     /// Iterations of all steps of a continuation.
@@ -297,7 +297,7 @@ impl Report {
             between_tolerance: Settings::default().between_tolerance,
             singular: vec![],
             shortest,
-            mesh_is_coarse: false,
+            simulation: None,
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),
             seconds: history.iter().map(|step| step.seconds).sum(),

@@ -6,7 +6,7 @@ use crate::transcribe::Transcription;
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::{member_words, shortest_duration};
 use crate::transcribe::times::phase_words;
-use ntg_structure::{Independent, Place};
+use ntg_structure::{Block, Independent, Place};
 use std::fmt;
 
 /// One thing to know, in words and with its place.
@@ -30,7 +30,7 @@ impl fmt::Display for Warning {
 
 impl Report {
     /// What is to be known beside the status: expressions that are singular at the guess, durations that are as short as
-    /// they may be, a mesh that is too coarse for a simulated motion, constraints of a solution that are violated between the points by more than
+    /// they may be, a simulated motion that the mesh does not follow, constraints of a solution that are violated between the points by more than
     /// `Settings::between_tolerance`, the worst first, and a refinement that has not come to its tolerance.
     pub fn warnings(&self) -> Vec<Warning> {
         let singular = self.singular.iter().map(|singular| Warning {
@@ -45,11 +45,10 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        let coarse = self.mesh_is_coarse.then(|| Warning {
-            message: "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more \
-                      intervals, or points where it changes fast"
-                .into(),
-            place: Place::default(),
+        let equation = self.constraints.iter().find(|constraint| constraint.block == Block::Trajectory);
+        let coarse = self.simulation.iter().map(|message| Warning {
+            message: message.clone(),
+            place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
         });

@@ -4,7 +4,7 @@
 //! problem on coarser knots; each is made anew only as far as parameters have changed what it depends on.
 
 use super::continuation::Setting;
-use super::simulated_start::can_be_simulated;
+use super::simulated_start::told_by_simulation;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
 use crate::report::fine::Plan;
@@ -199,7 +199,7 @@ impl Session {
         let mut report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.buffers), history)?;
         report.between_tolerance = settings.between_tolerance;
         report.judge_points(settings.constraint_tolerance);
-        report.mesh_is_coarse = !report.has_solution() && can_be_simulated(&nlp, report.solution.coefficients());
+        report.simulation = told_by_simulation(&nlp, report.solution.coefficients(), report.has_solution());
         self.fine = Some(fine);
         self.kept = Some(nlp.keep());
         Ok(report)

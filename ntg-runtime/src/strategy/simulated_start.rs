@@ -3,9 +3,10 @@
 
 use super::budget::Budget;
 use super::session::{FirstPoint, Session, Task};
+use crate::digits::brief;
 use crate::guess::{Guess, simulated};
 use crate::settings::{Method, Settings};
-use crate::transcribe::{SetupError, Transcription};
+use crate::transcribe::{SetupError, Transcription, names};
 use ntg_nlp::{Outcome, Start};
 
 impl Session {
@@ -33,7 +34,43 @@ fn is_only_motion(nlp: &Transcription) -> bool {
     nlp.model.structure.terms.is_empty()
 }
 
-/// Whether a simulation follows the motion that is to be found; `x` has its inputs, times and variables.
-pub(super) fn can_be_simulated(nlp: &Transcription, x: &[f64]) -> bool {
-    is_only_motion(nlp) && simulated(nlp, x).is_some()
+/// How much further than this part of their sizes outputs may be from the simulation. A law: a hundred times its tolerance.
+const APART: f64 = 1e-2;
+
+/// What a simulation tells of the motion that was to be found, in words: that the mesh is too coarse, where no motion was
+/// found, or another one. `x` has inputs, times and variables, and the motion.
+pub(super) fn told_by_simulation(nlp: &Transcription, x: &[f64], is_found: bool) -> Option<String> {
+    if !is_only_motion(nlp) {
+        return None;
+    }
+    let simulated = simulated(nlp, x)?;
+    if !is_found {
+        return Some(
+            "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more intervals where it \
+             changes fast, which refining the mesh finds"
+                .into(),
+        );
+    }
+    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+    let apart = |v: u32| (x[v as usize] - simulated[v as usize]).abs();
+    let size = |v: u32| x[v as usize].abs().max(simulated[v as usize].abs()).max(nlp.limits.scale[v as usize]);
+    let mut worst: Option<(f64, String)> = None;
+    for (phase, member) in layout.phases.iter().enumerate() {
+        for (output, own) in member.outputs.iter().enumerate() {
+            let largest = own.coefficients.iter().map(|v| apart(*v)).fold(0.0, f64::max);
+            let relative = largest / own.coefficients.iter().map(|v| size(*v)).fold(f64::MIN_POSITIVE, f64::max);
+            if relative > worst.as_ref().map_or(APART, |(worst, _)| *worst) {
+                let unit = &structure.phases[member.phase].outputs[own.output].unit;
+                let name = names::output(structure, layout, phase, output);
+                let symbol = if unit.symbol.is_empty() { String::new() } else { format!(" {}", unit.symbol) };
+                worst = Some((relative, format!("`{name}` by {}{symbol}", brief(largest / unit.factor))));
+            }
+        }
+    }
+    worst.map(|(_, what)| {
+        format!(
+            "a simulation of this motion leads elsewhere, {what}: the mesh is too coarse for it (refining it tells), or small \
+             errors grow without limit"
+        )
+    })
 }
