@@ -151,6 +151,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     let found = point(&arguments.point, &read, &nlp)?;
     let sizes_from = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
     nlp.set_scales(&sizes_from, &Settings::default()).map_err(|error| read.said(error))?;
+    nlp.take_smaller_sizes(&found.x);
     let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
     // The judge minimises.
     let multipliers = found.multipliers.as_ref().map(|all| all.iter().map(|y| sign * y).collect::<Vec<_>>());
@@ -185,11 +186,11 @@ fn name(nlp: &Transcription<'_>, of: Bounded) -> String {
 /// Reads a point from a solver's file or from a saved solution.
 fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Solution, String> {
     if path.extension().is_none_or(|extension| extension != "sol") {
-        let guess = guess::read(path, &read.problem)?;
+        let (guess, saved) = guess::read_point(path, &read.problem)?;
         let x = start(nlp, Some(&guess)).map_err(|error| read.said(error))?;
         let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
-        let saved = guess::row_multipliers(path, &read.problem).filter(|saved| saved.len() == nlp.rows());
-        let multipliers = saved.map(|saved| saved.iter().map(|y| sign * y).collect());
+        let multipliers =
+            saved.filter(|saved| saved.len() == nlp.rows()).map(|saved| saved.iter().map(|y| sign * y).collect());
         return Ok(Solution { message: String::new(), x, multipliers });
     }
     let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;

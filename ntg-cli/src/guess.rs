@@ -11,16 +11,22 @@ use serde_json::Value;
 use crate::files;
 use crate::runs::SAVED;
 
-/// The multipliers of the rows that a saved solution of the same splines has; none in files from before they were saved.
-pub(crate) fn row_multipliers(path: &Path, problem: &Interpreted) -> Option<Vec<f64>> {
-    let saved: Value = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
-    let is_same = saved["layout"] == layout(&problem.structure());
-    numbers(&saved["row_multipliers"]).filter(|multipliers| is_same && !multipliers.is_empty())
-}
-
 /// Reads a saved solution as a guess for a problem: its unknowns where the splines are the same,
 /// its sampled outputs, durations and variables otherwise.
 pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> {
+    Ok(of(&saved(path)?, problem))
+}
+
+/// As [`read`], with the multipliers of the rows where the splines are the same; none in files from before they were saved.
+pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, Option<Vec<f64>>), String> {
+    let saved = saved(path)?;
+    let is_same = saved["layout"] == layout(&problem.structure());
+    let multipliers = numbers(&saved["row_multipliers"]).filter(|multipliers| is_same && !multipliers.is_empty());
+    Ok((of(&saved, problem), multipliers))
+}
+
+/// The text of a saved solution of this version.
+fn saved(path: &Path) -> Result<Value, String> {
     let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
     let saved: Value =
         serde_json::from_str(&text).map_err(|e| format!("`{}` is not JSON: {e}; {SAVED}", path.display()))?;
@@ -31,11 +37,15 @@ pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> 
         let version = &saved["version"];
         return Err(format!("`{}` has version {version}; this program reads version {VERSION}", path.display()));
     }
+    Ok(saved)
+}
+
+fn of(saved: &Value, problem: &Interpreted) -> Guess {
     let structure = problem.structure();
     if saved["layout"] == layout(&structure)
         && let Some(unknowns) = numbers(&saved["unknowns"])
     {
-        return Ok(Guess::raw(unknowns));
+        return Guess::raw(unknowns);
     }
     let mut guess = Guess::new();
     let known: Vec<&str> = structure.phases.iter().flat_map(|p| &p.outputs).map(|o| o.name.as_str()).collect();
@@ -65,7 +75,7 @@ pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> 
             guess = guess.variable(&variable.name, value);
         }
     }
-    Ok(guess)
+    guess
 }
 
 fn numbers(list: &Value) -> Option<Vec<f64>> {

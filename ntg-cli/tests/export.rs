@@ -89,6 +89,32 @@ fn a_point_that_meets_all_constraints_is_called_a_solution_only_by_its_multiplie
     assert!(old.contains("the point has no multipliers") && old.ends_with(words), "{old}");
 }
 
+/// A guess at which a current is 1e20 A/m^2 tells a size of the energy beside which any initial value is 0.
+#[test]
+fn a_point_is_judged_by_what_it_is_and_not_by_a_guess_at_which_terms_explode() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = "problem Load {
+        domain t [h];
+        duration T = 24 [h];
+        param first = 0 [kWh/m^2];
+        state energy [kWh/m^2];
+        input v in 0 .. 5 [V];
+        collocation gauss(points = 3, intervals = 24);
+        let j [A/m^2] = 20 [A/m^2] * sinh(v / 0.0514 [V]);
+        minimize final(energy);
+        dynamics { der(energy) == j * v; }
+        trajectory { j == 2000 [A/m^2] - 1500 [A/m^2] * cos(2 * pi * t / 24 [h]); }
+        initial { charge: energy == first; }
+    }";
+    std::fs::write(folder.path().join("load.ntg"), spec).expect("written");
+    let solved = ntg(&["solve", "load.ntg", "--set", "first=2.85", "--save", "run.json"], folder.path());
+    assert_eq!(solved.status.code(), Some(0), "{}", text(&solved.stderr));
+    let check = |more: &[&str]| ntg(&[&["check-solution", "load.ntg", "run.json"], more].concat(), folder.path());
+    assert_eq!(check(&["--set", "first=2.85"]).status.code(), Some(0));
+    let other = text(&check(&[]).stdout);
+    assert!(other.contains("`charge`") && other.ends_with("\nno solution\n"), "{other}");
+}
+
 #[test]
 fn an_answer_to_another_program_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -18,9 +18,6 @@ use ntg_structure::Structure;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
-/// by as much. A law: that of the acceptable end (1e-6) to the default tolerance.
-const TOO_LARGE: f64 = 1e-2;
 /// How often a solve goes on with smaller sizes. A law: each time the equations at the end say the sizes, so that no third
 /// round is needed but where they say nothing.
 const ROUNDS: usize = 3;
@@ -148,7 +145,7 @@ impl Session {
         let mut outcome = self.solve_once(nlp, first, settings);
         for round in 0.. {
             let sizes = Some(&outcome).filter(|outcome| outcome.status.has_solution());
-            let Some(sizes) = sizes.and_then(|outcome| nlp.smaller_sizes(&outcome.x, TOO_LARGE)) else { break };
+            let Some(sizes) = sizes.and_then(|outcome| nlp.smaller_sizes(&outcome.x)) else { break };
             if is_solution_by(nlp, &sizes, &outcome, &settings.solver_options()) {
                 break;
             }

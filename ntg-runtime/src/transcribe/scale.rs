@@ -12,6 +12,10 @@ use crate::settings::{Scaling, Settings};
 use ntg_structure::Unit;
 use std::ops::Range;
 
+/// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
+/// by as much. A law: that of the acceptable end (1e-6) to the default tolerance.
+const TOO_LARGE: f64 = 1e-2;
+
 /// An output in all phases of an agent.
 struct WholeOutput<'a> {
     name: &'a str,
@@ -82,10 +86,19 @@ impl Transcription<'_> {
         self.balance_sizes(&outputs, (guess, guess), scale);
     }
 
+    /// Replaces sizes that a point shows to be too large, if it is a solution (docs/maths.md, section 11.12): what a solution
+    /// is judged by.
+    pub fn take_smaller_sizes(&mut self, x: &[f64]) {
+        if let Some(sizes) = self.smaller_sizes(x) {
+            self.limits.scale = sizes;
+            self.limits.row_scale = self.row_scales();
+        }
+    }
+
     /// Smaller sizes, where a solution shows that the guess told too large ones: the larger of what balances constraints at
-    /// `x` and what the variables are there, where that is below `fraction` of the size that they have. None where no size
-    /// is so much too large. What would be `NOTHING` beside its bound or unit is rounding of 0.
-    pub(crate) fn smaller_sizes(&self, x: &[f64], fraction: f64) -> Option<Vec<f64>> {
+    /// `x` and what the variables are there, where that is below a part of the size that they have. None where no size is so
+    /// much too large. What would be `NOTHING` beside its bound or unit is rounding of 0.
+    pub(crate) fn smaller_sizes(&self, x: &[f64]) -> Option<Vec<f64>> {
         const NOTHING: f64 = 1e-8;
         let scale = &self.limits.scale;
         let groups = self.groups();
@@ -95,7 +108,7 @@ impl Transcription<'_> {
             group.iter().for_each(|v| largest[*v as usize] = most);
         }
         let is_small =
-            |v: usize| !self.has_named_size.get(v).is_some_and(|named| *named) && largest[v] < fraction * scale[v];
+            |v: usize| !self.has_named_size.get(v).is_some_and(|named| *named) && largest[v] < TOO_LARGE * scale[v];
         if !(0..scale.len()).any(is_small) {
             return None;
         }
@@ -112,7 +125,7 @@ impl Transcription<'_> {
                 0.0 => units[v],
                 bound => bound,
             };
-            (is_small(v) && size < fraction * scale[v] && size > NOTHING * least).then_some(size)
+            (is_small(v) && size < TOO_LARGE * scale[v] && size > NOTHING * least).then_some(size)
         };
         let sizes: Vec<Option<f64>> = (0..scale.len()).map(smaller).collect();
         let differs = sizes.iter().any(Option::is_some);
