@@ -45,7 +45,10 @@ def page(found, machine):
     ]
     if found["median_ratio"] is not None:
         most = ", ".join(f"`{problem}` {ratio:.2f}" for problem, ratio in found["largest_ratios"])
-        lines += [f"ntg's iterations over IPOPT's: median {found['median_ratio']:.2f}; the largest: {most}.", ""]
+        shares = ", ".join(f"{name} {found[s]['solved'] / found['either']:.1%}" for s, name in solvers)
+        lines += [f"Of the {found['either']} that either solves: {shares}; in the least processor time: {found['ntg']['best_cpu'] / found['either']:.1%} by ntg.", ""]
+        above = f"above three on {found['above_three']} of {found['both']}"
+        lines += [f"ntg's iterations over IPOPT's: median {found['median_ratio']:.2f}; {above}; the largest: {most}.", ""]
     for solver, name in solvers:
         for kind, words in (("wrong", "says solved, not confirmed"), ("unsolved", "unsolved")):
             names = found[solver][kind]
@@ -87,12 +90,16 @@ def main():
     found = profiles.summary(problems, measure.SOLVERS)
     load = os.getloadavg()[0]
     machine = f"{os.cpu_count()} cores ({platform.machine()}), {datetime.date.today()}, load {load:.1f}"
+    kept = measure.RESULTS.parent / "results.json"
+    if options.report and kept.exists():
+        # That of the measurement, and not of today.
+        machine = json.loads(kept.read_text())["machine"]
     text = page(found, machine)
     print(text)
     folder = PICTURES if options.publish else measure.RESULTS.parent
     for what in ("iterations", "cpu"):
         draw.draw(profiles.ratios(problems, measure.SOLVERS, what), what, folder / f"profile_{what}.svg")
-    (measure.RESULTS.parent / "results.json").write_text(json.dumps({"machine": machine, **found}, indent=1) + "\n")
+    kept.write_text(json.dumps({"machine": machine, **found}, indent=1) + "\n")
     if options.publish:
         publish(text)
 

@@ -71,5 +71,7 @@ def summary(problems, solvers):
         (max(problems[p]["ntg"]["iterations"], 1) / max(problems[p]["ipopt"]["iterations"], 1), p) for p in both
     )
     found["median_ratio"] = quotients[len(quotients) // 2][0] if quotients else None
+    found["above_three"] = sum(1 for ratio, _ in quotients if ratio > 3.0)
+    found["either"] = sum(1 for p in problems if any(problems[p][s].get("solved") and is_right(problems[p][s]) for s in solvers))
     found["largest_ratios"] = [(p, ratio) for ratio, p in quotients[:-6:-1]]
     return found

@@ -8,6 +8,10 @@ use ntg::runtime::refine::{Refined, Refinement};
 
 use crate::support::{Shipped, close};
 
+fn warnings(report: &Report) -> Vec<String> {
+    report.warnings().iter().map(ToString::to_string).collect()
+}
+
 /// The complete elliptic integral of the first kind, by the arithmetic-geometric mean.
 fn elliptic(modulus: f64) -> f64 {
     let (mut a, mut b) = (1.0, (1.0 - modulus * modulus).sqrt());
@@ -90,7 +94,7 @@ fn a_mesh_that_cannot_follow_a_simulated_motion_is_refined() {
 fn a_mesh_that_cannot_follow_a_simulated_motion_is_told_of() {
     let report = Shipped::text(RELAXATION).solver().solve().expect("it can be set up");
     assert!(!report.has_solution(), "{report}");
-    let told = report.warnings().iter().map(ToString::to_string).collect::<Vec<_>>();
+    let told = warnings(&report);
     let expected = "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more \
                     intervals where it changes fast, which refining the mesh finds";
     assert!(told.iter().any(|warning| warning == expected), "{told:?}");
@@ -114,7 +118,7 @@ fn a_motion_that_only_the_points_have_is_told_of() {
     .solver()
     .solve()
     .expect("it can be set up");
-    let told = report.warnings().iter().map(ToString::to_string).collect::<Vec<_>>();
+    let told = warnings(&report);
     assert!(told.iter().any(|warning| warning.starts_with("a simulation ")), "{report}");
     assert!(
         !report.has_solution() || report.to_string().starts_with("Batch: solved at the points, and not"),
@@ -155,9 +159,9 @@ fn a_guess_at_which_terms_explode_does_not_hide_what_a_constraint_says() {
     close(report.objective, sum * 24.0 / f64::from(n) / 3.0, 1e-6);
 }
 
-/// An unstable plant, which a simulation from rest would carry to 1e43: `50 + sqrt(2501)`.
+/// A plant that left alone grows to 1e43: `50 + sqrt(2501)`.
 #[test]
-fn a_motion_that_runs_off_is_no_guess() {
+fn a_very_unstable_plant_costs_what_its_riccati_equation_says() {
     let report = Shipped::text(
         "problem Unstable {
             duration T = 2;

@@ -82,6 +82,28 @@ fn a_signature_that_the_target_does_not_allow() {
     assert!(found.settled && found.to_string().starts_with("near the last point"), "{found}");
 }
 
+/// 10 m in 2 s with 3 m/s^2 at most: all constraints are linear, and the first attempt's end is the only one. All attempts
+/// together took 372 iterations.
+#[test]
+fn where_all_constraints_are_linear_one_attempt_tells() {
+    let report = Shipped::text(
+        "problem TooFar {
+            duration T = 2 [s];
+            state x [m], v [m/s];
+            input a in -3 .. 3 [m/s^2];
+            collocation gauss(points = 3, intervals = 10);
+            minimize integral(a^2);
+            dynamics { der(x) == v;  der(v) == a; }
+            initial { x == 0;  v == 0; }
+            final { x == 10 [m];  v == 0; }
+        }",
+    )
+    .solver()
+    .solve()
+    .expect("it can be set up");
+    assert!(matches!(report.status, Status::Infeasible { .. }) && report.iterations <= 100, "{report}");
+}
+
 #[test]
 fn the_least_violation_is_the_distance_that_is_missing() {
     // A car that drives at most 2 m/s for 3 s comes 4 m short of 10 m, whatever else holds.

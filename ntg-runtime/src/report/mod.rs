@@ -209,8 +209,8 @@ impl Report {
         self.status.has_solution()
     }
 
-    /// What violates a constraint at a point by more than a hundred tolerances, relative to the constraint's terms at the
-    /// solution, is none, whatever the scales of the solve said.
+    /// Takes back that there is a solution where a constraint is violated at a point by more than a hundred tolerances,
+    /// relative to the constraint's terms there: the scales of the solve were wrong.
     pub(crate) fn judge_points(&mut self, tolerance: f64) {
         /// That of the acceptable end (1e-6) to the default tolerance.
         const LOOSER: f64 = 100.0;

@@ -51,8 +51,8 @@ impl<'a> Budget<'a> {
         if self.settings.method == Method::Auto { self.at_most(self.share(ATTEMPT)) } else { self.rest() }
     }
 
-    /// Settings of a first attempt from a solution on coarser knots, which is followed by one from the guess; none where
-    /// nothing is left.
+    /// Settings of a first attempt from a solution on coarser knots or from a simulation, which is followed by one from the
+    /// guess; none where nothing is left.
     pub(super) fn near(&self) -> Option<Settings> {
         self.at_most(self.share(COARSE))
     }

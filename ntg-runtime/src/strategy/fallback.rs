@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! interior point, from coarser knots where there are many -> from the guess itself -> sizes anew -> from beside the guess
-//!                -> from a simulation -> restoring by squares -> augmented Lagrangian -> from fewer knots -> sequential quadratic programming
-//!                -> on from the best point
+//!                -> from a simulation -> restoring by squares -> augmented Lagrangian -> from fewer knots
+//!                -> sequential quadratic programming -> on from the best point
 //! ```
 
 use super::beside::beside_infeasible;

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
-//! `coarse_start` finds starts on fewer knots, `simulated_start` by simulation, `fallback` is the sequence of attempts where a solve fails.
+//! `coarse_start` finds starts on fewer knots, `simulated_start` by simulation, `fallback` is the sequence of attempts where
+//! a solve fails.
 
 mod beside;
 mod budget;

@@ -10,7 +10,8 @@ use crate::transcribe::{SetupError, Transcription, names};
 use ntg_nlp::{Outcome, Start};
 
 impl Session {
-    /// An attempt from a simulation for the guess `x`, where there is no objective; none elsewhere. Scales are those of the simulation afterwards.
+    /// An attempt from a simulation for the guess `x`, where there is no objective; none elsewhere. Scales are those of the
+    /// simulation afterwards.
     pub(super) fn solve_simulated(
         &mut self,
         nlp: &mut Transcription,

@@ -3,6 +3,7 @@
 use super::call::AtPlaces;
 use super::radau::{Instant, Linear, Motion};
 use crate::transcribe::Transcription;
+use crate::transcribe::batch::batches;
 use crate::transcribe::elements::domain_sites;
 use crate::transcribe::frame::Frame;
 use crate::transcribe::node::Site;
@@ -36,8 +37,8 @@ impl<'a> Member<'a> {
         let rows =
             (0..group.rows.len()).filter(|row| equal(&group.rows[*row])).map(|row| (row, bounds[row].0)).collect();
         let sources = trace(frame, &group.call, &site).ok()?.sources;
-        let pattern = crate::transcribe::batch::batches(frame, &group.call, vec![site.clone()]).ok()?;
-        let [pattern, _] = pattern.first()?.patterns(&frame.structure.kernels);
+        let [pattern, _] =
+            batches(frame, &group.call, vec![site.clone()]).ok()?.first()?.patterns(&frame.structure.kernels);
         Some(Self { group, site, sources, rows, pattern })
     }
 

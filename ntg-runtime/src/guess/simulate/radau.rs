@@ -63,6 +63,8 @@ struct Step {
 /// Outputs over scaled time.
 pub(super) struct Track {
     steps: Vec<Step>,
+    /// The start of a step and its stages, as fractions of its width.
+    nodes: [f64; STAGES + 1],
 }
 
 impl Track {
@@ -83,12 +85,7 @@ impl Track {
         let after = self.steps.partition_point(|step| step.tau <= tau);
         let step = &self.steps[after.max(1) - 1];
         let s = ((tau - step.tau) / step.width).clamp(0.0, 1.0);
-        let nodes = with_start();
-        let weight = |i: usize| -> f64 {
-            let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
-            others.map(|(_, node)| (s - node) / (nodes[i] - node)).product()
-        };
-        (0..=STAGES).map(|i| weight(i) * step.values[i][output]).sum()
+        (0..=STAGES).map(|i| lagrange(&self.nodes, i, s) * step.values[i][output]).sum()
     }
 }
 
@@ -119,9 +116,10 @@ impl Method {
     }
 }
 
-fn with_start() -> [f64; STAGES + 1] {
-    let [first, second, third] = Method::new(&[]).nodes;
-    [0.0, first, second, third]
+/// The polynomial that is 1 at node `i` and 0 at the others.
+fn lagrange(nodes: &[f64], i: usize, at: f64) -> f64 {
+    let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
+    others.map(|(_, node)| (at - node) / (nodes[i] - node)).product()
 }
 
 /// Where each output's values begin among all values.
@@ -178,7 +176,8 @@ pub(super) fn integrate(motion: &mut impl Motion, initial: Vec<f64>, breaks: &[f
             width = (h * factor).max(if last { width } else { 0.0 });
         }
     }
-    Some(Track { steps })
+    let [first, second, third] = integration.method.nodes;
+    Some(Track { steps, nodes: [0.0, first, second, third] })
 }
 
 struct Integration<'m, M> {
@@ -314,11 +313,7 @@ impl<M: Motion> Integration<'_, M> {
     /// The largest error of a value, in tolerances: by how much the derivative at the start differs from what those of the
     /// stages say about it (Hairer and Wanner, equation IV.8.17, without the filter).
     fn error(&self, now: &[f64], h: f64, values: &[Vec<f64>]) -> f64 {
-        let nodes = self.method.nodes;
-        let at_start = |i: usize| -> f64 {
-            let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
-            others.map(|(_, node)| -node / (nodes[i] - node)).product()
-        };
+        let at_start = |i: usize| lagrange(&self.method.nodes, i, 0.0);
         let mut largest = 0.0_f64;
         for (output, (&first, &order)) in self.offsets.iter().zip(&self.orders).enumerate() {
             for value in first..first + order {
