@@ -109,6 +109,9 @@ pub struct Limits {
     /// Variables with the same number share their typical size, such as the coefficients of one spline. Empty: each has
     /// its own.
     pub alike: Vec<u32>,
+    /// Rows with the same number are one function at several points, whose slopes are comparable. Empty: those of one place
+    /// in the elements of a block are.
+    pub relation: Vec<u32>,
     /// Lower bounds of the rows; equal to the upper bound for an equality.
     pub row_lower: Vec<f64>,
     /// Upper bounds of the rows.

@@ -124,7 +124,7 @@ impl Slopes {
     pub fn beside<N: Nlp>(self, beside: Option<Self>, nlp: &N, at: &Evaluation) -> Self {
         let (blocks, limits) = (nlp.blocks(), nlp.limits());
         self.or_beside(beside, limits)
-            .within_relations(blocks)
+            .within_relations(blocks, limits)
             .within_reach(&at.rows, limits)
             .above_rounding(at.objective)
     }
@@ -140,7 +140,7 @@ impl Slopes {
             }
         }
         self.variation = self.variation.max(LEAST_AT_START * bending(blocks, at, sizes));
-        self.within_relations(blocks).within_reach(&at.rows, limits).above_rounding(at.objective)
+        self.within_relations(blocks, limits).within_reach(&at.rows, limits).above_rounding(at.objective)
     }
 
     /// The slopes that scale a program, from those at the start and at a point beside it (none where the program has no
@@ -170,15 +170,9 @@ impl Slopes {
     /// No row counts as less steep than rounding beside the steepest row of its relation, which is the same function at
     /// other points: a relation that is all but constant at some points (1e-200 for a saturated logistic function) is
     /// not magnified there until its rounding weighs.
-    fn within_relations(mut self, blocks: &[Block]) -> Self {
-        for relation in blocks.iter().flat_map(|block| block.target.chunks(block.elements.max(1))) {
-            let rows = || relation.iter().filter_map(|target| target.row());
-            let least =
-                f64::EPSILON * rows().map(|row| self.rows[row]).filter(|slope| slope.is_finite()).fold(0.0, f64::max);
-            for row in rows() {
-                self.rows[row] = self.rows[row].max(least);
-            }
-        }
+    fn within_relations(mut self, blocks: &[Block], limits: &Limits) -> Self {
+        let steepest = steepest_of_relations(blocks, limits, &self.rows);
+        self.rows.iter_mut().zip(steepest).for_each(|(slope, steepest)| *slope = slope.max(f64::EPSILON * steepest));
         self
     }
 
@@ -223,6 +217,26 @@ pub fn row_factors<N: Nlp>(nlp: &N, x: &[f64]) -> Vec<f64> {
     }
     let plain = Limits { row_weight: vec![], ..limits.clone() };
     Scales::from_slopes(&plain, Scaling::Automatic, &Slopes { rows, variation: 0.0 }).rows
+}
+
+/// The steepest finite slope among the rows of each row's relation, which is the same function at other points.
+pub(crate) fn steepest_of_relations(blocks: &[Block], limits: &Limits, slopes: &[f64]) -> Vec<f64> {
+    let finite = |row: usize| if slopes[row].is_finite() { slopes[row] } else { 0.0 };
+    if limits.relation.len() == slopes.len() {
+        let count = limits.relation.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut steepest = vec![0.0_f64; count];
+        for (row, relation) in limits.relation.iter().enumerate() {
+            steepest[*relation as usize] = steepest[*relation as usize].max(finite(row));
+        }
+        return limits.relation.iter().map(|relation| steepest[*relation as usize]).collect();
+    }
+    let mut all: Vec<f64> = (0..slopes.len()).map(finite).collect();
+    for relation in blocks.iter().flat_map(|block| block.target.chunks(block.elements.max(1))) {
+        let rows = || relation.iter().filter_map(|target| target.row());
+        let steepest = rows().map(|row| all[row]).fold(0.0, f64::max);
+        rows().for_each(|row| all[row] = all[row].max(steepest));
+    }
+    all
 }
 
 /// A size that may divide.

@@ -15,7 +15,7 @@ pub(super) fn constraints(
     nlp: &Transcription,
     (outcome, at): (&Outcome, &Evaluation),
     fine: &mut Plan,
-) -> Result<(Vec<ConstraintReport>, Vec<f64>), SetupError> {
+) -> Result<(Vec<ConstraintReport>, Sizes, Vec<f64>), SetupError> {
     let structure = &nlp.model.structure;
     let declared = structure.constraints.iter();
     let mut reports: Vec<ConstraintReport> = declared
@@ -24,25 +24,24 @@ pub(super) fn constraints(
             place: constraint.place.clone(),
             block: constraint.block,
             unit: constraint.unit.clone(),
-            size: constraint.unit.factor,
             points: None,
             between: None,
             multiplier: None,
             sensitivity: 0.0,
         })
         .collect();
-    set_sizes(nlp, (outcome, at), &mut reports);
+    let all_sizes = Sizes::at(nlp, (outcome, at));
     for (row, info) in nlp.elements.rows.iter().enumerate() {
         let RowKind::Constraint(constraint) = info.kind else { continue };
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
         let report = &mut reports[constraint];
-        let sizes = (report.size, report.unit.factor);
+        let sizes = (|| all_sizes.of(nlp, constraint, &info.indices), report.unit.factor);
         keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), (&info.point, &info.indices));
         multipliers::add(nlp, outcome, row, report);
     }
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
-        let sizes = (report.size, report.unit.factor);
+        let sizes = (|| all_sizes.of(nlp, checked.constraint, checked.indices), report.unit.factor);
         keep(
             nlp,
             &outcome.x,
@@ -51,7 +50,7 @@ pub(super) fn constraints(
             (&checked.point, checked.indices),
         );
     })?;
-    Ok((reports, terms))
+    Ok((reports, all_sizes, terms))
 }
 
 /// Replaces the worst place so far by this one, if this one is worse.
@@ -59,14 +58,14 @@ fn keep(
     nlp: &Transcription,
     x: &[f64],
     worst: &mut Option<Worst>,
-    (value, (lower, upper), (size, unit)): (f64, (f64, f64), (f64, f64)),
+    (value, (lower, upper), (size, unit)): (f64, (f64, f64), (impl Fn() -> f64, f64)),
     (point, indices): (&Point, &[i64]),
 ) {
     if worst.is_some() && lower <= value && value <= upper {
         return; // As nearly all are.
     }
     let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
-    let relative = missed / scale(lower, upper, size);
+    let relative = missed / scale(lower, upper, size());
     let worse = |held: &Worst| relative > held.relative || (relative.is_nan() && !held.relative.is_nan());
     if worst.as_ref().is_none_or(worse) {
         let layout = &nlp.model.layout;
@@ -90,44 +89,56 @@ pub(super) fn have_zero_bounds(nlp: &Transcription) -> bool {
     limits.row_lower.iter().zip(&limits.row_upper).any(is_zero)
 }
 
-/// Sets what violations of bounds of 0 are relative to: the largest term of a trajectory constraint along the solution,
-/// equation (9.3a); where all terms are 0, and elsewhere than along a trajectory, the largest slope of the rows. `at` holds
-/// first derivatives where they are finite, and zeros elsewhere.
-fn set_sizes(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation), reports: &mut [ConstraintReport]) {
-    let (mut terms, mut slopes) = (vec![0.0_f64; reports.len()], vec![0.0_f64; reports.len()]);
-    let mut slots = vec![];
-    let of_paths = |batch: &GroupBatch| matches!(nlp.model.structure.groups[batch.group].domain, Domain::Path { .. });
-    let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
-    for (_, (block, values)) in blocks.filter(|(batch, _)| of_paths(batch)) {
-        for e in 0..block.elements {
-            let variables = block.variables(e);
-            slots.clear();
-            slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
-                let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
-                let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
-                value.abs().max(typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
-            }));
-            for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
-                let lane = row * block.elements + e;
-                let Target::Row(target) = block.target[lane] else { continue };
-                let RowKind::Constraint(constraint) = nlp.elements.rows[target as usize].kind else { continue };
-                let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
-                let term = (slope * slots[slot]).abs();
-                if term.is_finite() {
-                    terms[constraint] = terms[constraint].max(term);
+/// What violations of bounds of 0 are relative to, SI, by relation of the rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Sizes(Vec<f64>);
+
+impl Sizes {
+    /// The largest term of each member of a trajectory constraint along the solution, equation (9.3a); where all terms are
+    /// 0, and elsewhere than along a trajectory, the largest slope of the member's rows. `at` holds first derivatives where
+    /// they are finite, and zeros elsewhere.
+    fn at(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation)) -> Self {
+        let relations = &nlp.elements.relations;
+        let (mut terms, mut slopes) = (vec![0.0_f64; relations.count()], vec![0.0_f64; relations.count()]);
+        let mut slots = vec![];
+        let of_paths =
+            |batch: &GroupBatch| matches!(nlp.model.structure.groups[batch.group].domain, Domain::Path { .. });
+        let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
+        for (_, (block, values)) in blocks.filter(|(batch, _)| of_paths(batch)) {
+            for e in 0..block.elements {
+                let variables = block.variables(e);
+                slots.clear();
+                slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
+                    let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
+                    let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
+                    value.abs().max(typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
+                }));
+                for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                    let lane = row * block.elements + e;
+                    let Target::Row(target) = block.target[lane] else { continue };
+                    let relation = relations.of_row[target as usize] as usize;
+                    let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
+                    let term = (slope * slots[slot]).abs();
+                    if term.is_finite() {
+                        terms[relation] = terms[relation].max(term);
+                    }
                 }
             }
         }
-    }
-    for (info, factor) in nlp.elements.rows.iter().zip(&outcome.row_factors) {
-        if let (RowKind::Constraint(constraint), true) = (info.kind, factor.is_finite() && *factor > 0.0) {
-            slopes[constraint] = slopes[constraint].max(1.0 / factor);
+        for (relation, factor) in relations.of_row.iter().zip(&outcome.row_factors) {
+            if factor.is_finite() && *factor > 0.0 {
+                slopes[*relation as usize] = slopes[*relation as usize].max(1.0 / factor);
+            }
         }
+        let larger = |(term, slope): (f64, f64)| [term, slope].into_iter().find(|size| *size > 0.0).unwrap_or(0.0);
+        Self(terms.into_iter().zip(slopes).map(larger).collect())
     }
-    for (report, (term, slope)) in reports.iter_mut().zip(terms.into_iter().zip(slopes)) {
-        if let Some(size) = [term, slope].into_iter().find(|size| *size > 0.0) {
-            report.size = size;
-        }
+
+    /// The size of a member of a constraint; the constraint's unit where none is known.
+    pub(super) fn of(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> f64 {
+        let relation = nlp.elements.relations.of_constraint(constraint, indices);
+        let size = relation.and_then(|relation| self.0.get(relation)).filter(|size| **size > 0.0);
+        size.copied().unwrap_or(nlp.model.structure.constraints[constraint].unit.factor)
     }
 }
 

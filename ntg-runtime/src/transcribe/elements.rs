@@ -12,6 +12,7 @@ use super::layout::{Layout, narrow, outside};
 use super::node::Site;
 use super::points::{Point, point_set, within};
 use super::range_maps::{identities, range_maps};
+use super::relations::Relations;
 use super::repeated::without_repetitions;
 use super::rows::{RowInfo, RowKind, group_bounds};
 use ntg_nlp::{Block, Target};
@@ -34,6 +35,7 @@ pub(crate) struct Elements {
     /// One for each block but the block of identities.
     pub(crate) batches: Vec<GroupBatch>,
     pub(crate) rows: Vec<RowInfo>,
+    pub(crate) relations: Relations,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
     /// Rows on [`Domain::Mission`] by constraint and indices, for parts.
@@ -57,6 +59,7 @@ pub(crate) fn elements(frame: &Frame) -> Result<Elements, SetupError> {
     }
     all.add_identities(frame);
     all.add_parts(frame)?;
+    all.relations = Relations::new(&all.rows);
     Ok(all)
 }
 
@@ -237,6 +240,13 @@ impl Elements {
             }
         }
         Ok(())
+    }
+}
+
+impl Elements {
+    /// The row that defines each integral's member, in the order of their variables.
+    pub(crate) fn integral_rows(&self) -> impl Iterator<Item = &u32> {
+        self.integral_rows.iter()
     }
 }
 

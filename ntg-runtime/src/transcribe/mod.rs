@@ -29,6 +29,7 @@ pub(crate) mod node;
 pub(crate) mod points;
 mod range_maps;
 mod reduce;
+pub(crate) mod relations;
 mod repeated;
 pub(crate) mod rows;
 mod scale;
@@ -295,6 +296,7 @@ fn limits(elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
         upper: bounds.iter().map(|b| b.1).collect(),
         scale: vec![1.0; bounds.len()],
         alike: vec![],
+        relation: elements.relations.of_row.clone(),
         row_lower: elements.lower.clone(),
         row_upper: elements.upper.clone(),
         row_scale: vec![1.0; elements.rows.len()],

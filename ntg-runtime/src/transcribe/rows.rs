@@ -11,7 +11,7 @@ use super::times::phase_words;
 use ntg_structure::{Bounds, Call, Constraint, Duration, Group, Place, Row, Start, Unit};
 
 /// What a row of the program stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum RowKind {
     /// One member of a constraint at one point.
     Constraint(usize),

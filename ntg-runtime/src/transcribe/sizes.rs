@@ -6,7 +6,8 @@
 //! balances them. Units cannot matter, because a slope of a row times a size has the unit of the row.
 
 use super::Transcription;
-use super::rows::{RowKind, bound_size};
+use super::rows::bound_size;
+use ntg_nlp::scaling::beside;
 use ntg_nlp::{Block, Evaluation, Nlp, Target};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,14 +15,21 @@ use std::ops::Range;
 /// Sizes below this fraction of what balances their constraints are rounding.
 const ROUNDING: f64 = 1e-10;
 
+/// An integral whose value is less than the first fraction of its value beside the point is as large as that fraction of it;
+/// less than the second, it is stationary at the point but for rounding. Those of the objective (5.3).
+const LEAST_AT_POINT: f64 = 1e-2;
+const STATIONARY: f64 = 1e-6;
+
 /// What shares a size (an output in all phases of an agent, a variable, a duration), and all constraints in which it
-/// stands.
+/// stands. Every member of a constraint counts as one of its own: members may differ in size by any factor.
 #[derive(Debug, Default)]
 pub(super) struct Balance {
     /// The group of each variable.
     group: Vec<usize>,
     /// The size of each group; none where it is not known yet.
     size: Vec<Option<f64>>,
+    /// Whether a group is an integral, which has its size from the integral's values alone.
+    is_integral: Vec<bool>,
     /// A bound of the group's own variables; 0 where there is none.
     own_bound: Vec<f64>,
     /// For each group the constraints in which it stands, with the largest slope by a slot of the group.
@@ -67,6 +75,8 @@ impl Transcription<'_> {
         balance.forget_rounding();
         let known = balance.size.clone();
         balance.propagate(&[Balance::balanced]);
+        self.size_integrals(x, scale, &mut balance);
+        balance.propagate(&[Balance::balanced]);
         if balance.size.contains(&None) {
             balance.objective = self.objective_size(&at, &balance);
             balance.curvature = self.curvatures(x, &balance);
@@ -98,25 +108,44 @@ impl Transcription<'_> {
             });
             balance.own_bound.push(bounds.filter(|bound| bound.is_finite()).fold(0.0, f64::max));
             balance.size.push(is_known.then_some(largest));
+            balance.is_integral.push(variables[0] as usize >= integrals);
         }
         balance
     }
 
-    /// Slopes and bounds of all constraints: of each the largest over its points and members.
-    fn collect_slopes(&self, at: &Evaluation, balance: &mut Balance) {
-        let mut numbers: BTreeMap<(bool, usize), usize> = BTreeMap::new();
-        let mut constraint_of = vec![];
-        for info in &self.elements.rows {
-            let kind = match info.kind {
-                RowKind::Constraint(constraint) => (false, constraint),
-                RowKind::Integral(integral) => (true, integral),
-            };
-            let next = numbers.len();
-            constraint_of.push(*numbers.entry(kind).or_insert(next));
+    /// Sizes of integrals, as the objective has its own (5.3): the value at the point, unless it is stationary there, as a
+    /// sum of squares is at 0, by the value beside the point. `scale` has the sizes of what has none yet. Where the
+    /// integrals have no values beside the point, they stay without a size.
+    fn size_integrals(&self, x: &[f64], scale: &[f64], balance: &mut Balance) {
+        let size = |j: usize| balance.size[balance.group[j]].unwrap_or(scale[j]);
+        let sizes: Vec<f64> = (0..x.len()).map(size).collect();
+        let mut near = x.to_vec();
+        beside(x, &self.limits, &sizes, &mut near);
+        // Integrals stay where they are: each row is then its integral less the sum that defines it.
+        let first = self.model.layout.integral_first.first().map_or(x.len(), |first| *first as usize);
+        near[first..].copy_from_slice(&x[first..]);
+        let (mut workspace, mut at) = self.workspace();
+        if first == x.len() || self.values(&near, &mut workspace, &mut at).is_err() {
+            balance.is_integral.fill(false);
+            return;
         }
-        balance.bound = vec![0.0; numbers.len()];
-        balance.value = vec![0.0; numbers.len()];
-        balance.is_inequality = vec![false; numbers.len()];
+        for (variable, &row) in (first..).zip(self.elements.integral_rows()) {
+            let (here, there) = (x[variable].abs(), (x[variable] - at.rows[row as usize]).abs());
+            let size = if here > STATIONARY * there { here.max(LEAST_AT_POINT * there) } else { there };
+            if size.is_normal() {
+                balance.size[balance.group[variable]] = Some(size);
+            }
+        }
+        balance.is_integral.fill(false);
+    }
+
+    /// Slopes and bounds of all constraints: of each member the largest over its points.
+    fn collect_slopes(&self, at: &Evaluation, balance: &mut Balance) {
+        let relations = &self.elements.relations;
+        let constraint_of: Vec<usize> = relations.of_row.iter().map(|relation| *relation as usize).collect();
+        balance.bound = vec![0.0; relations.count()];
+        balance.value = vec![0.0; relations.count()];
+        balance.is_inequality = vec![false; relations.count()];
         for (row, &constraint) in constraint_of.iter().enumerate() {
             let limits = (self.limits.row_lower[row], self.limits.row_upper[row]);
             balance.is_inequality[constraint] |= limits.0 != limits.1;
@@ -159,7 +188,7 @@ impl Transcription<'_> {
             }
         }
         balance.constraint_of = constraint_of;
-        balance.groups = vec![vec![]; numbers.len()];
+        balance.groups = vec![vec![]; relations.count()];
         balance.constraints = vec![vec![]; balance.size.len()];
         for ((constraint, group), slope) in slopes.into_iter().filter(|(_, slope)| *slope > 0.0) {
             balance.groups[constraint].push((group, slope));
@@ -190,7 +219,7 @@ impl Balance {
     /// What has no size yet, with the sizes that are found.
     fn sizes_by(&self, size: impl Fn(usize) -> Option<f64>) -> impl Iterator<Item = (usize, f64)> {
         (0..self.size.len())
-            .filter(|group| self.size[*group].is_none())
+            .filter(|group| self.size[*group].is_none() && !self.is_integral[*group])
             .filter_map(move |group| Some((group, size(group)?)))
     }
 
