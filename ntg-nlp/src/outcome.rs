@@ -85,6 +85,9 @@ pub struct Outcome {
     pub objective: f64,
     /// How far `x` and the multipliers are from a solution.
     pub residuals: Residuals,
+    /// Whether a solution fails the second-order conditions: beside it the objective is less, and the method could not get
+    /// away from it (docs/maths.md, section 11.13). Sequential quadratic programming does not look.
+    pub is_saddle: bool,
     /// Steps taken.
     pub iterations: usize,
     /// Quadratic programs solved.
@@ -111,6 +114,7 @@ impl Outcome {
             row_factors: vec![1.0; nlp.rows()],
             objective: f64::NAN,
             residuals: Residuals::default(),
+            is_saddle: false,
             iterations: 0,
             qps: 0,
             history: Vec::new(),

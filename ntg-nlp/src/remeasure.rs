@@ -7,11 +7,11 @@
 //! the start of another solve, with scales from there. And where variables outgrow their typical sizes on the way, a solve
 //! begins again with larger ones.
 
-use crate::contract::{Block, Evaluation, Nlp};
+use crate::contract::{Evaluation, Nlp};
 use crate::options::Options;
 use crate::outcome::Outcome;
 use crate::residuals::{self, Point, Residual, slot_terms, violation};
-use crate::scaling::{Scales, Slopes, variation};
+use crate::scaling::{Scales, Slopes, steepest_of_relations, variation};
 use crate::sizes::{Resized, multiples};
 use crate::sparse::Assembly;
 use crate::status::Status;
@@ -26,6 +26,9 @@ const ROUNDS: usize = 3;
 /// How often a solve begins again with larger sizes. A law: the next sizes are at least `OUTGROWN * MARGIN` times as
 /// large, so that these are eighteen orders of magnitude.
 const RESTARTS: usize = 6;
+/// How often a solve goes on from beside a saddle. A law: each time the objective has fallen, and a saddle that leads to
+/// the next one is rare.
+const SADDLES: usize = 3;
 /// Where a variable is less than this part of its typical size at the start, the start says nothing about the size, which
 /// is made up from the equations there: a law, for a guess has its own size.
 pub(crate) const UNSEEN: f64 = 0.5;
@@ -49,6 +52,8 @@ pub(crate) enum Measure {
     Rows,
     /// By these sizes of its variables and the slopes there, the end is no solution.
     Sizes(Vec<f64>),
+    /// They hold, and the end is a saddle; beside it, at this point, the Lagrangian is less.
+    Saddle(Vec<f64>),
     /// Variables have outgrown their sizes on the way; these are larger.
     Outgrown(Vec<f64>),
 }
@@ -70,7 +75,8 @@ pub(crate) fn until_measured<N: Nlp>(
     let began = Instant::now();
     let mut resized = Resized::new(nlp);
     let mut start: Option<Vec<f64>> = None;
-    let (mut iterations, mut rounds, mut restarts) = (0, 0, 0);
+    let (mut iterations, mut rounds, mut restarts, mut saddles) = (0, 0, 0, 0);
+    let mut left_saddle: Option<Outcome> = None;
     loop {
         let left = options.max_iterations.saturating_sub(iterations);
         let round = Round { start: start.as_deref(), may_outgrow: restarts < RESTARTS };
@@ -86,14 +92,24 @@ pub(crate) fn until_measured<N: Nlp>(
             measure => measure,
         };
         match measure {
-            Measure::Holds => return outcome,
+            Measure::Holds => return unless_worse(left_saddle, outcome),
+            Measure::Saddle(_) if saddles == SADDLES => {
+                return unless_worse(left_saddle, Outcome { is_saddle: true, ..outcome });
+            }
+            Measure::Saddle(below) => {
+                saddles += 1;
+                let saddle = Outcome { is_saddle: true, ..outcome };
+                left_saddle = Some(unless_worse(left_saddle, saddle));
+                start = Some(below);
+                continue;
+            }
             Measure::Outgrown(sizes) => {
                 restarts += 1;
                 resized.resize(sizes);
                 continue;
             }
             Measure::Rows | Measure::Sizes(_) if rounds == ROUNDS => {
-                return Outcome { status: Status::StepTooSmall, ..outcome };
+                return unless_worse(left_saddle, Outcome { status: Status::StepTooSmall, ..outcome });
             }
             Measure::Rows => {}
             Measure::Sizes(sizes) => resized.resize(sizes),
@@ -101,6 +117,17 @@ pub(crate) fn until_measured<N: Nlp>(
         rounds += 1;
         start = Some(outcome.x);
     }
+}
+
+/// The end of a solve that went on from beside a saddle, if it did; the saddle, where that end is no solution or above it. An
+/// objective without a lower bound and a cancelled solve are ends all the same. Iterations and time are those of the end.
+fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
+    let Some(saddle) = saddle else { return end };
+    let is_below = end.status.has_solution() && end.objective <= saddle.objective;
+    if is_below || matches!(end.status, Status::Unbounded | Status::Cancelled) {
+        return end;
+    }
+    Outcome { iterations: end.iterations, seconds: end.seconds, ..saddle }
 }
 
 /// Larger sizes of what has outgrown its own at a point: of the scaled variables beyond their limits, and of those that
@@ -182,7 +209,8 @@ pub(crate) fn certain(options: &Options) -> f64 {
 /// Whether all rows hold by their sizes at a point: the larger of a row's bounds and of the steepest slope of its
 /// relation there. `slopes` are those of the rows by variables of their sizes; a row of slope 0 is not judged.
 pub(crate) fn rows_hold<N: Nlp>(nlp: &N, rows: &[f64], slopes: &mut [f64], options: &Options) -> bool {
-    steepest_of_relations(nlp.blocks(), slopes);
+    let steepest = steepest_of_relations(nlp.blocks(), nlp.limits(), slopes);
+    slopes.iter_mut().zip(steepest).for_each(|(slope, steepest)| *slope = slope.max(steepest));
     let (limits, tolerance) = (nlp.limits(), LOOSER * options.constraint_tolerance);
     rows.iter().enumerate().all(|(row, &value)| {
         let (lower, upper) = (limits.row_lower[row], limits.row_upper[row]);
@@ -207,13 +235,4 @@ pub(crate) fn measure_at_end<N: Nlp>(nlp: &N, outcome: &Outcome, options: &Optio
         return Measure::Rows;
     }
     sizes_at_end(nlp, outcome, options).map_or(Measure::Holds, Measure::Sizes)
-}
-
-/// Raises the slope of each row to the steepest one of its relation, which is the same function at other points.
-fn steepest_of_relations(blocks: &[Block], slopes: &mut [f64]) {
-    for relation in blocks.iter().flat_map(|block| block.target.chunks(block.elements.max(1))) {
-        let rows = || relation.iter().filter_map(|target| target.row());
-        let steepest = rows().map(|row| slopes[row]).fold(0.0, f64::max);
-        rows().for_each(|row| slopes[row] = slopes[row].max(steepest));
-    }
 }

@@ -106,16 +106,18 @@ impl<'a, N: Nlp> State<'a, N> {
     /// Ends the solve at the present point.
     pub(super) fn outcome(mut self, status: Status) -> Outcome {
         let rows_hold = !status.has_solution() || self.rows_hold();
+        let below = if matches!(status, Status::Solved) && rows_hold { self.below_saddle() } else { None };
         let (nlp, options) = (self.nlp, self.options);
         let (outcome, analysis) = self.leave(status);
         let is_near =
             |system: &System<N::Workspace>| is_near_scales(nlp, (system.scales.objective, system.latest()), &outcome);
+        let holds = || below.map_or(Measure::Holds, Measure::Saddle);
         analysis.measure = if !rows_hold {
             Measure::Rows
         } else if !outcome.status.has_solution() || analysis.system.as_ref().is_none_or(is_near) {
-            Measure::Holds
+            holds()
         } else {
-            sizes_at_end(nlp, &outcome, options).map_or(Measure::Holds, Measure::Sizes)
+            sizes_at_end(nlp, &outcome, options).map_or_else(holds, Measure::Sizes)
         };
         outcome
     }
@@ -159,6 +161,7 @@ impl<'a, N: Nlp> State<'a, N> {
             row_factors,
             objective: self.record.objective,
             residuals,
+            is_saddle: false,
             iterations: self.iterations,
             qps: 0,
             history: self.history,

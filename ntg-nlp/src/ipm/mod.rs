@@ -10,7 +10,7 @@
 //! the `filter` with its second-order corrections and its `watchdog`. `mode` says how violations are treated: `relaxed`
 //! rows cost a price, that of `penalty`, where bounds are elastic, or of the `augmented` Lagrangian; `penalty_search`
 //! searches by it, `restoration` restores feasibility by it. `initial` and `warm` are the start, `polish` and `ending` the
-//! end.
+//! end, and `saddle` looks whether that is a minimum.
 //!
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), cited as WB.
 
@@ -30,6 +30,7 @@ mod penalty_search;
 mod polish;
 mod relaxed;
 mod restoration;
+mod saddle;
 mod second_order;
 mod slacks;
 mod state;

@@ -166,6 +166,25 @@ impl Storage {
         self.fillers.iter().for_each(|&at| matrix[at] = 1.0);
     }
 
+    /// Adds the product of a symmetric matrix and a vector to `out`; both vectors by padded index.
+    pub(super) fn add_product(&self, matrix: &[f64], vector: &[f64], out: &mut [f64]) {
+        for j in 0..self.columns() {
+            let below = self.runs(j).iter().flat_map(|run| run.first..run.first + run.len);
+            for (block, row) in self.blocks(j).zip(std::iter::once(j).chain(below)) {
+                for entry in 0..BLOCK * BLOCK {
+                    let (high, low) = (BLOCK * row + entry % BLOCK, BLOCK * j + entry / BLOCK);
+                    let value = matrix[BLOCK * BLOCK * block + entry];
+                    if high >= low {
+                        out[high] += value * vector[low];
+                    }
+                    if high > low {
+                        out[low] += value * vector[high];
+                    }
+                }
+            }
+        }
+    }
+
     /// The sink: where entries of padding are written.
     pub(super) fn sink(&self) -> usize {
         self.len - 1

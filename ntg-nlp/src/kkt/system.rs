@@ -383,6 +383,17 @@ impl<W> System<W> {
         self.elements.convexify(sigma, &mut self.convexification);
     }
 
+    /// Writes `C direction` with the convexifying term `C`, by variable; the padding entry becomes 0.
+    pub(crate) fn convexification_product(&self, direction: &[f64], out: &mut [f64]) {
+        let padded = &self.storage.padded[..self.x.len()];
+        let mut along = vec![0.0; BLOCK * self.storage.columns()];
+        let mut product = along.clone();
+        padded.iter().zip(direction).for_each(|(&at, d)| along[at] = *d);
+        self.storage.add_product(&self.convexification, &along, &mut product);
+        out.fill(0.0);
+        out.iter_mut().zip(padded).for_each(|(out, &at)| *out = product[at]);
+    }
+
     /// Sets the diagonal entry of a border row to `-compliance`.
     pub(crate) fn set_border_diagonal(&mut self, border: usize, compliance: f64) {
         let unknown = self.unknowns.variables + border;

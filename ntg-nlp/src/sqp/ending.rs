@@ -95,6 +95,7 @@ impl<N: Nlp> Run<'_, N> {
             row_factors: self.program.scales.rows.clone(),
             objective: self.record.objective,
             residuals: self.record.residuals,
+            is_saddle: false,
             iterations: self.iterations,
             qps: self.qps,
             history: self.history,

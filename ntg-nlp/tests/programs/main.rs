@@ -6,6 +6,7 @@ mod support;
 
 mod hs;
 mod laws;
+mod saddles;
 mod sensitivity;
 
 // Tests of both methods.

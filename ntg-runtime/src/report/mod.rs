@@ -91,6 +91,10 @@ pub struct Report {
     /// Durations without a lower bound that the solve has made as short as it may, in words, each with the place of its
     /// declaration.
     pub(crate) shortest: Vec<(String, Place)>,
+    /// Whether the solution fails the second-order conditions ([`Outcome::is_saddle`]).
+    pub(crate) is_saddle: bool,
+    /// What violations of bounds of 0 are relative to.
+    pub(crate) sizes: constraints::Sizes,
     /// What a simulation tells of the motion that was to be found.
     pub(crate) simulation: Option<String>,
     /// The residuals of the optimality conditions.
@@ -140,9 +144,6 @@ pub struct ConstraintReport {
     pub block: Block,
     /// The unit of values, bounds and violations.
     pub unit: Unit,
-    /// What a violation of a bound of 0 is relative to, SI: how much the constraint changes when one variable changes
-    /// by its size (docs/maths.md, equation 5.2).
-    pub size: f64,
     /// Where it is violated most at the points; none where it has no row.
     pub points: Option<Worst>,
     /// Where it is violated most on the finer grid; none where it is not checked there.
@@ -264,7 +265,7 @@ impl Report {
             at.blocks.iter_mut().for_each(|block| block.jacobian.fill(0.0));
             _ = nlp.values(&outcome.x, work, at);
         }
-        let (constraints, fine_terms) = constraints::constraints(nlp, (&outcome, at), fine)?;
+        let (constraints, sizes, fine_terms) = constraints::constraints(nlp, (&outcome, at), fine)?;
         let terms = cost::terms(nlp, at, &fine_terms);
         let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
@@ -297,6 +298,8 @@ impl Report {
             between_tolerance: Settings::default().between_tolerance,
             singular: vec![],
             shortest,
+            is_saddle: outcome.is_saddle,
+            sizes,
             simulation: None,
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),
@@ -326,7 +329,7 @@ pub(crate) fn violations(
     let x = report.solution.coefficients();
     Plan::new(nlp, samples)?.evaluate(nlp, (x, Wanted::Violated), |checked| {
         let (lower, upper) = checked.bounds;
-        let size = report.constraints[checked.constraint].size;
+        let size = report.sizes.of(nlp, checked.constraint, checked.indices);
         let missed = ntg_nlp::residuals::violation(checked.value, lower, upper);
         let relative = missed / constraints::scale(lower, upper, size);
         if let Some(phase) = checked.point.phase.filter(|_| relative > 0.0) {

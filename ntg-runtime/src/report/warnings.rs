@@ -55,13 +55,29 @@ impl Report {
         });
         let independent = &self.solution.structure().independent;
         let between = self.violated_between().into_iter().map(|constraint| violated_between(constraint, independent));
+        let saddle = self.is_saddle.then(|| Warning {
+            message:
+                "this is no minimum: beside it the objective is better, and the solve could not get away from it; \
+                      give a guess that does not lie in its symmetry, or try several starts"
+                    .to_owned(),
+            place: self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone()),
+            constraint: String::new(),
+            time: None,
+        });
         let unmet = self.refined.iter().filter(|refined| refined.status != RefineStatus::Met).map(|refined| Warning {
             message: format!("refinement to {:.0e}: {}", refined.tolerance, refined.status),
             place: Place::default(),
             constraint: String::new(),
             time: None,
         });
-        singular.chain(shortest).chain(coarse).chain(self.cost_is_off()).chain(between).chain(unmet).collect()
+        singular
+            .chain(shortest)
+            .chain(saddle)
+            .chain(coarse)
+            .chain(self.cost_is_off())
+            .chain(between)
+            .chain(unmet)
+            .collect()
     }
 
     /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to

@@ -102,8 +102,10 @@ pub(super) fn better(first: Outcome, second: Outcome) -> Outcome {
         false => f64::INFINITY,
     };
     let rank = |outcome: &Outcome| match outcome.status {
-        Status::Solved => 0,
+        Status::Solved if !outcome.is_saddle => 0,
         Status::Acceptable => 1,
+        // A saddle is no minimum, and where the objective falls without limit beside it there is none.
+        Status::Unbounded => 2,
         _ if outcome.status.is_final() => 2,
         Status::Infeasible { .. } => 3,
         _ => 4,
@@ -133,6 +135,7 @@ mod tests {
             row_factors: vec![],
             objective,
             residuals: Residuals { scaled: residual, unscaled: residual },
+            is_saddle: false,
             iterations: 1,
             qps: 0,
             history: vec![],

@@ -76,6 +76,8 @@ impl Attempt {
     fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
         match status {
             Status::Acceptable => matches!(self, Self::SizesAnew | Self::OtherWays),
+            // It does not tell a saddle from a minimum.
+            Status::Unbounded if self == Self::Sqp => false,
             Status::IterationLimit if self == Self::Onwards => true,
             _ if self == Self::Onwards => false,
             _ => !status.is_final() && (seems_infeasible || self != Self::Beside),

@@ -1,0 +1,75 @@
+//! Guesses on a saddle or on a maximum: a default guess of 0 is stationary in many problems.
+
+use ntg::prelude::*;
+
+use crate::support::{Shipped, close};
+
+fn solved(text: &str, known: f64) {
+    let report = Shipped::text(text).solve();
+    close(report.objective, known, 1e-6);
+    assert!(!report.to_string().contains("no minimum"), "{report}");
+}
+
+#[test]
+fn a_boat_that_is_to_go_west_does_not_go_east() {
+    solved(
+        "problem Boat {
+            duration T = 1 [h];
+            state x, y [km];
+            input psi;
+            collocation gauss(points = 3, intervals = 10);
+            minimize final(x);
+            dynamics { der(x) == 18.52 [km/h] * cos(psi);  der(y) == 18.52 [km/h] * sin(psi); }
+            initial { x == 0;  y == 0; }
+        }",
+        -18520.0,
+    );
+}
+
+#[test]
+fn a_bent_rod_falls_to_the_least_energy() {
+    // Everywhere at pi: the greatest energy is +15.
+    solved(
+        "problem Rod {
+            duration T = 1;
+            output th: spline(order = 5, intervals = 12, smoothness = 3);
+            minimize integral(der(th)^2 / 2 + 15 * cos(th));
+        }",
+        -15.0,
+    );
+}
+
+#[test]
+fn the_farthest_way_from_the_middle_is_straight() {
+    solved(
+        "problem Away {
+            duration T = 2;
+            state x;
+            input u in -1 .. 1;
+            collocation gauss(points = 3, intervals = 20);
+            minimize integral(-x^2);
+            dynamics { der(x) == u; }
+            initial { x == 0; }
+        }",
+        -8.0 / 3.0,
+    );
+}
+
+/// The second variation of `x'^2 - x^2` between fixed ends is negative once they are further apart than pi (Jacobi).
+#[test]
+fn beyond_a_conjugate_point_there_is_no_minimum() {
+    for (time, has_minimum) in [(3, true), (4, false)] {
+        let text = format!(
+            "problem Conjugate {{
+                duration T = {time};
+                output x: spline(order = 5, intervals = 20, smoothness = 3);
+                minimize integral(der(x)^2 - x^2);
+                initial {{ x == 0; }}
+                final {{ x == 0; }}
+            }}"
+        );
+        let report = Shipped::text(&text).solver().solve().expect("it can be set up");
+        let expected = if has_minimum { Status::Solved } else { Status::Unbounded };
+        assert_eq!(report.status, expected, "{report}");
+    }
+}
