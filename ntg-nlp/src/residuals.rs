@@ -25,7 +25,7 @@ const LARGEST_DIVISOR: f64 = 100.0;
 
 /// All residuals of an acceptable end are within this (or within the tolerances, where these are looser): the acceptable
 /// tolerance of IPOPT.
-pub(crate) const ACCEPTABLE: f64 = 1e-6;
+pub const ACCEPTABLE: f64 = 1e-6;
 
 /// What rounding leaves of a sum, relative to its largest term, equation (6.5a). A law: a term has a few roundings of its
 /// own, sums of hundreds of terms have some ten times those of one.

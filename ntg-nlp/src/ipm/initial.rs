@@ -7,6 +7,7 @@ use super::filter::{Filter, LARGEST_THETA};
 use super::inertia::Corrections;
 use super::mode::Mode;
 use super::slacks::Slacks;
+use super::stagnation::Stagnation;
 use super::state::{Analysis, State, Trial};
 use super::step::{LARGEST_PROXIMAL, Step};
 use super::warm;
@@ -85,6 +86,7 @@ impl<'a, N: Nlp> State<'a, N> {
             conjugate_residuals: ConjugateResiduals::new(n + 1, slacks.equalities.len()),
             mode: Mode::Filter,
             restorations: 0,
+            stagnation: Stagnation::default(),
             short_steps: 0,
             estimate: Estimate::default(),
             proximal: LARGEST_PROXIMAL,

@@ -33,6 +33,7 @@ mod restoration;
 mod saddle;
 mod second_order;
 mod slacks;
+mod stagnation;
 mod state;
 mod step;
 mod step_kernels;
@@ -148,6 +149,9 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         }
         if let Some(status) = stop.filter(|_| !solved) {
             return state.end(status); // 5
+        }
+        if state.stagnates() {
+            return state.end(Status::StepTooSmall); // 5
         }
         if let Some(status) = state.lower_barrier() {
             return state.end(status); // 6

@@ -7,6 +7,7 @@ use super::filter::Filter;
 use super::inertia::Corrections;
 use super::mode::Mode;
 use super::slacks::{Slacks, log_sum};
+use super::stagnation::Stagnation;
 use super::step::Step;
 use super::watchdog::Watchdog;
 use crate::contract::{Nlp, NotFinite};
@@ -64,6 +65,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) mode: Mode,
     /// How often feasibility was restored.
     pub(super) restorations: usize,
+    /// How long violations have not fallen.
+    pub(super) stagnation: Stagnation,
     /// How many short steps were made in a row.
     pub(super) short_steps: usize,
     /// Cut steps, and the watch that they begin.

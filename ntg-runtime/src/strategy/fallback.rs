@@ -78,7 +78,7 @@ impl Attempt {
             Status::Acceptable => matches!(self, Self::SizesAnew | Self::OtherWays),
             // It does not tell a saddle from a minimum.
             Status::Unbounded if self == Self::Sqp => false,
-            Status::IterationLimit if self == Self::Onwards => true,
+            Status::IterationLimit | Status::StepTooSmall if self == Self::Onwards => true,
             _ if self == Self::Onwards => false,
             _ => !status.is_final() && (seems_infeasible || self != Self::Beside),
         }
@@ -122,7 +122,7 @@ impl Session {
             outcome = better(simulated, outcome);
         }
         if settings.method == Method::Auto {
-            let mut seems_infeasible = is_infeasible(&outcome);
+            let mut seems_infeasible = misses(&outcome);
             for attempt in ATTEMPTS {
                 let is_believed = is_infeasible(&outcome) && (is_guess || nlp.is_linear());
                 if is_believed
@@ -135,7 +135,7 @@ impl Session {
                     if attempt.has_other_sizes() {
                         next.residuals.scaled.primal = violation_by(nlp, &outcome.row_factors, &next.x);
                     }
-                    seems_infeasible |= is_infeasible(&next);
+                    seems_infeasible |= misses(&next);
                     outcome = better(outcome, next);
                 }
             }
@@ -217,6 +217,12 @@ fn violation_by(nlp: &Transcription, factors: &[f64], x: &[f64]) -> f64 {
     let bounds = limits.row_lower.iter().zip(&limits.row_upper);
     let missed = at.rows.iter().zip(bounds).map(|(value, (lower, upper))| violation(*value, *lower, *upper));
     missed.zip(factors).map(|(missed, factor)| missed * factor).fold(0.0, f64::max)
+}
+
+/// Whether violations have stopped falling at the end of an outcome, be they least there or not.
+fn misses(outcome: &Outcome) -> bool {
+    is_infeasible(outcome)
+        || (outcome.status == Status::StepTooSmall && outcome.residuals.scaled.primal > ntg_nlp::residuals::ACCEPTABLE)
 }
 
 fn is_infeasible(outcome: &Outcome) -> bool {
