@@ -213,3 +213,29 @@ fn states_that_outgrow_the_sizes_at_the_guess_are_found() {
     assert!(report.objective > 30.7 && report.objective < 32.2, "{report}");
     assert!(report.iterations <= 500, "{} iterations", report.iterations);
 }
+
+/// A spin that is to be turned over, from a guess without inputs: steps converge at a linear rate to where the violations
+/// are least nearby, for a thousand iterations if they are let. The least time at a bounded rate `Omega` is `pi / Omega`.
+#[test]
+fn a_spin_is_turned_over_though_the_guess_leads_to_a_least_violation() {
+    let spec = Shipped::text(
+        "problem Spin {
+            domain t [ns];
+            duration T in 1 .. 1000 [ns];
+            state r[3];
+            input u[2] [1/ns];
+            collocation gauss(points = 3, intervals = 30);
+            param Omega = 0.1 [1/ns];
+            minimize T;
+            dynamics {
+                der(r[1]) == u[2] * r[3];  der(r[2]) == -u[1] * r[3];  der(r[3]) == u[1] * r[2] - u[2] * r[1];
+            }
+            initial { r == (0, 0, 1); }
+            trajectory { norm(u)^2 <= Omega^2; }
+            final { r == (0, 0, -1); }
+        }",
+    );
+    let report = spec.solve();
+    close(report.objective, 1e-8 * std::f64::consts::PI, 1e-6);
+    assert!(report.iterations <= 500, "{} iterations", report.iterations);
+}
