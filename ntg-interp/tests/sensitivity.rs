@@ -7,7 +7,7 @@ use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_runtime::prelude::*;
-use ntg_runtime::problem::{Parametric, Problem, WithStructure};
+use ntg_runtime::problem::{Parametric, WithStructure};
 use ntg_runtime::sensitivity::{Differentiator, Sensitivity, SensitivityError};
 use ntg_runtime::structure::{Phase, Points, Slot};
 
