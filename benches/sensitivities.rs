@@ -2,11 +2,11 @@
 //!
 //! Run with `cargo run --release -p ntg-benches --example sensitivities [SPEC ...]`; prints medians of the turns, of
 //! processor time. "First" makes everything that a kept solver and a kept differentiator have. The form in which parameters
-//! are variables is made once a program, before anything is timed.
+//! are variables is made once a program, before anything is timed. "By one parameter" is by each parameter in turn.
 
 mod timing;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use cpu_time::ThreadTime;
 use ntg::prelude::*;
@@ -19,32 +19,25 @@ use timing::{median, milliseconds};
 /// Everything is timed by turns for so many seconds in all, and at least so many times.
 const SECONDS: f64 = 1.0;
 const TURNS: usize = 5;
-const SPECS: [&str; 18] = [
-    "gates",
-    "halo_orbit",
-    "kinematic_car",
-    "launch",
-    "low_observable",
-    "low_observable_alternation",
-    "low_observable_gauss",
-    "low_observable_lock_loss",
-    "low_observable_phases",
-    "missile_boost_coast",
-    "missile_intercept",
-    "multi_vehicle",
-    "multi_vehicle_separated",
-    "probe",
-    "radar_net",
-    "robust",
-    "round_the_mast",
-    "swarm",
-];
-
 struct BesideSpecs;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs")
+}
+
+/// The shipped specs by name, whatever there is.
+fn shipped() -> Result<Vec<String>, std::io::Error> {
+    let files: Result<Vec<_>, _> = std::fs::read_dir(folder())?.collect();
+    let paths = files?.into_iter().map(|file| file.path());
+    let specs = paths.filter(|path| path.extension().is_some_and(|ending| ending == "ntg"));
+    let mut names: Vec<String> = specs.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    Ok(names)
+}
 
 impl Loader for BesideSpecs {
     fn load(&self, path: &str) -> Result<String, String> {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs").join(path);
+        let path = folder().join(path);
         std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))
     }
 }
@@ -55,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
     let named: Vec<String> = std::env::args().skip(1).collect();
-    let names = if named.is_empty() { SPECS.map(str::to_owned).to_vec() } else { named };
+    let names = if named.is_empty() { shipped()? } else { named };
     names.iter().try_for_each(|name| row(name))
 }
 
@@ -77,7 +70,8 @@ fn row(name: &str) -> Result<(), Box<dyn std::error::Error>> {
         }
     };
     let count = by.parameters().len();
-    let one = by.parameters().first().map(|parameter| parameter.name.clone()).unwrap_or_default();
+    let names: Vec<String> = by.parameters().iter().map(|parameter| parameter.name.clone()).collect();
+    let mut each = names.iter().cycle();
     let mut times: [Vec<f64>; 5] = Default::default();
     let began = ThreadTime::now();
     while began.elapsed().as_secs_f64() < SECONDS || times[0].len() < TURNS {
@@ -86,7 +80,8 @@ fn row(name: &str) -> Result<(), Box<dyn std::error::Error>> {
         first.push(milliseconds(|| report.sensitivity(&problem))?);
         kept_solve.push(milliseconds(|| solver.solve())?);
         kept.push(milliseconds(|| differentiator.differentiate(&report.solution))?);
-        by_one.push(milliseconds(|| differentiator.differentiate_by(&report.solution, &[&one]))?);
+        let one: Vec<&str> = each.next().map(String::as_str).into_iter().collect();
+        by_one.push(milliseconds(|| differentiator.differentiate_by(&report.solution, &one))?);
     }
     let [first_solve, first, kept_solve, kept, by_one] = times.map(median);
     println!(

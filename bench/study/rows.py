@@ -1,6 +1,6 @@
 """What a row of a study costs beside a solve by a kept solver, on one core: low-observability flight without limit (B1).
 
-    ntg-python/.venv/bin/python bench/study/rows.py [rows]      # with the wheel installed
+    ntg-python/.venv/bin/python bench/study/rows.py [ROWS [TURNS]]      # with the wheel installed
 
 Prints processor seconds of both by turns, and their ratios: rows from the guess of the spec (`block=1`), rows from the
 solution of a neighbour (`block=32`), and a row with a wanted value that is looked at 401 times.
@@ -16,7 +16,6 @@ import numpy as np
 import ntg
 
 SPEC = Path(__file__).resolve().parents[2] / "specs" / "low_observable.ntg"
-TURNS = 5
 
 
 def cost(work):
@@ -28,6 +27,7 @@ def cost(work):
 
 def main():
     rows = int(sys.argv[1]) if len(sys.argv) > 1 else 400
+    turns = int(sys.argv[2]) if len(sys.argv) > 2 else 5
     random = np.random.default_rng(1)
     table = {"v_max": 0.23 + 0.04 * random.random(rows), "reach": 0.5 + random.random(rows)}
     problem = ntg.load(SPEC).with_parameters(signature_max=7)
@@ -45,7 +45,7 @@ def main():
         "the same with max(speed)": lambda: problem.solve_many(table, jobs=1, block=32, values=["max(speed)"]),
     }
     times = {name: [] for name in works}
-    for _ in range(TURNS):
+    for _ in range(turns):
         for name, work in works.items():
             times[name].append(cost(work) / rows)
     base = times["a solve by a kept solver"]

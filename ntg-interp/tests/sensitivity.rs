@@ -7,9 +7,9 @@ use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_runtime::prelude::*;
-use ntg_runtime::problem::WithStructure;
+use ntg_runtime::problem::{Parametric, WithStructure};
 use ntg_runtime::sensitivity::{Differentiator, Sensitivity, SensitivityError};
-use ntg_runtime::structure::{Phase, Points};
+use ntg_runtime::structure::{Phase, Points, Slot};
 
 /// The largest error of a derivative, relative to the largest derivative of the same quantity at the times of the test.
 const MOST: f64 = 1e-6;
@@ -306,6 +306,32 @@ fn a_cubic_depends_on_its_parameters_as_on_paper() {
     close(&by.at("clock", 99.0).expect("the time").values, &[1.0, 0.0, 0.0, 0.0]);
     close(&by.at("x", 99.0).expect("the end").values, &[0.0, 1.0, 0.0, 0.0]);
     assert!(by.of("x").is_none() && by.at("T", 1.0).is_none() && by.derivative_at("speed", 0.8, 1).is_none());
+}
+
+/// How the multipliers of parameters move nobody asks; the mixed derivatives tell how all else moves with them.
+#[test]
+fn no_function_has_second_derivatives_by_two_parameters() {
+    let problem = compiled(
+        "problem Weighed {
+            duration T = 1 [s];
+            param a = 2;
+            param b = 3;
+            output x: spline(order = 4, intervals = 2);
+            minimize integral(a * b * (x - a)^2);
+            trajectory { above: x >= a * b; }
+        }",
+    );
+    let structure = problem.parametric().structure();
+    let mut mixed = 0;
+    for group in &structure.groups {
+        // There are no variables but those that parameters are.
+        let is_parameter = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Variable { .. }));
+        for (i, j) in &structure.kernels[group.call.kernel].hessian {
+            assert!(!(is_parameter(*i) && is_parameter(*j)), "{group:?}");
+            mixed += usize::from(is_parameter(*i) || is_parameter(*j));
+        }
+    }
+    assert!(mixed > 0);
 }
 
 #[test]

@@ -6,7 +6,8 @@
 //!
 //! Afterwards: behind the declared variables of the structure stand one for each parameter, in their order, and
 //! one for the scaled time at which a named expression is evaluated; bounds and named expressions have first
-//! derivatives; there are no guesses, no continuations, no measurements and no probes.
+//! derivatives; no function has second derivatives by two things that parameters decide; there are no guesses, no
+//! continuations, no measurements and no probes.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -164,6 +165,7 @@ impl Promotion<'_> {
         let data = call.slots.len() + call.reductions.len() + counts.1 - counts.0;
         let mode = if second { Mode::Solve } else { Mode::Slopes };
         let (mut shape, mut made, _) = derive(reordered(body, &positions), counts.0, data, mode);
+        without_held_second(&mut shape, &mut made, call.slots.len());
         shape.name.clone_from(&self.structure.kernels[call.kernel].name);
         made.names = vec![String::new(); body.names.len()];
         for (position, name) in positions.iter().zip(&body.names) {
@@ -179,6 +181,16 @@ impl Promotion<'_> {
         self.known.insert(key, self.made.len() - 1);
         self.made.len() - 1
     }
+}
+
+/// Leaves out second derivatives by two of the slots from `first` on. What parameters decide is held: how its multipliers
+/// move nobody asks, and of the others' only how they move with it.
+fn without_held_second(shape: &mut Kernel, body: &mut KernelBody, first: usize) {
+    let kept: Vec<bool> = shape.hessian.iter().map(|(i, j)| *i < first || *j < first).collect();
+    let mut of = kept.iter();
+    shape.hessian.retain(|_| of.next().is_some_and(|kept| *kept));
+    let mut of = kept.iter();
+    body.hessian.retain(|_| of.next().is_some_and(|kept| *kept));
 }
 
 /// The variable that a parameter becomes.

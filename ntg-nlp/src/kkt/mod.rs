@@ -21,5 +21,5 @@ pub(crate) mod system;
 mod unknowns;
 
 pub(crate) use columns::{COLUMNS, Columns};
-pub(crate) use elements::{Curvature, Held, Refinement, Weights};
+pub(crate) use elements::{Curvature, Held, Part, Refinement, Weights};
 pub(crate) use system::System;

@@ -19,7 +19,7 @@ mod refine;
 pub use activity::Activity;
 
 use crate::contract::{Nlp, NotFinite};
-use crate::kkt::{COLUMNS, Curvature, Held, System, Weights};
+use crate::kkt::{COLUMNS, Curvature, Held, Part, System, Weights};
 use crate::outcome::Multipliers;
 use crate::scaling::Scales;
 use activity::activity;
@@ -76,7 +76,8 @@ pub struct Response {
     pub x: Vec<f64>,
     /// Of the rows' multipliers, in the sense of [`Outcome::row_multipliers`](crate::Outcome::row_multipliers).
     pub rows: Vec<f64>,
-    /// Of the multipliers of the variables' bounds.
+    /// Of the multipliers of the variables' bounds. Those of variables whose two bounds are the same are left out, as 0, by
+    /// [`Sensitivity::responses`].
     pub variables: Vec<f64>,
 }
 
@@ -177,7 +178,7 @@ impl<W> Sensitivity<W> {
                     self.work.rows[first + j][k] = rate / variables[j];
                 }
             }
-            self.solve()?;
+            self.solve((Part::Held, Part::Free))?;
             found.extend((0..some.len()).map(|k| self.unscaled(k)));
         }
         Ok(found)
@@ -199,7 +200,8 @@ impl<W> Sensitivity<W> {
                     to[k] = g * size * objective;
                 }
             }
-            self.solve()?;
+            self.solve((Part::All, Part::All))?;
+            self.multipliers_of_held();
             found.extend((0..some.len()).map(|k| self.unscaled(k)));
         }
         Ok(found)

@@ -3,7 +3,7 @@
 //! Takes scaled right-hand sides; leaves the solutions where they were. What becomes of one does not hang on the others.
 
 use super::{PENALTY, Response, Sensitivity, Unavailable};
-use crate::kkt::{COLUMNS, Columns, Held, Refinement};
+use crate::kkt::{COLUMNS, Columns, Held, Part, Refinement};
 use crate::scaling::Scales;
 use ntg_math::{Simd, Task, dispatch};
 
@@ -46,15 +46,16 @@ impl<W> Sensitivity<W> {
     }
 
     /// Solves the system for the scaled right-hand sides in `work.left` and `work.rows`, by refinement of what the factors
-    /// give. How variables that are held move is known from the beginning.
-    pub(super) fn solve(&mut self) -> Result<(), Unavailable> {
+    /// give. How variables that are held move is known from the beginning: the first pass concerns one part, later ones
+    /// another.
+    pub(super) fn solve(&mut self, (first_part, later): (Part, Part)) -> Result<(), Unavailable> {
         let first = self.system.first_variable();
         let Work { x, left, rows, step, .. } = &mut self.work;
         for (j, _) in self.system.held().iter().enumerate().filter(|(_, held)| **held) {
             (x[j], step[j]) = (rows[first + j], rows[first + j]);
         }
         let mut terms = Sizes { variables: largest(&*left), rows: largest(&*rows) };
-        let mut sizes = self.pass(&mut terms, true);
+        let mut sizes = self.pass(first_part, &mut terms, true);
         terms.rows = both(terms.rows, sizes.rows, larger);
         let (mut before, mut least, mut open) = ([f64::INFINITY; COLUMNS], [f64::INFINITY; COLUMNS], [true; COLUMNS]);
         for round in 0..=REFINEMENTS {
@@ -75,7 +76,7 @@ impl<W> Sensitivity<W> {
             self.still(open);
             before = relative;
             self.improve();
-            sizes = self.pass(&mut terms, false);
+            sizes = self.pass(later, &mut terms, false);
         }
         let left = least.into_iter().fold(0.0, larger);
         let is_finite = self.work.x.iter().flatten().all(|x| x.is_finite());
@@ -115,11 +116,12 @@ impl<W> Sensitivity<W> {
 
     /// What the latest step leaves of the equations: the largest entries. Multipliers change unless it `is_first`. Raises
     /// `terms` to the sizes of what has changed.
-    fn pass(&mut self, terms: &mut Sizes, is_first: bool) -> Sizes {
+    fn pass(&mut self, part: Part, terms: &mut Sizes, is_first: bool) -> Sizes {
         let Work { step, multipliers, rows, bend, pull, .. } = &mut self.work;
         bend.fill(Columns::default());
         pull.fill(Columns::default());
-        self.system.refine(&mut Refinement { held: &self.held, penalty: PENALTY, step, multipliers, rows, bend, pull });
+        let (held, penalty) = (&*self.held, PENALTY);
+        self.system.refine(&mut Refinement { part, held, penalty, step, multipliers, rows, bend, pull });
         let border = self.system.border_rows().iter().map(|&row| &self.work.multipliers[row]);
         terms.variables = both(terms.variables, largest(border), larger);
         let mut sizes = Sizes::default();
@@ -130,20 +132,24 @@ impl<W> Sensitivity<W> {
 
     /// Ends the refinement of one right-hand side. The latest step is taken back unless it is the best.
     fn close(&mut self, k: usize, is_best: bool) {
-        let first = self.system.first_variable();
-        let Work { x, y, left, rows, step, bend, pull, multipliers, .. } = &mut self.work;
-        if !is_best {
-            for (j, step) in step.iter().enumerate() {
-                x[j][k] -= step[k];
-                left[j][k] -= bend[j][k] + pull[j][k];
-            }
-            for (function, held) in self.held.iter().enumerate() {
-                y[function][k] -= latest(*held, rows[function][k], multipliers[function][k]);
-            }
+        if is_best {
+            return;
         }
-        // Where a variable is held, its multiplier is what is left.
+        let Work { x, y, left, rows, step, bend, pull, multipliers, .. } = &mut self.work;
+        for (j, step) in step.iter().enumerate() {
+            x[j][k] -= step[k];
+            left[j][k] -= bend[j][k] + pull[j][k];
+        }
+        for (function, held) in self.held.iter().enumerate() {
+            y[function][k] -= latest(*held, rows[function][k], multipliers[function][k]);
+        }
+    }
+
+    /// Where a variable is held, its multiplier is what is left; known where passes concerned all variables.
+    pub(super) fn multipliers_of_held(&mut self) {
+        let (first, Work { y, left, .. }) = (self.system.first_variable(), &mut self.work);
         for (j, _) in self.system.held().iter().enumerate().filter(|(_, held)| **held) {
-            y[first + j][k] = -left[j][k];
+            y[first + j] = left[j].map(|left| -left);
         }
     }
 

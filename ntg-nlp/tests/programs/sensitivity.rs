@@ -53,6 +53,8 @@ fn an_active_row_moves_the_solution_along_itself() {
     near(&by_c.rows, &[1.75]);
     let by_p = one(&mut sensitivity, &[0.0], &[0.0, 0.0, 1.0]).expect("a derivative");
     near(&by_p.x, &[-0.25, 0.25, 1.0]);
+    // That of p itself is left out.
+    assert_eq!(by_p.variables, [0.0; 3]);
 }
 
 #[test]

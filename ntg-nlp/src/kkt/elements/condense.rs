@@ -149,9 +149,9 @@ impl<const L: usize> Plan<L> {
         for (row, of) in self.rows.iter().enumerate().filter(|(_, of)| !of.pairs.is_empty()) {
             let sigma = self.of_condensed(pack, row, weights.sigma);
             let mut pairs = of.pairs.iter();
-            for (k, &(a, _)) in of.entries.iter().enumerate() {
+            for (k, &(a, _)) in of.condensed.iter().enumerate() {
                 let scaled = product(&sigma, &jacobian[a]);
-                for (&(b, _), &pair) in of.entries[..=k].iter().zip(&mut pairs) {
+                for (&(b, _), &pair) in of.condensed[..=k].iter().zip(&mut pairs) {
                     add_product(&mut second[pair], &scaled, &jacobian[b]);
                 }
             }

@@ -3,8 +3,8 @@
 //!
 //! `batching` decides which elements are worked on side by side, `range_map` lays out their range transformations,
 //! `plan` says where in the matrix their contributions are added, `products` which products that takes, `condense` does
-//! the work, `refinement` some of it for several right-hand sides at a time, `convexify` and `modified_ldl` compute the convexifying term, `dispatch` compiles all of it for the widest
-//! instructions of the processor.
+//! the work, `refinement` some of it for several right-hand sides at a time with the patterns of `reach`, `convexify` and
+//! `modified_ldl` compute the convexifying term, `dispatch` compiles all of it for the widest instructions of the processor.
 //!
 //! Everything is scaled. The *functions* of a program are numbered: the rows, then the objective, then one unused
 //! function, to which padding refers.
@@ -17,6 +17,7 @@ mod modified_ldl;
 mod plan;
 mod products;
 mod range_map;
+mod reach;
 mod refinement;
 
 use super::pack::LANES;
@@ -30,6 +31,7 @@ use condense::Workspace;
 use plan::{Plan, Program};
 use std::sync::Arc;
 
+pub(crate) use reach::Part;
 pub(crate) use refinement::{Held, Refinement};
 
 /// All elements of a program, and their derivatives at the latest point.

@@ -9,6 +9,7 @@ use super::Rows;
 use super::batching::Batching;
 use super::products::{Entries, Products, closure};
 use super::range_map::RangeMap;
+use super::reach::{Reaches, held};
 use crate::contract::{Block, BlockValues, Target};
 use crate::scaling::Scales;
 use std::collections::BTreeMap;
@@ -32,8 +33,14 @@ pub(super) struct Plan<const L: usize> {
     condensed: Vec<[u32; L]>,
     /// The scaled weight of each row of each pack; 0 where there is no element.
     weight: Vec<Pack<L>>,
-    /// The pair of slots of each second derivative; none where a slot depends on no variable.
+    /// The pair of slots of each second derivative; none where a slot depends on no unknown.
     pub(super) pair_of: Vec<Option<usize>>,
+    /// The two slots of each second derivative.
+    second_of: Vec<(usize, usize)>,
+    /// Whether all variables of each support are held.
+    held: Vec<bool>,
+    /// What passes for several right-hand sides work on; none before the first.
+    pub(super) reaches: Option<Box<Reaches>>,
     /// Products for second derivatives and condensed rows.
     pub(super) exact: Products,
     /// Products for the convexifying term, whose pattern is that of `exact` with the fill of its factors.
@@ -59,7 +66,9 @@ pub(super) struct Plan<const L: usize> {
 pub(super) struct Row {
     /// Jacobian pattern: entry and slot.
     pub(super) entries: Vec<(usize, usize)>,
-    /// For a condensed row, the pair of every two of its entries, `a >= b`; empty for the objective and border rows.
+    /// Of a condensed row, the entries whose slots depend on unknowns; empty for the objective and border rows.
+    pub(super) condensed: Vec<(usize, usize)>,
+    /// The pair of every two of these, `a >= b`.
     pub(super) pairs: Vec<usize>,
 }
 
@@ -96,13 +105,16 @@ impl<const L: usize> Plan<L> {
         let condensed = function.iter().map(|lanes: &[u32; L]| lanes.map(|q| if inside(q) { q } else { nothing }));
         let mut rows = rows(block);
         let kinds: Vec<[bool; 2]> = (0..block.rows).map(|row| kinds(block, row, unknowns)).collect();
-        let pairs = slot_pairs(block, &rows, &kinds, supports);
+        let held = held(supports, &batching, &map, unknowns);
+        let depends = |slot: usize| supports.of[slot].is_some_and(|support| !held[support]);
+        let pairs = slot_pairs(block, &rows, &kinds, depends);
         let at = |i: usize, j: usize| pairs.iter().position(|&p| p == (i.max(j), i.min(j)));
         let pair_of = block.hessian.iter().map(|&(i, j)| at(i, j)).collect();
         for (row, _) in rows.iter_mut().zip(&kinds).filter(|(_, [condensed, _])| *condensed) {
             row.entries.retain(|(_, slot)| supports.of[*slot].is_some());
-            let entries = row.entries.iter().enumerate();
-            let both = entries.flat_map(|(k, &(_, i))| row.entries[..=k].iter().map(move |&(_, j)| (i, j)));
+            row.condensed = row.entries.iter().filter(|(_, slot)| depends(*slot)).copied().collect();
+            let entries = row.condensed.iter().enumerate();
+            let both = entries.flat_map(|(k, &(_, i))| row.condensed[..=k].iter().map(move |&(_, j)| (i, j)));
             row.pairs = both.filter_map(|(i, j)| at(i, j)).collect();
         }
         let all = closure(&pairs, block.slots);
@@ -129,6 +141,9 @@ impl<const L: usize> Plan<L> {
             condensed: condensed.collect(),
             function,
             pair_of,
+            second_of: block.hessian.clone(),
+            held,
+            reaches: None,
             rows,
             batching,
             map,
@@ -138,6 +153,12 @@ impl<const L: usize> Plan<L> {
     /// Replaces the numbers by those of a block with the same pattern.
     pub(super) fn refill(&mut self, block: &Block, sizes: &[f64]) {
         self.map.fill(block, &self.supports, &self.batching, sizes);
+    }
+
+    /// Makes what passes for several right-hand sides work on, unless it is there.
+    pub(super) fn reach(&mut self) {
+        let Self { reaches, supports, held, rows, second_of, .. } = self;
+        reaches.get_or_insert_with(|| Box::new(Reaches::new(supports, held, rows, second_of)));
     }
 
     /// Sets the weights of all rows from the block's and the scales.
@@ -316,7 +337,7 @@ fn meeting(pairs: &[(usize, usize)], supports: &Supports) -> Vec<Vec<usize>> {
 
 /// The Jacobian patterns of all rows.
 fn rows(block: &Block) -> Vec<Row> {
-    let mut rows = vec![Row { entries: vec![], pairs: vec![] }; block.rows];
+    let mut rows = vec![Row { entries: vec![], condensed: vec![], pairs: vec![] }; block.rows];
     for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
         rows[row].entries.push((entry, slot));
     }
@@ -348,15 +369,20 @@ fn functions<const L: usize>(block: &Block, batching: &Batching<L>, rows: usize)
     all
 }
 
-/// Pairs of slots, `i >= j`, that second derivatives or condensed rows connect.
-fn slot_pairs(block: &Block, rows: &[Row], kinds: &[[bool; 2]], supports: &Supports) -> Vec<(usize, usize)> {
+/// Pairs of slots, `i >= j`, that second derivatives or condensed rows connect, of those that depend on unknowns.
+fn slot_pairs(
+    block: &Block,
+    rows: &[Row],
+    kinds: &[[bool; 2]],
+    depends: impl Fn(usize) -> bool,
+) -> Vec<(usize, usize)> {
     let mut pairs: Vec<(usize, usize)> = block.hessian.iter().map(|&(i, j)| (i.max(j), i.min(j))).collect();
     for (row, _) in rows.iter().zip(kinds).filter(|(_, [condensed, _])| *condensed) {
         for &(_, i) in &row.entries {
             pairs.extend(row.entries.iter().filter(|(_, j)| *j <= i).map(|&(_, j)| (i, j)));
         }
     }
-    pairs.retain(|&(i, j)| supports.of[i].is_some() && supports.of[j].is_some());
+    pairs.retain(|&(i, j)| depends(i) && depends(j));
     pairs.sort_unstable();
     pairs.dedup();
     pairs

@@ -12,6 +12,7 @@ use super::super::columns::{COLUMNS, Columns};
 use super::super::pack::Pack;
 use super::Elements;
 use super::plan::Plan;
+use super::reach::{Part, Reach};
 use ntg_math::{Simd, Task, dispatch};
 
 /// How a function enters the system.
@@ -27,6 +28,8 @@ pub(crate) enum Held {
 
 /// A step and what it changes. Vectors by variable end with the padding entry, which is 0 in the step.
 pub(crate) struct Refinement<'a> {
+    /// Which variables step, and for which that is wanted. What else is in `bend` and `pull` is left undefined.
+    pub(crate) part: Part,
     /// By function.
     pub(crate) held: &'a [Held],
     /// `1 / delta`.
@@ -97,45 +100,69 @@ impl<const L: usize> Plan<L> {
     /// Adds what the elements of the plan do. Packs without second derivatives and held rows do nothing.
     #[inline(always)]
     fn refine(&self, to: &mut Refinement<'_>, buffers: &mut Buffers<L>) {
+        let Some(reaches) = &self.reaches else { return };
+        let reach = reaches.of(to.part);
         let Buffers { slots, element_variables } = buffers;
         slots.fit(self.slots);
         element_variables.fit(self.supports.element_variables);
         for batch in 0..self.batching.batches() {
-            let variables = self.map.variables(batch);
-            for (of, lanes) in element_variables.step.iter_mut().zip(variables) {
-                for (lane, &variable) in lanes.iter().enumerate() {
-                    let step = to.step[variable as usize];
-                    for k in 0..COLUMNS {
-                        of[k][lane] = step[k];
-                    }
-                }
-            }
-            element_variables.bend.fill(none());
-            element_variables.pull.fill(none());
+            self.gather(batch, reach, to, element_variables);
             for pack in self.batching.packs_of(batch) {
                 let (mut pulls, mut borders) = (false, false);
                 for &function in self.functions_of(pack).as_flattened() {
                     let held = to.held[function as usize];
                     (pulls, borders) = (pulls | (held == Held::Condensed), borders | (held == Held::Border));
                 }
-                let bends = borders || !self.pair_of.is_empty();
+                let bends = borders || !reach.second.is_empty();
                 if pulls || bends {
-                    self.steps(pack, slots, &element_variables.step);
-                    self.bend(pack, slots);
+                    self.steps(pack, reach, slots, &element_variables.step);
+                    slots.bend.fill(none());
+                    slots.pull.fill(none());
+                    self.bend(pack, reach, slots);
                 }
                 if pulls || borders {
-                    slots.pull.fill(none());
-                    self.hold(pack, slots, to);
+                    self.hold(pack, reach, slots, to);
                 }
                 if bends {
-                    self.add_transposed(pack, &slots.bend, &mut element_variables.bend);
+                    self.add_transposed(pack, reach, &slots.bend, &mut element_variables.bend);
                 }
                 if pulls {
-                    self.add_transposed(pack, &slots.pull, &mut element_variables.pull);
+                    self.add_transposed(pack, reach, &slots.pull, &mut element_variables.pull);
                 }
             }
-            let sums = element_variables.bend.iter().zip(&element_variables.pull);
-            for ((bend, pull), lanes) in sums.zip(variables) {
+            self.scatter(batch, reach, element_variables, to);
+        }
+    }
+
+    /// The steps of the element variables of a batch, and sums of 0.
+    #[inline(always)]
+    fn gather(&self, batch: usize, reach: &Reach, from: &Refinement<'_>, to: &mut Vectors<L>) {
+        let variables = self.map.variables(batch);
+        for support in reach.from.iter().map(|&support| &self.supports.all[support]) {
+            let range = support.first..support.last;
+            for (of, lanes) in to.step[range.clone()].iter_mut().zip(&variables[range]) {
+                for (lane, &variable) in lanes.iter().enumerate() {
+                    let step = from.step[variable as usize];
+                    for k in 0..COLUMNS {
+                        of[k][lane] = step[k];
+                    }
+                }
+            }
+        }
+        for support in reach.to.iter().map(|&support| &self.supports.all[support]) {
+            to.bend[support.first..support.last].fill(none());
+            to.pull[support.first..support.last].fill(none());
+        }
+    }
+
+    /// Adds the sums of a batch.
+    #[inline(always)]
+    fn scatter(&self, batch: usize, reach: &Reach, from: &Vectors<L>, to: &mut Refinement<'_>) {
+        let variables = self.map.variables(batch);
+        for support in reach.to.iter().map(|&support| &self.supports.all[support]) {
+            let range = support.first..support.last;
+            let sums = from.bend[range.clone()].iter().zip(&from.pull[range.clone()]);
+            for ((bend, pull), lanes) in sums.zip(&variables[range]) {
                 for (lane, &variable) in lanes.iter().enumerate() {
                     let (bends, pulls) = (&mut to.bend[variable as usize], &mut to.pull[variable as usize]);
                     for k in 0..COLUMNS {
@@ -153,11 +180,11 @@ impl<const L: usize> Plan<L> {
         &self.function[pack * self.rows.len()..][..self.rows.len()]
     }
 
-    /// The steps of all slots.
+    /// The steps of slots.
     #[inline(always)]
-    fn steps(&self, pack: usize, slots: &mut Vectors<L>, steps: &[Many<L>]) {
+    fn steps(&self, pack: usize, reach: &Reach, slots: &mut Vectors<L>, steps: &[Many<L>]) {
         let coefficients = self.map.coefficients(pack);
-        for support in &self.supports.all {
+        for support in reach.from.iter().map(|&support| &self.supports.all[support]) {
             for &slot in &support.slots {
                 let mut sum = none();
                 let coefficients = &coefficients[self.map.coefficient_of[slot]..];
@@ -171,9 +198,9 @@ impl<const L: usize> Plan<L> {
 
     /// `to += E^T slots`.
     #[inline(always)]
-    fn add_transposed(&self, pack: usize, slots: &[Many<L>], to: &mut [Many<L>]) {
+    fn add_transposed(&self, pack: usize, reach: &Reach, slots: &[Many<L>], to: &mut [Many<L>]) {
         let coefficients = self.map.coefficients(pack);
-        for support in &self.supports.all {
+        for support in reach.to.iter().map(|&support| &self.supports.all[support]) {
             for (i, to) in to[support.first..support.last].iter_mut().enumerate() {
                 let mut sum = *to;
                 for &slot in &support.slots {
@@ -184,25 +211,20 @@ impl<const L: usize> Plan<L> {
         }
     }
 
-    /// `bend = -K step`, by slots.
+    /// `bend -= K step`, by slots.
     #[inline(always)]
-    fn bend(&self, pack: usize, slots: &mut Vectors<L>) {
-        let Vectors { step, bend, .. } = slots;
-        bend.fill(none());
-        for (entry, pair) in self.hessian_of(pack).iter().zip(&self.pair_of) {
-            let Some((i, j)) = pair.map(|pair| self.exact.pairs[pair]) else { continue };
-            bend[i] = less(bend[i], entry, &step[j]);
-            if i != j {
-                bend[j] = less(bend[j], entry, &step[i]);
-            }
+    fn bend(&self, pack: usize, reach: &Reach, slots: &mut Vectors<L>) {
+        let (Vectors { step, bend, .. }, second) = (slots, self.hessian_of(pack));
+        for &(entry, to, from) in &reach.second {
+            bend[to] = less(bend[to], &second[entry], &step[from]);
         }
     }
 
     /// What the rows of a pack do, by slots.
     #[inline(always)]
-    fn hold(&self, pack: usize, slots: &mut Vectors<L>, to: &mut Refinement<'_>) {
+    fn hold(&self, pack: usize, reach: &Reach, slots: &mut Vectors<L>, to: &mut Refinement<'_>) {
         let (jacobian, Vectors { step, bend, pull }) = (self.jacobian_of(pack), slots);
-        for (of, functions) in self.rows.iter().zip(self.functions_of(pack)) {
+        for (of, functions) in reach.rows.iter().zip(self.functions_of(pack)) {
             let (mut pulls, mut borders) = ([0.0; L], false);
             for lane in 0..L {
                 let held = to.held[functions[lane] as usize];
@@ -213,7 +235,7 @@ impl<const L: usize> Plan<L> {
                 continue;
             }
             let mut change = none();
-            for &(entry, slot) in &of.entries {
+            for &(entry, slot) in &of.from {
                 change = plus(change, &jacobian[entry], &step[slot]);
             }
             let (mut condensed, mut border) = (none(), none());
@@ -226,11 +248,11 @@ impl<const L: usize> Plan<L> {
                     border[k][lane] = given[k];
                 }
             }
-            for &(entry, slot) in &of.entries {
+            for &(entry, slot) in &of.to {
                 pull[slot] = plus(pull[slot], &jacobian[entry], &condensed);
             }
             if borders {
-                for &(entry, slot) in &of.entries {
+                for &(entry, slot) in &of.to {
                     bend[slot] = plus(bend[slot], &jacobian[entry], &border);
                 }
             }
@@ -255,10 +277,12 @@ impl Task for Refine<'_, '_> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
         let Elements { packed, remainder, .. } = self.elements;
-        for plan in &packed.plans {
+        for plan in &mut packed.plans {
+            plan.reach();
             plan.refine(self.to, &mut packed.workspace.refinement);
         }
-        for plan in &remainder.plans {
+        for plan in &mut remainder.plans {
+            plan.reach();
             plan.refine(self.to, &mut remainder.workspace.refinement);
         }
     }
