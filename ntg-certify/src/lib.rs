@@ -9,12 +9,15 @@
 //! ```
 
 pub mod certify;
+pub mod change;
 pub mod collect;
 pub mod elementary;
+mod ends;
 mod evaluate;
 pub mod guarantee;
 pub mod interval;
 pub mod jet;
+mod mend;
 pub mod prove;
 pub mod spline;
 pub mod statement;

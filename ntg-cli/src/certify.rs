@@ -185,10 +185,10 @@ pub(crate) fn words(found: &Guaranteed<'_>) -> String {
         let name = constraint.name.as_deref().unwrap_or(&constraint.place.text);
         let (unit, symbol) = (constraint.unit.factor, &constraint.unit.symbol);
         let mut done = vec![];
-        if change.points > 1 {
+        if change.points() > 1 {
             let percent = (100.0 * change.share()).ceil();
-            let points = change.points;
-            done.push(format!("held at {points} times as many points in {percent} % of its time"));
+            let points = change.points();
+            done.push(format!("held at up to {points} times as many points in {percent} % of its time"));
         }
         for (side, by) in [("lower", change.below), ("upper", change.above)] {
             if by > 0.0 {
@@ -212,7 +212,7 @@ pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
         "changes": found.changes.iter().map(|(number, change)| json!({
             "constraint": found.report.solution.structure().constraints[*number].name,
             "line": found.report.solution.structure().constraints[*number].place.line,
-            "points": change.points, "share": change.share(), "lower_raised": change.below, "upper_lowered": change.above,
+            "points": change.points(), "share": change.share(), "lower_raised": change.below, "upper_lowered": change.above,
         })).collect::<Vec<_>>(),
     })
 }
