@@ -18,6 +18,8 @@ pub struct Change {
     /// Where an end condition fixes it at the start of its phases and it meets a bound there, and the same at their end,
     /// what is left as it is.
     pub ends: [Spared; 2],
+    /// What it missed, SI, when it was changed last.
+    pub missed: f64,
 }
 
 /// What stays untightened at an end, because an end condition meets a bound there.
@@ -34,7 +36,7 @@ pub enum Spared {
 
 impl Default for Change {
     fn default() -> Self {
-        Self { below: 0.0, above: 0.0, levels: [0; PARTS], ends: [Spared::Nothing; 2] }
+        Self { below: 0.0, above: 0.0, levels: [0; PARTS], ends: [Spared::Nothing; 2], missed: 0.0 }
     }
 }
 

@@ -77,6 +77,8 @@ pub struct Round {
     pub open: usize,
     /// The largest part of its bound's size by which one may be missed.
     pub missed: f64,
+    /// Iterations of the solve.
+    pub iterations: usize,
     /// Seconds of the solve.
     pub solve: f64,
     /// Seconds of the certificate.
@@ -218,7 +220,7 @@ pub fn proved_from<'p>(
 /// Whether two rounds have not made less what is missed, nor fewer what is not proved.
 fn is_stalled(rounds: &[Round]) -> bool {
     let [.., before, between, last] = rounds else { return false };
-    let gains = |a: &Round, b: &Round| b.missed < 0.5 * a.missed || b.open < a.open;
+    let gains = |a: &Round, b: &Round| b.missed < 0.8 * a.missed || b.open < a.open;
     !gains(before, between) && !gains(between, last)
 }
 
@@ -272,7 +274,7 @@ fn own_bounds(report: &mut Report, certificate: &Certificate, changes: &BTreeMap
         (largest(|own| own.points.as_ref()), largest(|own| own.between.as_ref()));
 }
 
-/// A solution that misses a bound by more than so many times its size tells nothing of multipliers. A law: it keeps no
+/// A solution that misses a bound by more than so many times its size is no guess of one that keeps it. A law: it keeps no
 /// bound of that size.
 const FAR: f64 = 1.0;
 
@@ -289,13 +291,15 @@ fn again(
     if let Some(next) = next.map_err(|error| error.to_string())?.filter(Report::is_solved) {
         return Ok(next);
     }
-    let tightened = warm.problem;
-    let next = solve_from(&tightened, &Guess::from(&report.solution), settings).map_err(|error| error.to_string())?;
-    if next.is_solved() {
-        return Ok(next);
-    }
-    if matches!(next.status, Status::Cancelled | Status::TimeLimit) {
-        return Err(next.status.to_string());
+    if is_near {
+        let next =
+            solve_from(&warm.problem, &Guess::from(&report.solution), settings).map_err(|error| error.to_string())?;
+        if next.is_solved() {
+            return Ok(next);
+        }
+        if matches!(next.status, Status::Cancelled | Status::TimeLimit) {
+            return Err(next.status.to_string());
+        }
     }
     let next = solve_from(&Tightened::new(task.problem, changes, false), &Guess::default(), settings)
         .map_err(|error| error.to_string())?;
@@ -312,6 +316,7 @@ fn round(report: &Report, certificate: &Certificate) -> Round {
         objective: report.objective,
         open: certificate.findings.iter().filter(|finding| !finding.verdict.holds()).count(),
         missed,
+        iterations: report.iterations,
         solve: report.seconds,
         certify: certificate.seconds,
     }

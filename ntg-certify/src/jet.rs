@@ -12,6 +12,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::elementary as el;
 use crate::interval::Interval;
+use crate::products::sum_of_products;
 
 /// The highest coefficient, and the order of the remainder. Even, so that the remainder has a sign.
 pub const ORDER: usize = 6;
@@ -90,7 +91,7 @@ impl<const N: usize> Jet<N> {
 
     /// Coefficient `k` of the function whose derivative by `self` has the coefficients `slope[.. k]`.
     fn chain(&self, slope: &[Interval; N], k: usize) -> Interval {
-        let sum = (1..=k).fold(Interval::ZERO, |sum, j| sum + self.c[j] * (j as f64) * slope[k - j]);
+        let sum = sum_of_products((1..=k).map(|j| (j as f64, self.c[j], slope[k - j])));
         sum.over(Interval::point(k as f64))
     }
 
@@ -122,8 +123,8 @@ impl<const N: usize> Jet<N> {
         let first = divisor.c[0];
         let mut c = [Interval::ZERO; N];
         for k in 0..N {
-            let known = (1..=k).fold(self.c[k], |rest, j| rest - divisor.c[j] * c[k - j]);
-            c[k] = known.over(first);
+            let known = sum_of_products((1..=k).map(|j| (1.0, divisor.c[j], c[k - j])));
+            c[k] = (self.c[k] - known).over(first);
         }
         Self { c, total: self.total && divisor.total && !first.contains(0.0) }
     }
@@ -158,8 +159,8 @@ impl<const N: usize> Jet<N> {
         let twice = values.scaled(2.0);
         let mut c = [values; N];
         for k in 1..N {
-            let known = (1..k).fold(self.c[k], |rest, j| rest - c[j] * c[k - j]);
-            c[k] = known.over(twice);
+            let known = sum_of_products((1..k).map(|j| (1.0, c[j], c[k - j])));
+            c[k] = (self.c[k] - known).over(twice);
         }
         Self { c, total: self.total && total }
     }
@@ -404,8 +405,7 @@ impl<const N: usize> Jet<N> {
 
 /// Coefficient `k` of the square of a function with these coefficients.
 fn square_coefficient<const N: usize>(c: &[Interval; N], k: usize) -> Interval {
-    let pairs = (0..k.div_ceil(2)).fold(Interval::ZERO, |sum, i| sum + c[i] * c[k - i]);
-    let twice = pairs.scaled(2.0);
+    let twice = sum_of_products((0..k.div_ceil(2)).map(|i| (2.0, c[i], c[k - i])));
     if k.is_multiple_of(2) { twice + c[k / 2].square() } else { twice }
 }
 
@@ -471,7 +471,14 @@ impl<const N: usize> Neg for Jet<N> {
 impl<const N: usize> Add for Jet<N> {
     type Output = Self;
     fn add(mut self, other: Self) -> Self {
-        self.c.iter_mut().zip(other.c).for_each(|(a, b)| *a = *a + b);
+        for (a, b) in self.c.iter_mut().zip(other.c) {
+            // Coefficients of numbers are 0.
+            if *a == Interval::ZERO {
+                *a = b;
+            } else if b != Interval::ZERO {
+                *a = *a + b;
+            }
+        }
         Self { c: self.c, total: self.total && other.total }
     }
 }
@@ -496,8 +503,9 @@ impl<const N: usize> Mul for Jet<N> {
             return Self { c: self.c.map(|c| c * other.c[0]), total };
         }
         let mut c = [Interval::ZERO; N];
-        for (k, out) in c.iter_mut().enumerate() {
-            *out = (0..=k).fold(Interval::ZERO, |sum, i| sum + self.c[i] * other.c[k - i]);
+        c[0] = self.c[0] * other.c[0];
+        for (k, out) in c.iter_mut().enumerate().skip(1) {
+            *out = sum_of_products((0..=k).map(|i| (1.0, self.c[i], other.c[k - i])));
         }
         Self { c, total }
     }

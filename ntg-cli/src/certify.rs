@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ntg_certify::change::Spared;
 use ntg_certify::guarantee::{self, Guaranteed, Task, guarantee, proved_from};
 use ntg_certify::summary::Summary;
 use ntg_certify::tube::{Ending, Tube};
@@ -163,15 +164,16 @@ pub(crate) fn mend<'p>(
 
 /// What a guarantee did and cost, in words.
 pub(crate) fn words(found: &Guaranteed<'_>) -> String {
+    let rounds = found.rounds.len().saturating_sub(1);
+    let more = format!("{rounds} more solve{}", if rounds == 1 { "" } else { "s" });
     let ending = match &found.ending {
         guarantee::Ending::Proved if found.rounds.len() == 1 => "Guarantee: everything was proved at once".to_owned(),
-        guarantee::Ending::Proved => format!("Guarantee: proved after {} more solves", found.rounds.len() - 1),
+        guarantee::Ending::Proved => format!("Guarantee: proved after {more}"),
         guarantee::Ending::NotSolved => return "Guarantee: none, because there is no solution\n".to_owned(),
-        guarantee::Ending::Rounds => format!("Guarantee: NOT had after {} more solves", found.rounds.len() - 1),
+        guarantee::Ending::Rounds => format!("Guarantee: NOT had after {more}"),
         guarantee::Ending::Rounding => {
-            let rounds = found.rounds.len() - 1;
             format!(
-                "Guarantee: NOT had for what is missed by rounding, where end conditions meet a bound; all else is proved after {rounds} more solves"
+                "Guarantee: NOT had for what is missed by rounding, where end conditions meet a bound; all else is proved after {more}"
             )
         }
         guarantee::Ending::Tightened(status) => {
@@ -195,6 +197,11 @@ pub(crate) fn words(found: &Guaranteed<'_>) -> String {
                 done.push(format!("{side} bound tightened by {:.2e} {symbol}", by / unit).trim_end().to_owned());
             }
         }
+        let spared = change.ends.iter().zip(["start", "end"]).filter(|(spared, _)| **spared != Spared::Nothing);
+        let spared: Vec<&str> = spared.map(|(_, end)| end).collect();
+        if !spared.is_empty() {
+            done.push(format!("but at its {}, where an end condition meets it", spared.join(" and ")));
+        }
         text.push_str(&format!("  {name}: {}\n", done.join(", ")));
     }
     text
@@ -207,6 +214,7 @@ pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
         "cost": found.cost(),
         "rounds": found.rounds.iter().map(|round| json!({
             "objective": round.objective, "open": round.open, "missed": round.missed,
+            "iterations": round.iterations,
             "seconds": { "solve": round.solve, "certify": round.certify },
         })).collect::<Vec<_>>(),
         "changes": found.changes.iter().map(|(number, change)| json!({
