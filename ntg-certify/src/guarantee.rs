@@ -21,6 +21,7 @@ use crate::change::Change;
 use crate::ends::Ends;
 use crate::evaluate::Machine;
 use crate::mend::{change, size};
+use crate::processor;
 use crate::prove::Options;
 use crate::tightened::Tightened;
 
@@ -83,6 +84,8 @@ pub struct Round {
     pub solve: f64,
     /// Seconds of the certificate.
     pub certify: f64,
+    /// Seconds of the processor for both, where the system says them; nothing is known of a solve from outside.
+    pub processor: (Option<f64>, Option<f64>),
 }
 
 /// A solution with its certificate, and what they cost.
@@ -134,8 +137,14 @@ pub fn guarantee<'p>(
     settings: &Settings,
     wanted: &Guarantee,
 ) -> Result<Guaranteed<'p>, Error> {
+    let before = processor::spent();
     let report = solve_from(task.problem, guess, settings)?;
-    proved_from(task, report, settings, wanted)
+    let solve = processor::since(before);
+    let mut found = proved_from(task, report, settings, wanted)?;
+    if let Some(first) = found.rounds.first_mut() {
+        first.processor.0 = solve;
+    }
+    Ok(found)
 }
 
 /// As [`guarantee`], from a report of the untightened problem.
@@ -149,14 +158,17 @@ pub fn proved_from<'p>(
     wanted: &Guarantee,
 ) -> Result<Guaranteed<'p>, Error> {
     let mut changes: BTreeMap<usize, Change> = BTreeMap::new();
+    let mut before = processor::spent();
     let (mut rounds, mut certificate) = (vec![], of(task, &mut report, wanted)?);
+    let mut spent = (None, processor::since(before));
     let quick = without_samples(settings);
     let mut wanted = *wanted;
     // Constraints that are missed by less, as a part of their size, stay as they are.
     let mut least = 0.0;
     let mut foresees = true;
     let ending = loop {
-        rounds.push(round(&report, &certificate));
+        rounds.push(Round { processor: spent, ..round(&report, &certificate) });
+        before = processor::spent();
         if !report.is_solved() {
             break Ending::NotSolved;
         }
@@ -197,13 +209,17 @@ pub fn proved_from<'p>(
             Ok(next) => next,
             Err(words) => break Ending::Tightened(words),
         };
+        let solve = processor::since(before);
+        before = processor::spent();
         certificate = of(task, &mut next, &wanted)?;
+        spent = (solve, processor::since(before));
         (report, changes) = (next, more);
     };
-    let before = certificate.seconds;
+    let (seconds, before) = (certificate.seconds, processor::spent());
     let certificate = certificate.completed(&wanted.options);
     if let Some(last) = rounds.last_mut() {
-        last.certify += certificate.seconds - before;
+        last.certify += certificate.seconds - seconds;
+        last.processor.1 = last.processor.1.zip(processor::since(before)).map(|(a, b)| a + b);
     }
     if rounds.len() > 1 {
         let began = Instant::now();
@@ -319,5 +335,6 @@ fn round(report: &Report, certificate: &Certificate) -> Round {
         iterations: report.iterations,
         solve: report.seconds,
         certify: certificate.seconds,
+        processor: (None, None),
     }
 }

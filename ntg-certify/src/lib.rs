@@ -18,6 +18,7 @@ pub mod guarantee;
 pub mod interval;
 pub mod jet;
 mod mend;
+mod processor;
 mod products;
 pub mod prove;
 pub mod spline;

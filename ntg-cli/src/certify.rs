@@ -216,6 +216,7 @@ pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
             "objective": round.objective, "open": round.open, "missed": round.missed,
             "iterations": round.iterations,
             "seconds": { "solve": round.solve, "certify": round.certify },
+            "processor": { "solve": round.processor.0, "certify": round.processor.1 },
         })).collect::<Vec<_>>(),
         "changes": found.changes.iter().map(|(number, change)| json!({
             "constraint": found.report.solution.structure().constraints[*number].name,
