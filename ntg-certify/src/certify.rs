@@ -183,7 +183,7 @@ fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Findi
                 (Some(_), true) => Verdict::Within(residual(outward(value), below, subject.unit.factor)),
                 (Some(required), false) => judge(required.missed(value), total),
             };
-            let values = within_required(value, &verdict, required);
+            let values = within_required(value, (&verdict, required), subject.unit.factor);
             let required = required.map(|r| (r.low, r.high));
             Finding { verdict, values, required, witness: None, covers }
         }
@@ -204,7 +204,7 @@ fn path(
         }
         Some(_) => judge((found.witness.map_or(0.0, |witness| witness.missed), found.missed), total),
     };
-    let values = within_required(found.values, &verdict, required);
+    let values = within_required(found.values, (&verdict, required), unit);
     let required = required.map(|r| (r.low, r.high));
     Finding { verdict, values, required, witness: found.witness, covers: vec![found.leaves] }
 }
@@ -247,9 +247,11 @@ fn summed(values: Interval) -> Interval {
 }
 
 /// What a certificate claims: the enclosure, widened, but not beyond bounds that are proved.
-fn within_required(values: Interval, verdict: &Verdict, required: Option<Required>) -> Interval {
+fn within_required(values: Interval, (verdict, required): (&Verdict, Option<Required>), unit: f64) -> Interval {
     let wide = outward(values);
     match (verdict, required) {
+        // Of an equality as much more as its residual has.
+        (Verdict::Within(_), _) => wide + Interval::of_constants(-1.0, 1.0) * (OF_UNIT * unit.abs()),
         (Verdict::Proved, Some(required)) => wide.within(required.low, required.high).unwrap_or(values),
         _ => wide,
     }

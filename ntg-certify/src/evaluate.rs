@@ -1,11 +1,12 @@
 //! Evaluates functions of a statement on boxes of time.
 
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use ntg_compiler::expr::{Binary, Unary};
 
 use crate::interval::Interval;
-use crate::jet::Jet;
+use crate::jet::{COUNT, Jet};
 use crate::spline::{BSpline, Piece};
 use crate::statement::{Flat, Graph, Input, Join, Node, Statement};
 use crate::table::look_up;
@@ -13,8 +14,9 @@ use crate::table::look_up;
 /// A statement, ready to be evaluated.
 pub(crate) struct Machine<'a> {
     pub(crate) statement: &'a Statement,
-    /// For each graph and row the nodes that it needs, with operands by their place in this list.
-    lines: Vec<Vec<Vec<Node>>>,
+    /// For each graph and row the nodes that it needs, with operands by their place in this list; made when it is asked
+    /// for.
+    lines: Vec<Vec<OnceCell<Vec<Node>>>>,
     /// Both ends of every flat.
     ends: Vec<(Interval, Interval)>,
     /// What is known of the integrals.
@@ -22,14 +24,14 @@ pub(crate) struct Machine<'a> {
 }
 
 /// The jets at one box or one point: of every flat that is needed, by number, and of scaled time.
-pub(crate) struct Here {
-    pub(crate) flats: Vec<Option<Jet>>,
-    pub(crate) tau: Jet,
+pub(crate) struct Here<const N: usize = COUNT> {
+    pub(crate) flats: Vec<Option<Jet<N>>>,
+    pub(crate) tau: Jet<N>,
 }
 
 impl<'a> Machine<'a> {
     pub(crate) fn new(statement: &'a Statement) -> Self {
-        let lines = statement.graphs.iter().map(|graph| (0..graph.rows.len()).map(|row| line(graph, row)).collect());
+        let lines = statement.graphs.iter().map(|graph| vec![OnceCell::new(); graph.rows.len()]);
         let ends = statement.flats.iter().map(|flat| {
             let cuts = &statement.phases[statement.splines[flat.spline].phase].cuts;
             let cells = cuts.len() - 1;
@@ -39,12 +41,26 @@ impl<'a> Machine<'a> {
         Self { statement, lines: lines.collect(), ends: ends.collect(), integrals }
     }
 
+    /// The inputs that a function uses: those of its graph belong to all of its rows.
+    pub(crate) fn inputs(&self, function: usize) -> impl Iterator<Item = &Input> {
+        let own = &self.statement.functions[function];
+        self.line(function).iter().filter_map(|node| match node {
+            Node::Input(input) => own.inputs.get(*input),
+            _ => None,
+        })
+    }
+
+    fn line(&self, function: usize) -> &[Node] {
+        let own = &self.statement.functions[function];
+        self.lines[own.graph][own.row].get_or_init(|| line(&self.statement.graphs[own.graph], own.row))
+    }
+
     /// The flats that a function needs at the time of evaluation.
     pub(crate) fn needs(&self, function: usize) -> Vec<usize> {
         let mut found = BTreeSet::new();
         let mut open = vec![function];
         while let Some(function) = open.pop() {
-            for input in &self.statement.functions[function].inputs {
+            for input in self.inputs(function) {
                 match input {
                     Input::Flat(flat) => drop(found.insert(*flat)),
                     Input::Join(_, members) => open.extend(members),
@@ -56,7 +72,7 @@ impl<'a> Machine<'a> {
     }
 
     /// The value of a function that depends on no time, or at one end of a phase.
-    pub(crate) fn number(&self, function: usize, end: Option<(usize, bool)>) -> Jet {
+    pub(crate) fn number(&self, function: usize, end: Option<(usize, bool)>) -> Jet<1> {
         let mut flats = vec![None; self.statement.flats.len()];
         if let Some((_, last)) = end {
             for flat in self.needs(function) {
@@ -69,10 +85,10 @@ impl<'a> Machine<'a> {
     }
 
     /// A function at a box or a point.
-    pub(crate) fn evaluate(&self, function: usize, here: &Here) -> Jet {
+    pub(crate) fn evaluate<const N: usize>(&self, function: usize, here: &Here<N>) -> Jet<N> {
+        let line = self.line(function);
         let function = &self.statement.functions[function];
-        let line = &self.lines[function.graph][function.row];
-        let mut values: Vec<Jet> = Vec::with_capacity(line.len());
+        let mut values: Vec<Jet<N>> = Vec::with_capacity(line.len());
         for node in line {
             let value = match node {
                 Node::Const(value) => Jet::constant(Interval::point(*value)),
@@ -84,7 +100,7 @@ impl<'a> Machine<'a> {
                     values[*condition].select(&values[*then], &values[*otherwise])
                 }
                 Node::Table(table, derivative, args) => {
-                    let args: Vec<Jet> = args.iter().map(|arg| values[*arg]).collect();
+                    let args: Vec<Jet<N>> = args.iter().map(|arg| values[*arg]).collect();
                     look_up(&self.statement.tables[*table], derivative, &args)
                 }
             };
@@ -93,7 +109,7 @@ impl<'a> Machine<'a> {
         values.last().copied().unwrap_or(Jet::rough(Interval::ENTIRE, false))
     }
 
-    fn input(&self, input: &Input, here: &Here) -> Jet {
+    fn input<const N: usize>(&self, input: &Input, here: &Here<N>) -> Jet<N> {
         match input {
             Input::Flat(flat) => here.flats[*flat].unwrap_or(Jet::rough(Interval::ENTIRE, false)),
             Input::Start(flat) => Jet::constant(self.ends[*flat].0),
@@ -171,7 +187,7 @@ fn for_each_operand(node: &Node, mut visit: impl FnMut(usize)) {
     }
 }
 
-fn unary(op: Unary, x: &Jet) -> Jet {
+fn unary<const N: usize>(op: Unary, x: &Jet<N>) -> Jet<N> {
     match op {
         Unary::Neg => -*x,
         Unary::Sqrt => x.sqrt(),
@@ -193,7 +209,7 @@ fn unary(op: Unary, x: &Jet) -> Jet {
     }
 }
 
-fn binary(op: Binary, a: &Jet, b: &Jet, same: bool) -> Jet {
+fn binary<const N: usize>(op: Binary, a: &Jet<N>, b: &Jet<N>, same: bool) -> Jet<N> {
     match op {
         Binary::Mul if same => a.square(),
         Binary::Add => *a + *b,

@@ -11,22 +11,28 @@ use ntg_compiler::program::Program;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::report::{ConstraintReport, Report, Worst};
-use ntg_runtime::settings::Settings;
+use ntg_runtime::settings::{Between, Settings};
+use ntg_runtime::solution::Solution;
 use ntg_runtime::status::Status;
-use ntg_runtime::{Error, solve_from};
+use ntg_runtime::{Error, Solver, solve_from};
 
 use crate::certify::{Certificate, Verdict, constraints};
+use crate::change::Change;
+use crate::ends::Ends;
+use crate::evaluate::Machine;
+use crate::mend::{change, size};
+use crate::processor;
 use crate::prove::Options;
-use crate::statement::{Kind, Quantity};
-use crate::tightened::{Change, Tightened};
+use crate::tightened::Tightened;
 
 /// How far a guarantee goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guarantee {
     /// Most solves after the first. Default 10.
     pub rounds: usize,
-    /// A constraint along a phase that misses its bound by more than this part of its size is held at four or sixteen
-    /// times as many points there; below, it is tightened. Default 1e-4: what tightening by as much costs is of that order.
+    /// A constraint along a phase is tightened by what it misses, where that is less than this part of its size. Where it
+    /// misses more it is held at more points, so many that about this is expected to be missed, and tightened by as
+    /// much. Default 2e-4: what tightening by as much costs is of that order.
     pub coarse: f64,
     /// Most times as many points. Default 64.
     pub points: usize,
@@ -39,7 +45,10 @@ pub struct Guarantee {
 
 impl Default for Guarantee {
     fn default() -> Self {
-        Self { rounds: 10, coarse: 1e-4, points: 64, margin: 2e-8, options: Options::default() }
+        let coarse = 2e-4;
+        // So finely that points are added only where more is missed.
+        let options = Options { local: 0.5 * coarse, ..Options::default() };
+        Self { rounds: 10, coarse, points: 64, margin: 2e-8, options }
     }
 }
 
@@ -69,10 +78,14 @@ pub struct Round {
     pub open: usize,
     /// The largest part of its bound's size by which one may be missed.
     pub missed: f64,
+    /// Iterations of the solve.
+    pub iterations: usize,
     /// Seconds of the solve.
     pub solve: f64,
     /// Seconds of the certificate.
     pub certify: f64,
+    /// Seconds of the processor for both, where the system says them; nothing is known of a solve from outside.
+    pub processor: (Option<f64>, Option<f64>),
 }
 
 /// A solution with its certificate, and what they cost.
@@ -124,8 +137,14 @@ pub fn guarantee<'p>(
     settings: &Settings,
     wanted: &Guarantee,
 ) -> Result<Guaranteed<'p>, Error> {
+    let before = processor::spent();
     let report = solve_from(task.problem, guess, settings)?;
-    proved_from(task, report, settings, wanted)
+    let solve = processor::since(before);
+    let mut found = proved_from(task, report, settings, wanted)?;
+    if let Some(first) = found.rounds.first_mut() {
+        first.processor.0 = solve;
+    }
+    Ok(found)
 }
 
 /// As [`guarantee`], from a report of the untightened problem.
@@ -139,63 +158,110 @@ pub fn proved_from<'p>(
     wanted: &Guarantee,
 ) -> Result<Guaranteed<'p>, Error> {
     let mut changes: BTreeMap<usize, Change> = BTreeMap::new();
-    let (mut rounds, mut certificate) = (vec![], of(task, &report, wanted)?);
+    let mut before = processor::spent();
+    let (mut rounds, mut certificate) = (vec![], of(task, &mut report, wanted)?);
+    let mut spent = (None, processor::since(before));
+    let quick = without_samples(settings);
     let mut wanted = *wanted;
     // Constraints that are missed by less, as a part of their size, stay as they are.
     let mut least = 0.0;
+    let mut foresees = true;
     let ending = loop {
-        rounds.push(round(&report, &certificate));
+        rounds.push(Round { processor: spent, ..round(&report, &certificate) });
+        before = processor::spent();
         if !report.is_solved() {
             break Ending::NotSolved;
         }
         if certificate.is_proved() {
             break Ending::Proved;
         }
-        if rounds.len() > wanted.rounds {
-            break Ending::Rounds;
-        }
-        let mut more = changes.clone();
-        if !change(&certificate, &mut more, &wanted, least) {
+        if rounds.len() > wanted.rounds || is_stalled(&rounds) {
             break unchanged(&rounds, &wanted);
         }
-        let mut next = again(task, &report, &more, settings);
+        let mut more = changes.clone();
+        if !change(&certificate, &mut more, &wanted, (least, foresees)) {
+            break unchanged(&rounds, &wanted);
+        }
+        let is_near = rounds.last().is_some_and(|last| last.missed <= FAR);
+        let mut next = again(task, (&report, is_near), &more, &quick);
+        if next.is_err() && foresees {
+            // Where there is little room, points alone may be had.
+            foresees = false;
+            let tried = std::mem::replace(&mut more, changes.clone());
+            change(&certificate, &mut more, &wanted, (least, foresees));
+            if more != tried {
+                next = again(task, (&report, is_near), &more, &quick);
+            }
+        }
         if next.is_err() && least == 0.0 {
             // An end condition may meet a bound with equality: what is missed by rounding stays, and points mend as much
             // as they can of the rest.
             least = wanted.margin;
             wanted.coarse = wanted.margin;
+            wanted.options.local = 0.5 * wanted.coarse;
             more = changes.clone();
-            if !change(&certificate, &mut more, &wanted, least) {
+            if !change(&certificate, &mut more, &wanted, (least, foresees)) {
                 break unchanged(&rounds, &wanted);
             }
-            next = again(task, &report, &more, settings);
+            next = again(task, (&report, is_near), &more, &quick);
         }
-        let next = match next {
+        let mut next = match next {
             Ok(next) => next,
             Err(words) => break Ending::Tightened(words),
         };
-        certificate = of(task, &next, &wanted)?;
+        let solve = processor::since(before);
+        before = processor::spent();
+        certificate = of(task, &mut next, &wanted)?;
+        spent = (solve, processor::since(before));
         (report, changes) = (next, more);
     };
-    let before = certificate.seconds;
+    let (seconds, before) = (certificate.seconds, processor::spent());
     let certificate = certificate.completed(&wanted.options);
     if let Some(last) = rounds.last_mut() {
-        last.certify += certificate.seconds - before;
+        last.certify += certificate.seconds - seconds;
+        last.processor.1 = last.processor.1.zip(processor::since(before)).map(|(a, b)| a + b);
+    }
+    if rounds.len() > 1 {
+        let began = Instant::now();
+        report.measure_between(task.problem, settings.samples)?;
+        if let Some(last) = rounds.last_mut() {
+            last.solve += began.elapsed().as_secs_f64();
+        }
     }
     own_bounds(&mut report, &certificate, &changes);
     let problem = Tightened::new(task.problem, &changes, true);
     Ok(Guaranteed { problem, report, certificate, changes, rounds, ending })
 }
 
-/// How a guarantee ends where nothing is left to be changed.
+/// Whether two rounds have not made less what is missed, nor fewer what is not proved.
+fn is_stalled(rounds: &[Round]) -> bool {
+    let [.., before, between, last] = rounds else { return false };
+    let gains = |a: &Round, b: &Round| b.missed < 0.8 * a.missed || b.open < a.open;
+    !gains(before, between) && !gains(between, last)
+}
+
+/// How a guarantee ends where nothing more is to be had.
 fn unchanged(rounds: &[Round], wanted: &Guarantee) -> Ending {
     let is_rounding = rounds.last().is_some_and(|last| last.missed <= wanted.margin);
     if is_rounding { Ending::Rounding } else { Ending::Rounds }
 }
 
-fn of(task: Task<'_>, report: &Report, wanted: &Guarantee) -> Result<Certificate, Error> {
+/// Settings of solves after which all is proved that a finer grid would only measure.
+fn without_samples(settings: &Settings) -> Settings {
+    let is_measured = settings.refine.is_some() || settings.between != Between::Report;
+    Settings { samples: if is_measured { settings.samples } else { 1 }, ..settings.clone() }
+}
+
+/// What is proved of a solution, in which what end conditions fix is written to the last bit first.
+fn of(task: Task<'_>, report: &mut Report, wanted: &Guarantee) -> Result<Certificate, Error> {
     let began = Instant::now();
-    let statement = crate::collect::statement(task.program, &report.solution, task.spec).map_err(Error::Setup)?;
+    let stated = |solution: &Solution| crate::collect::statement(task.program, solution, task.spec);
+    let mut statement = stated(&report.solution).map_err(Error::Setup)?;
+    let exact = Ends::of(&Machine::new(&statement)).exactly(&report.solution, wanted.margin);
+    if let Some(exact) = exact.filter(|_| report.is_solved()) {
+        statement = stated(&exact).map_err(Error::Setup)?;
+        report.solution = exact;
+    }
     // What only the last certificate says, of costs and named expressions, waits for it.
     let mut certificate = constraints(statement, &wanted.options);
     certificate.seconds = began.elapsed().as_secs_f64();
@@ -224,21 +290,32 @@ fn own_bounds(report: &mut Report, certificate: &Certificate, changes: &BTreeMap
         (largest(|own| own.points.as_ref()), largest(|own| own.between.as_ref()));
 }
 
+/// A solution that misses a bound by more than so many times its size is no guess of one that keeps it. A law: it keeps no
+/// bound of that size.
+const FAR: f64 = 1.0;
+
 /// Solves with the changes, from the last solution; should that fail, from the beginning. The words say why there is no
 /// solution: a tightened bound may contradict an end condition before anything is solved.
 fn again(
     task: Task<'_>,
-    report: &Report,
+    (report, is_near): (&Report, bool),
     changes: &BTreeMap<usize, Change>,
     settings: &Settings,
 ) -> Result<Report, String> {
-    let tightened = Tightened::new(task.problem, changes, true);
-    let next = solve_from(&tightened, &Guess::from(&report.solution), settings).map_err(|error| error.to_string())?;
-    if next.is_solved() {
+    let mut warm = Solver::new(Tightened::new(task.problem, changes, true), settings);
+    let next = if is_near { warm.attempt_from(&report.solution) } else { Ok(None) };
+    if let Some(next) = next.map_err(|error| error.to_string())?.filter(Report::is_solved) {
         return Ok(next);
     }
-    if matches!(next.status, Status::Cancelled | Status::TimeLimit) {
-        return Err(next.status.to_string());
+    if is_near {
+        let next =
+            solve_from(&warm.problem, &Guess::from(&report.solution), settings).map_err(|error| error.to_string())?;
+        if next.is_solved() {
+            return Ok(next);
+        }
+        if matches!(next.status, Status::Cancelled | Status::TimeLimit) {
+            return Err(next.status.to_string());
+        }
     }
     let next = solve_from(&Tightened::new(task.problem, changes, false), &Guess::default(), settings)
         .map_err(|error| error.to_string())?;
@@ -255,69 +332,9 @@ fn round(report: &Report, certificate: &Certificate) -> Round {
         objective: report.objective,
         open: certificate.findings.iter().filter(|finding| !finding.verdict.holds()).count(),
         missed,
+        iterations: report.iterations,
         solve: report.seconds,
         certify: certificate.seconds,
-    }
-}
-
-/// The size of bounds; 1 where both are 0.
-fn size(required: Option<(f64, f64)>) -> f64 {
-    let (low, high) = required.unwrap_or((0.0, 0.0));
-    let most = [low, high].into_iter().filter(|b| b.is_finite()).fold(0.0, |most: f64, b| most.max(b.abs()));
-    if most > 0.0 { most } else { 1.0 }
-}
-
-/// Changes every constraint that is not proved, and misses more than the `least` part of its size; whether any could be
-/// changed.
-fn change(certificate: &Certificate, changes: &mut BTreeMap<usize, Change>, wanted: &Guarantee, least: f64) -> bool {
-    let mut needs: BTreeMap<usize, (f64, f64, bool, f64)> = BTreeMap::new();
-    for (subject, finding) in certificate.each() {
-        let (Kind::Constraint(number), false) = (subject.kind, finding.verdict.holds()) else { continue };
-        let Some((low, high)) = finding.required else { continue };
-        let below = if low.is_finite() { (low - finding.values.low()).max(0.0) } else { 0.0 };
-        let above = if high.is_finite() { (finding.values.high() - high).max(0.0) } else { 0.0 };
-        let scale = size(finding.required);
-        let along = matches!(subject.quantity, Quantity::Path(..));
-        let need = needs.entry(number).or_insert((0.0, 0.0, along, scale));
-        *need = (need.0.max(below), need.1.max(above), need.2 || along, need.3.max(scale));
-    }
-    let mut changed = false;
-    for (number, (below, above, along, scale)) in needs {
-        if !below.is_finite() || !above.is_finite() {
-            continue; // It may have no value; no bound helps.
-        }
-        let [below, above] = [below, above].map(|missed| if missed <= least * scale { 0.0 } else { missed });
-        if least > 0.0 && below.max(above) <= 0.0 {
-            continue;
-        }
-        let change = changes.entry(number).or_insert(Change { points: 1, ..Change::default() });
-        let excess = below.max(above) / (wanted.coarse * scale);
-        if along && excess > 1.0 && change.points < wanted.points {
-            // What is missed between points falls with the square of their distance.
-            let factor = if excess > 16.0 { 16 } else { 4 };
-            change.points = (change.points * factor).min(wanted.points);
-            mark(certificate, number, change, wanted.coarse * scale);
-        } else {
-            // A quarter more than is missed: the trajectory moves a little when it is held back.
-            let more = |missed: f64| if missed > 0.0 { 1.25 * missed + wanted.margin * scale } else { 0.0 };
-            change.below += more(below);
-            change.above += more(above);
-        }
-        changed = true;
-    }
-    changed
-}
-
-/// Marks the times at which a constraint may miss its bounds by more than this.
-fn mark(certificate: &Certificate, number: usize, change: &mut Change, most: f64) {
-    for (subject, finding) in certificate.each().filter(|(subject, _)| subject.kind == Kind::Constraint(number)) {
-        let (Quantity::Path(_, phase, _), Some((low, high))) = (&subject.quantity, finding.required) else { continue };
-        let cuts = &certificate.statement.phases[*phase].cuts;
-        for leaf in finding.covers.iter().flatten() {
-            if leaf.values.low() < low - most || leaf.values.high() > high + most {
-                let tau = |part: f64| cuts[leaf.cell] + (cuts[leaf.cell + 1] - cuts[leaf.cell]) * part;
-                change.mark(tau(leaf.start()), tau(leaf.start() + leaf.length()));
-            }
-        }
+        processor: (None, None),
     }
 }

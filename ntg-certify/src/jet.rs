@@ -12,6 +12,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::elementary as el;
 use crate::interval::Interval;
+use crate::products::sum_of_products;
 
 /// The highest coefficient, and the order of the remainder. Even, so that the remainder has a sign.
 pub const ORDER: usize = 6;
@@ -21,24 +22,24 @@ pub const COUNT: usize = ORDER + 1;
 
 /// Enclosures of Taylor coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Jet {
+pub struct Jet<const N: usize = COUNT> {
     /// The value, then the scaled derivatives.
-    pub c: [Interval; COUNT],
+    pub c: [Interval; N],
     /// Whether there is a value at every time.
     pub total: bool,
 }
 
-impl Jet {
+impl<const N: usize> Jet<N> {
     /// A function that does not change.
     pub fn constant(value: Interval) -> Self {
-        let mut c = [Interval::ZERO; COUNT];
+        let mut c = [Interval::ZERO; N];
         c[0] = value;
         Self { c, total: true }
     }
 
     /// A function of which only values are known.
     pub fn rough(values: Interval, total: bool) -> Self {
-        let mut c = [Interval::ENTIRE; COUNT];
+        let mut c = [Interval::ENTIRE; N];
         c[0] = values;
         Self { c, total }
     }
@@ -54,25 +55,34 @@ impl Jet {
     }
 
     /// What the function can be on the box: the best of its values, its mean-value form and its Taylor form (docs/maths.md,
-    /// equations 15.3 and 15.4). `centre` is the jet at the centre, `self` the one of all times.
+    /// equations 15.3 and 15.4), as far as there are coefficients for them. `centre` is the jet at the centre, `self` the one
+    /// of all times.
     pub fn range(&self, centre: &Self) -> Interval {
         let values = self.c[0];
-        let mean_value = centre.c[0] + self.c[1] * Interval::of_constants(-1.0, 1.0);
+        if N == 1 {
+            return values;
+        }
+        let values = values.meet(centre.c[0] + self.c[1] * Interval::of_constants(-1.0, 1.0));
+        if N < COUNT {
+            return values;
+        }
         let remainder = self.c[ORDER] * Interval::of_constants(0.0, 1.0);
-        let taylor = bernstein_hull(&centre.c) + remainder;
-        values.meet(mean_value).meet(taylor)
+        values.meet(bernstein_hull(&centre.c) + remainder)
     }
 
-    /// The mean over the box (docs/maths.md, equation 15.5).
+    /// The mean over the box (docs/maths.md, equation 15.5). The last coefficient is one of an even order.
     pub fn mean(&self, centre: &Self) -> Interval {
-        let last = self.c[ORDER].over(Interval::point((ORDER + 1) as f64));
-        let terms = (0..ORDER).step_by(2).map(|k| centre.c[k].over(Interval::point((k + 1) as f64)));
+        if N % 2 == 0 {
+            return self.c[0];
+        }
+        let last = self.c[N - 1].over(Interval::point(N as f64));
+        let terms = (0..N - 1).step_by(2).map(|k| centre.c[k].over(Interval::point((k + 1) as f64)));
         terms.fold(last, |sum, term| sum + term).meet(self.c[0])
     }
 
     /// A function of `self` with these values, whose derivative by `self` has the coefficients `slope`.
-    fn through(&self, values: Interval, slope: &[Interval; COUNT]) -> Self {
-        let mut c = [values; COUNT];
+    fn through(&self, values: Interval, slope: &[Interval; N]) -> Self {
+        let mut c = [values; N];
         for (k, out) in c.iter_mut().enumerate().skip(1) {
             *out = self.chain(slope, k);
         }
@@ -80,17 +90,17 @@ impl Jet {
     }
 
     /// Coefficient `k` of the function whose derivative by `self` has the coefficients `slope[.. k]`.
-    fn chain(&self, slope: &[Interval; COUNT], k: usize) -> Interval {
-        let sum = (1..=k).fold(Interval::ZERO, |sum, j| sum + self.c[j] * (j as f64) * slope[k - j]);
+    fn chain(&self, slope: &[Interval; N], k: usize) -> Interval {
+        let sum = sum_of_products((1..=k).map(|j| (j as f64, self.c[j], slope[k - j])));
         sum.over(Interval::point(k as f64))
     }
 
     /// As [`Jet::through`] where the slope is a function of the values found so far.
-    fn grown(&self, values: Interval, slope: impl Fn(&[Interval; COUNT], usize) -> Interval) -> Self {
-        let mut c = [Interval::ZERO; COUNT];
+    fn grown(&self, values: Interval, slope: impl Fn(&[Interval; N], usize) -> Interval) -> Self {
+        let mut c = [Interval::ZERO; N];
         c[0] = values;
-        let mut known = [Interval::ZERO; COUNT];
-        for k in 1..COUNT {
+        let mut known = [Interval::ZERO; N];
+        for k in 1..N {
             known[k - 1] = slope(&c, k - 1);
             c[k] = self.chain(&known, k);
         }
@@ -100,7 +110,7 @@ impl Jet {
     /// The square.
     #[must_use]
     pub fn square(&self) -> Self {
-        let mut c = [Interval::ZERO; COUNT];
+        let mut c = [Interval::ZERO; N];
         for (k, out) in c.iter_mut().enumerate() {
             *out = square_coefficient(&self.c, k);
         }
@@ -111,10 +121,10 @@ impl Jet {
     #[must_use]
     pub fn over(&self, divisor: &Self) -> Self {
         let first = divisor.c[0];
-        let mut c = [Interval::ZERO; COUNT];
-        for k in 0..COUNT {
-            let known = (1..=k).fold(self.c[k], |rest, j| rest - divisor.c[j] * c[k - j]);
-            c[k] = known.over(first);
+        let mut c = [Interval::ZERO; N];
+        for k in 0..N {
+            let known = sum_of_products((1..=k).map(|j| (1.0, divisor.c[j], c[k - j])));
+            c[k] = (self.c[k] - known).over(first);
         }
         Self { c, total: self.total && divisor.total && !first.contains(0.0) }
     }
@@ -147,10 +157,10 @@ impl Jet {
     /// The root with these values of a function that is not negative there.
     fn root(&self, values: Interval, total: bool) -> Self {
         let twice = values.scaled(2.0);
-        let mut c = [values; COUNT];
-        for k in 1..COUNT {
-            let known = (1..k).fold(self.c[k], |rest, j| rest - c[j] * c[k - j]);
-            c[k] = known.over(twice);
+        let mut c = [values; N];
+        for k in 1..N {
+            let known = sum_of_products((1..k).map(|j| (1.0, c[j], c[k - j])));
+            c[k] = (self.c[k] - known).over(twice);
         }
         Self { c, total: self.total && total }
     }
@@ -183,9 +193,9 @@ impl Jet {
 
     /// Sine and cosine.
     fn sine_and_cosine(&self) -> (Self, Self) {
-        let (mut sine, mut cosine) = ([Interval::ZERO; COUNT], [Interval::ZERO; COUNT]);
+        let (mut sine, mut cosine) = ([Interval::ZERO; N], [Interval::ZERO; N]);
         (sine[0], cosine[0]) = (el::sin(self.c[0]), el::cos(self.c[0]));
-        for k in 1..COUNT {
+        for k in 1..N {
             sine[k] = self.chain(&cosine, k);
             cosine[k] = -self.chain(&sine, k);
         }
@@ -208,7 +218,7 @@ impl Jet {
     #[must_use]
     pub fn tan(&self) -> Self {
         let image = el::tan(self.c[0]);
-        let one_and = |c: &[Interval; COUNT], k: usize| {
+        let one_and = |c: &[Interval; N], k: usize| {
             let square = square_coefficient(c, k);
             if k == 0 { Interval::ONE + square } else { square }
         };
@@ -244,9 +254,9 @@ impl Jet {
 
     /// Hyperbolic sine and cosine.
     fn hyperbolic(&self) -> (Self, Self) {
-        let (mut sine, mut cosine) = ([Interval::ZERO; COUNT], [Interval::ZERO; COUNT]);
+        let (mut sine, mut cosine) = ([Interval::ZERO; N], [Interval::ZERO; N]);
         (sine[0], cosine[0]) = (el::sinh(self.c[0]), el::cosh(self.c[0]));
-        for k in 1..COUNT {
+        for k in 1..N {
             sine[k] = self.chain(&cosine, k);
             cosine[k] = self.chain(&sine, k);
         }
@@ -268,7 +278,7 @@ impl Jet {
     /// Hyperbolic tangent.
     #[must_use]
     pub fn tanh(&self) -> Self {
-        let less = |c: &[Interval; COUNT], k: usize| {
+        let less = |c: &[Interval; N], k: usize| {
             let square = square_coefficient(c, k);
             if k == 0 { Interval::ONE - square } else { -square }
         };
@@ -302,7 +312,7 @@ impl Jet {
         }
         let square = self.square() + x.square();
         let (p, q) = (x.over(&square), self.over(&square));
-        let mut c = [values; COUNT];
+        let mut c = [values; N];
         for (k, out) in c.iter_mut().enumerate().skip(1) {
             *out = self.chain(&p.c, k) - x.chain(&q.c, k);
         }
@@ -394,19 +404,18 @@ impl Jet {
 }
 
 /// Coefficient `k` of the square of a function with these coefficients.
-fn square_coefficient(c: &[Interval; COUNT], k: usize) -> Interval {
-    let pairs = (0..k.div_ceil(2)).fold(Interval::ZERO, |sum, i| sum + c[i] * c[k - i]);
-    let twice = pairs.scaled(2.0);
+fn square_coefficient<const N: usize>(c: &[Interval; N], k: usize) -> Interval {
+    let twice = sum_of_products((0..k.div_ceil(2)).map(|i| (2.0, c[i], c[k - i])));
     if k.is_multiple_of(2) { twice + c[k / 2].square() } else { twice }
 }
 
 /// The range of `sum c_k s^k`, `k < ORDER`, for `s` from -1 to 1: the hull of its Bernstein coefficients, which are
 /// `sum_k c_k / binomial(n, k) sum_j (-1)^(k-j) binomial(i, j) binomial(n-i, k-j)` with `n = ORDER - 1`.
-fn bernstein_hull(c: &[Interval; COUNT]) -> Interval {
-    const N: usize = ORDER - 1;
-    let mut divided = [Interval::ZERO; N + 1];
+fn bernstein_hull(c: &[Interval]) -> Interval {
+    const DEGREE: usize = ORDER - 1;
+    let mut divided = [Interval::ZERO; DEGREE + 1];
     for (k, out) in divided.iter_mut().enumerate() {
-        *out = if k == 0 || k == N { c[k] } else { c[k].over(Interval::point(binomial(N, k))) };
+        *out = if k == 0 || k == DEGREE { c[k] } else { c[k].over(Interval::point(binomial(DEGREE, k))) };
     }
     let mut hull: Option<Interval> = None;
     for row in &TO_BERNSTEIN {
@@ -452,29 +461,36 @@ pub(crate) const fn binomial(n: usize, k: usize) -> f64 {
     result
 }
 
-impl Neg for Jet {
+impl<const N: usize> Neg for Jet<N> {
     type Output = Self;
     fn neg(self) -> Self {
         Self { c: self.c.map(|c| -c), total: self.total }
     }
 }
 
-impl Add for Jet {
+impl<const N: usize> Add for Jet<N> {
     type Output = Self;
     fn add(mut self, other: Self) -> Self {
-        self.c.iter_mut().zip(other.c).for_each(|(a, b)| *a = *a + b);
+        for (a, b) in self.c.iter_mut().zip(other.c) {
+            // Coefficients of numbers are 0.
+            if *a == Interval::ZERO {
+                *a = b;
+            } else if b != Interval::ZERO {
+                *a = *a + b;
+            }
+        }
         Self { c: self.c, total: self.total && other.total }
     }
 }
 
-impl Sub for Jet {
+impl<const N: usize> Sub for Jet<N> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Mul for Jet {
+impl<const N: usize> Mul for Jet<N> {
     type Output = Self;
     #[expect(clippy::suspicious_arithmetic_impl, reason = "coefficients of a product are sums of products")]
     fn mul(self, other: Self) -> Self {
@@ -486,9 +502,10 @@ impl Mul for Jet {
         if other.is_constant() {
             return Self { c: self.c.map(|c| c * other.c[0]), total };
         }
-        let mut c = [Interval::ZERO; COUNT];
-        for (k, out) in c.iter_mut().enumerate() {
-            *out = (0..=k).fold(Interval::ZERO, |sum, i| sum + self.c[i] * other.c[k - i]);
+        let mut c = [Interval::ZERO; N];
+        c[0] = self.c[0] * other.c[0];
+        for (k, out) in c.iter_mut().enumerate().skip(1) {
+            *out = sum_of_products((0..=k).map(|i| (1.0, self.c[i], other.c[k - i])));
         }
         Self { c, total }
     }

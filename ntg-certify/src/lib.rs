@@ -9,12 +9,17 @@
 //! ```
 
 pub mod certify;
+pub mod change;
 pub mod collect;
 pub mod elementary;
+mod ends;
 mod evaluate;
 pub mod guarantee;
 pub mod interval;
 pub mod jet;
+mod mend;
+mod processor;
+mod products;
 pub mod prove;
 pub mod spline;
 pub mod statement;

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::evaluate::{Here, Machine, cell};
 use crate::interval::Interval;
-use crate::jet::Jet;
+use crate::jet::{COUNT, Jet};
 use crate::spline::Piece;
 
 /// How finely a certificate looks.
@@ -22,19 +22,29 @@ pub struct Options {
     pub sharpness: f64,
     /// Integrals are enclosed to this relative width. Default 1e-7.
     pub integral: f64,
+    /// Where a bound is missed, boxes are halved up to six times, until it is known box by box by how much: to a factor of
+    /// two, or to this part of the bound's size. Default no bound: beyond the worst place nothing is asked.
+    pub local: f64,
     /// Most boxes for each cell between cuts; the count grows with the cells alone. Default 1000.
     pub boxes: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-13, sharpness: 0.01, integral: 1e-7, boxes: 1000 }
+        Self { tolerance: 1e-13, sharpness: 0.01, integral: 1e-7, local: f64::INFINITY, boxes: 1000 }
     }
 }
 
 /// How many times the width of the value in its centre, which is wide by rounding alone, the values of a box may be
 /// farther out than those that are attained.
 const ROUNDINGS: f64 = 16.0;
+
+/// Into how many parts of a cell means are known to the same width; those of smaller parts to one that adds as much to the
+/// integral. A fit: integrands have few steep places in a cell.
+const SMALL_PARTS: f64 = 8.0;
+
+/// How often a cell is halved at most to tell where bounds are missed. A fit: 64 parts of a cell.
+const LOCAL_HALVINGS: u32 = 6;
 
 /// How often a cell is halved at most: its length then reaches the last place of its ends.
 const MOST_HALVINGS: u32 = 48;
@@ -158,18 +168,17 @@ pub(crate) fn search(
     let mut leaves: Vec<Leaf> = vec![];
     let mut budget = options.boxes.saturating_mul(cells);
     while !open.is_empty() {
-        let looked: Vec<(Open, Leaf, f64)> = open
+        let looked: Vec<(Open, Leaf, Interval)> = open
             .into_iter()
             .map(|open| {
-                let (leaf, centre) = look(machine, function, (&needs, &open));
-                judge.see(&leaf, &centre);
-                (open, leaf, centre.c[0].width())
+                let (leaf, centre) = judge.look(machine, function, (&needs, &open));
+                (open, leaf, centre)
             })
             .collect();
         budget = budget.saturating_sub(looked.len());
         open = vec![];
-        for (of, leaf, rounding) in looked {
-            let done = judge.is_done(&leaf, rounding);
+        for (of, leaf, centre) in looked {
+            let done = judge.is_done(&leaf, centre);
             if done || leaf.halvings >= judge.deepest() || budget == 0 {
                 leaves.push(Leaf { open: !done, ..leaf });
             } else {
@@ -201,6 +210,11 @@ impl Leaf {
 }
 
 impl Open {
+    fn leaf(&self, values: Interval, mean: Interval, total: bool) -> Leaf {
+        let Self { cell, halvings, part, .. } = *self;
+        Leaf { cell, halvings, part, values, mean, total, open: false }
+    }
+
     fn halves(self) -> [Self; 2] {
         let (left, right): (Vec<Piece>, Vec<Piece>) = self.pieces.iter().map(Piece::halves).unzip();
         let (before, after) = self.tau.halves();
@@ -212,8 +226,8 @@ impl Open {
     }
 }
 
-/// Evaluates a function on a box and at its centre.
-fn look(machine: &Machine<'_>, function: usize, (needs, open): (&[usize], &Open)) -> (Leaf, Jet) {
+/// Evaluates a function on a box and at its centre, with so many Taylor coefficients.
+fn look<const N: usize>(machine: &Machine<'_>, function: usize, (needs, open): (&[usize], &Open)) -> (Leaf, Jet<N>) {
     let count = machine.statement.flats.len();
     let (tau_at, tau_over) = open.tau.jets();
     let mut at = Here { flats: vec![None; count], tau: tau_at };
@@ -223,9 +237,28 @@ fn look(machine: &Machine<'_>, function: usize, (needs, open): (&[usize], &Open)
         (at.flats[*flat], over.flats[*flat]) = (Some(centre), Some(all));
     }
     let (centre, all) = (machine.evaluate(function, &at), machine.evaluate(function, &over));
-    let (values, mean) = (all.range(&centre), all.mean(&centre));
-    let Open { cell, halvings, part, .. } = *open;
-    (Leaf { cell, halvings, part, values, mean, total: all.total, open: false }, centre)
+    (open.leaf(all.range(&centre), all.mean(&centre), all.total), centre)
+}
+
+/// Evaluates a function on a box alone, by its values.
+fn glance(machine: &Machine<'_>, function: usize, (needs, open): (&[usize], &Open)) -> Leaf {
+    let mut over = Here { flats: vec![None; machine.statement.flats.len()], tau: Jet::<1>::constant(open.tau.hull()) };
+    for (flat, piece) in needs.iter().zip(&open.pieces) {
+        over.flats[*flat] = Some(Jet::constant(piece.hull()));
+    }
+    let all = machine.evaluate(function, &over);
+    open.leaf(all.c[0], all.c[0], all.total)
+}
+
+/// Values whose ends are four times nearer to those of a straight line.
+fn nearer(values: Interval, line: Interval) -> Interval {
+    let quarter = |of: f64, to: f64| to + 0.25 * (of - to);
+    Interval::new(quarter(values.low(), line.low()), quarter(values.high(), line.high()))
+}
+
+/// The value in the centre; everything, where there is none.
+fn value<const N: usize>(centre: &Jet<N>) -> Interval {
+    if centre.total { centre.c[0] } else { Interval::ENTIRE }
 }
 
 /// What has been seen, and what is done therefore.
@@ -241,9 +274,36 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn see(&mut self, leaf: &Leaf, centre: &Jet) {
-        let value = centre.c[0];
-        if !centre.total || !value.is_bounded() {
+    /// What a function can be on a box, and its value in the centre, by the least work that tells whether the box is done:
+    /// by values alone, with slopes, or with Taylor coefficients. What was found with fewer is found with more.
+    fn look(&mut self, machine: &Machine<'_>, function: usize, of: (&[usize], &Open)) -> (Leaf, Interval) {
+        if let Goal::Bounds(required) = self.goal {
+            let leaf = glance(machine, function, of);
+            if leaf.total && required.missed_at_most(leaf.values) <= 0.0 {
+                return (leaf, Interval::ENTIRE); // As nearly all are.
+            }
+        }
+        if !matches!(self.goal, Goal::Integral(_)) {
+            let (leaf, centre) = look::<2>(machine, function, of);
+            let (centre, slope) = (value(&centre), centre.c[1]);
+            self.see(&leaf, centre);
+            let line = centre + slope * Interval::of_constants(-1.0, 1.0);
+            let with = |values| Leaf { values, ..leaf };
+            // Two halves, where the slope varies half as much over half as long, cost less than all coefficients; and these
+            // help only where a straight line would do.
+            let is_soon_done = || self.is_done(&with(nearer(leaf.values, line)), centre);
+            if self.is_done(&leaf, centre) || is_soon_done() || !self.is_done(&with(line), centre) {
+                return (leaf, centre);
+            }
+        }
+        let (leaf, centre) = look::<COUNT>(machine, function, of);
+        let centre = value(&centre);
+        self.see(&leaf, centre);
+        (leaf, centre)
+    }
+
+    fn see(&mut self, leaf: &Leaf, value: Interval) {
+        if !value.is_bounded() {
             return;
         }
         self.inner = Some(self.inner.map_or(value, |known| known.hull(value)));
@@ -268,18 +328,25 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether halving a box would tell nothing more; `rounding` is how wide the value in its centre is.
-    fn is_done(&self, leaf: &Leaf, rounding: f64) -> bool {
+    /// Whether halving a box would tell nothing more than the value in its `centre`.
+    fn is_done(&self, leaf: &Leaf, centre: Interval) -> bool {
         // Nothing is known better than to some roundings: the residual of an equation that splines satisfy exactly is no
         // more than rounding.
-        let rounding = ROUNDINGS * rounding;
+        let rounding = ROUNDINGS * centre.width();
         match self.goal {
             Goal::Bounds(required) => {
                 let missed = if leaf.total { required.missed_at_most(leaf.values) } else { f64::INFINITY };
                 match self.witness {
                     _ if missed <= 0.0 => true,
                     // What is known to be missed is known to a part of it.
-                    Some(witness) => missed <= witness.missed * (1.0 + self.options.sharpness),
+                    Some(witness) => {
+                        let here = required.missed_at_least(centre).max(0.0);
+                        let size = if required.size() > 0.0 { required.size() } else { 1.0 };
+                        // By a factor of two, or to a part of the bound's size.
+                        let is_local = missed - here <= here.max(self.options.local * size);
+                        missed <= witness.missed * (1.0 + self.options.sharpness)
+                            && (is_local || leaf.halvings >= LOCAL_HALVINGS)
+                    }
                     None => missed <= self.options.tolerance * required.size(),
                 }
             }
@@ -288,7 +355,10 @@ impl Judge<'_> {
                 leaf.values.low() >= inner.low() - slack && leaf.values.high() <= inner.high() + slack
             }),
             Goal::Integral(relative) => {
-                leaf.mean.is_bounded() && leaf.mean.width() <= relative * self.size + rounding + f64::MIN_POSITIVE
+                // What is a small part of its cell adds little, and may be known less well.
+                let share = (leaf.length() * SMALL_PARTS).min(1.0);
+                let width = share * leaf.mean.width();
+                leaf.mean.is_bounded() && width <= relative * self.size + rounding + f64::MIN_POSITIVE
             }
         }
     }

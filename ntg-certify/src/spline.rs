@@ -5,7 +5,7 @@
 //! cell and then halved, which only takes means: nothing cancels, however small the box.
 
 use crate::interval::Interval;
-use crate::jet::{COUNT, Jet, binomial};
+use crate::jet::{Jet, binomial};
 
 /// A polynomial on a box, by its Bernstein coefficients.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,9 +66,15 @@ impl BSpline<'_> {
             for i in 0..left {
                 // Value i belongs to the knots from span + 1 + i - left on.
                 let (from, to) = (self.knots[span + 1 + i - left], self.knots[span + 1 + i]);
-                let width = length(from, to);
-                let share = length(from, x).over(width);
-                values[i] = values[i] + share * (values[i + 1] - values[i]);
+                // At the ends of an interval values are those of coefficients, without rounding.
+                values[i] = if x == to {
+                    values[i + 1]
+                } else if x == from {
+                    values[i]
+                } else {
+                    let share = length(from, x).over(length(from, to));
+                    values[i] + share * (values[i + 1] - values[i])
+                };
             }
         }
         values[0]
@@ -148,14 +154,14 @@ impl Piece {
     }
 
     /// Taylor coefficients at the centre, and at every time of the box.
-    pub fn jets(&self) -> (Jet, Jet) {
+    pub fn jets<const N: usize>(&self) -> (Jet<N>, Jet<N>) {
         let (_, right) = self.halves();
         let degree = self.coefficients.len() - 1;
         let mut centre = Jet::constant(right.first());
         let mut all = Jet::constant(self.hull());
         let (mut at, mut over) = (right.coefficients, self.coefficients.clone());
         let mut half = 1.0;
-        for k in 1..COUNT.min(degree + 1) {
+        for k in 1..N.min(degree + 1) {
             half *= 0.5;
             for row in [&mut at, &mut over] {
                 for i in 0..=degree - k {
@@ -206,7 +212,7 @@ mod tests {
     fn jets_of_a_cubic_are_its_taylor_coefficients() {
         // (1 + s)^3 on s in -1 .. 1 has the Bernstein coefficients 0, 0, 0, 8.
         let piece = Piece { coefficients: [0.0, 0.0, 0.0, 8.0].map(Interval::point).to_vec() };
-        let (centre, all) = piece.jets();
+        let (centre, all) = piece.jets::<7>();
         let expected = [1.0, 3.0, 3.0, 1.0, 0.0, 0.0, 0.0];
         for (found, wanted) in centre.c.iter().zip(expected) {
             assert!(found.contains(wanted) && found.width() < 1e-14, "{found:?} {wanted}");

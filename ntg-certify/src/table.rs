@@ -14,17 +14,17 @@ const MOST_CELLS: usize = 512;
 
 /// Where an argument may be: a cell, and the coordinate in it.
 #[derive(Clone, Copy)]
-struct Place {
+struct Place<const N: usize> {
     cell: usize,
-    local: Jet,
+    local: Jet<N>,
     /// How far beyond the end of the table, where it is outside.
-    beyond: Option<Jet>,
+    beyond: Option<Jet<N>>,
     /// -1 on the mirrored side of an even argument.
     sign: f64,
 }
 
 /// A derivative of a table at these arguments.
-pub(crate) fn look_up(table: &Table, derivative: &[u8], args: &[Jet]) -> Jet {
+pub(crate) fn look_up<const N: usize>(table: &Table, derivative: &[u8], args: &[Jet<N>]) -> Jet<N> {
     let total = args.iter().all(|x| x.total);
     let mut places = vec![];
     for (axis, x) in table.axes.iter().zip(args) {
@@ -37,8 +37,8 @@ pub(crate) fn look_up(table: &Table, derivative: &[u8], args: &[Jet]) -> Jet {
     if combinations == 0 || combinations > MOST_CELLS {
         return Jet::rough(Interval::ENTIRE, total);
     }
-    let at = |mut number: usize| -> Vec<Place> {
-        let pick = |found: &Vec<Place>| {
+    let at = |mut number: usize| -> Vec<Place<N>> {
+        let pick = |found: &Vec<Place<N>>| {
             let place = found[number % found.len()];
             number /= found.len();
             place
@@ -61,7 +61,7 @@ pub(crate) fn look_up(table: &Table, derivative: &[u8], args: &[Jet]) -> Jet {
 }
 
 /// Every cell that the argument may touch; none where that is not known.
-fn places_of(axis: &AxisParts, x: &Jet) -> Option<Vec<Place>> {
+fn places_of<const N: usize>(axis: &AxisParts, x: &Jet<N>) -> Option<Vec<Place<N>>> {
     if !x.c[0].is_bounded() {
         return None;
     }
@@ -94,19 +94,19 @@ fn places_of(axis: &AxisParts, x: &Jet) -> Option<Vec<Place>> {
     Some(found)
 }
 
-fn with_first(x: &Jet, value: Interval) -> [Interval; crate::jet::COUNT] {
+fn with_first<const N: usize>(x: &Jet<N>, value: Interval) -> [Interval; N] {
     let mut c = x.c;
     c[0] = value;
     c
 }
 
 /// The part between two numbers, which is not empty.
-fn clipped(x: &Jet, low: f64, high: f64) -> Jet {
+fn clipped<const N: usize>(x: &Jet<N>, low: f64, high: f64) -> Jet<N> {
     Jet { c: with_first(x, x.c[0].within(low, high).unwrap_or(x.c[0])), ..*x }
 }
 
 /// Adds the cells of an argument that has been mirrored or moved into its period.
-fn cells_of(axis: &AxisParts, x: &Jet, sign: f64, found: &mut Vec<Place>) {
+fn cells_of<const N: usize>(axis: &AxisParts, x: &Jet<N>, sign: f64, found: &mut Vec<Place<N>>) {
     let (low, high) = (axis.ends.0, axis.ends.1);
     let range = x.c[0];
     let last = axis.cells.len() - 1;
@@ -138,17 +138,22 @@ fn cells_of(axis: &AxisParts, x: &Jet, sign: f64, found: &mut Vec<Place>) {
 }
 
 /// The tensor product from argument `axis` on, whose first active coefficient is `first`.
-fn contract(table: &Table, derivative: &[u8], places: &[Place], (axis, first): (usize, usize)) -> Jet {
+fn contract<const N: usize>(
+    table: &Table,
+    derivative: &[u8],
+    places: &[Place<N>],
+    (axis, first): (usize, usize),
+) -> Jet<N> {
     let Some(place) = places.get(axis) else {
         return Jet::constant(table.coefficients.get(first).map_or(Interval::ENTIRE, |c| Interval::point(*c)));
     };
     let parts = &table.axes[axis];
     let stride: usize = table.axes[axis + 1..].iter().map(|inner| inner.coefficients).product();
     let start = first + place.cell * parts.step * stride;
-    let inner: Vec<Jet> =
+    let inner: Vec<Jet<N>> =
         (0..parts.order).map(|j| contract(table, derivative, places, (axis + 1, start + j * stride))).collect();
     let weights = &parts.weights[place.cell * parts.order * parts.order..][..parts.order * parts.order];
-    let bernstein: Vec<Jet> = weights
+    let bernstein: Vec<Jet<N>> = weights
         .chunks_exact(parts.order)
         .map(|row| {
             let terms = row.iter().zip(&inner).filter(|(w, _)| **w != 0.0);
@@ -174,7 +179,7 @@ fn contract(table: &Table, derivative: &[u8], places: &[Place], (axis, first): (
 }
 
 /// Derivative `d` of a polynomial in Bernstein form at `u`, on a cell of this width.
-fn polynomial(bernstein: &[Jet], u: &Jet, d: usize, width: Interval) -> Jet {
+fn polynomial<const N: usize>(bernstein: &[Jet<N>], u: &Jet<N>, d: usize, width: Interval) -> Jet<N> {
     let mut row = bernstein.to_vec();
     if d >= row.len() {
         return Jet::constant(Interval::ZERO);

@@ -3,61 +3,13 @@
 //! Kernels stay what they are: a tightened bound is the bound's own kernel with a number added, and a group that only
 //! holds constraints is a selection of the rows of its kernel. Costs and integrals keep their points.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ntg_runtime::problem::{Derivatives, Lanes, Problem};
 use ntg_splines::Table;
-use ntg_structure::{Call, Domain, Group, Instant, Kernel, Part, Points, Row, Structure};
+use ntg_structure::{Call, Domain, Group, Instant, Kernel, Points, Row, Structure};
 
-/// What is done to one constraint.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Change {
-    /// By how much its lower bound is raised, SI.
-    pub below: f64,
-    /// By how much its upper bound is lowered, SI.
-    pub above: f64,
-    /// How many times as many points hold it along a phase, where `parts` says so; 1 adds none.
-    pub points: usize,
-    /// In which of the [`PARTS`] equal parts of its phases more points are, bit by bit.
-    pub parts: u64,
-}
-
-/// Into how many equal parts of scaled time a phase is divided for points that are added.
-pub const PARTS: usize = 64;
-
-impl Change {
-    /// Marks the parts that lie between two scaled times, and their neighbours.
-    pub(crate) fn mark(&mut self, from: f64, to: f64) {
-        let part = |tau: f64| ((tau * PARTS as f64) as usize).min(PARTS - 1);
-        for own in part(from).saturating_sub(1)..=(part(to) + 1).min(PARTS - 1) {
-            self.parts |= 1 << own;
-        }
-    }
-
-    /// The part of its phases' time in which more points are.
-    pub fn share(&self) -> f64 {
-        f64::from(self.parts.count_ones()) / PARTS as f64
-    }
-
-    /// Marked parts that follow each other, as stretches of scaled time inside a part of the phase.
-    fn stretches(&self, within: &Part) -> Vec<Part> {
-        let is_marked = |own: usize| own < PARTS && self.parts >> own & 1 == 1;
-        let firsts = (0..PARTS).filter(|own| is_marked(*own) && (*own == 0 || !is_marked(own - 1)));
-        let stretch = |first: usize| {
-            let end = (first..=PARTS).find(|own| !is_marked(*own)).unwrap_or(PARTS);
-            let (from, to) = (first as f64 / PARTS as f64, end as f64 / PARTS as f64);
-            let mut part = *within;
-            if from > part.from.tau() {
-                (part.from, part.with_first) = (Instant::new(from), true);
-            }
-            if to < part.to.tau() {
-                (part.to, part.with_last) = (Instant::new(to), true);
-            }
-            (part.from.tau() < part.to.tau()).then_some(part)
-        };
-        firsts.filter_map(stretch).collect()
-    }
-}
+use crate::change::{Change, Spared, cut};
 
 /// A problem with changed constraints.
 pub struct Tightened<'p> {
@@ -65,6 +17,10 @@ pub struct Tightened<'p> {
     structure: Structure,
     kernels: usize,
     extra: Vec<Extra>,
+    /// How many groups are the problem's own.
+    own: usize,
+    /// Groups of constraints that end conditions meet which hold them where they are tightened.
+    inside: BTreeSet<usize>,
 }
 
 /// A kernel made of another.
@@ -80,12 +36,13 @@ impl<'p> Tightened<'p> {
     /// solution.
     pub fn new(problem: &'p dyn Problem, changes: &BTreeMap<usize, Change>, again: bool) -> Self {
         let structure = problem.structure();
-        let kernels = structure.kernels.len();
-        let mut made = Self { problem, structure, kernels, extra: vec![] };
+        let (kernels, own) = (structure.kernels.len(), structure.groups.len());
+        let mut made = Self { problem, structure, kernels, extra: vec![], own, inside: BTreeSet::new() };
         if again {
             made.structure.continuations.clear();
         }
         made.add_points(changes);
+        made.add_insides(changes);
         for group in 0..made.structure.groups.len() {
             made.tighten(group, changes);
         }
@@ -100,8 +57,8 @@ impl<'p> Tightened<'p> {
     }
 
     /// Gives each constraint of a group bounds of its own, changed.
-    fn tighten(&mut self, group: usize, changes: &BTreeMap<usize, Change>) {
-        let group = &mut self.structure.groups[group];
+    fn tighten(&mut self, number: usize, changes: &BTreeMap<usize, Change>) {
+        let group = &mut self.structure.groups[number];
         let Some(bounds) = group.bounds.clone() else { return };
         let is_changed =
             |row: &Row| matches!(row, Row::Constraint { constraint, .. } if changes.contains_key(constraint));
@@ -112,65 +69,78 @@ impl<'p> Tightened<'p> {
         for row in &mut group.rows {
             let Row::Constraint { constraint, lower, upper } = row else { continue };
             let change = changes.get(constraint).copied().unwrap_or_default();
-            let equality = lower == upper;
+            let stays = lower == upper || (change.spares_ends() && !self.inside.contains(&number));
+            let is_equality = lower == upper;
             for (side, add) in [(&mut *lower, change.below), (&mut *upper, -change.above)] {
                 if let Some(own) = side {
-                    rows.push((*own, if equality { 0.0 } else { add }));
+                    rows.push((*own, if stays { 0.0 } else { add }));
                     *own = rows.len() - 1;
                 }
             }
-            if equality && lower.is_some() {
+            if is_equality && lower.is_some() {
                 *upper = *lower; // An equality names the same row twice.
             }
         }
         let old = &self.structure.kernels[bounds.kernel];
         let shape =
             Kernel { rows: rows.len(), degree: rows.iter().map(|(row, _)| old.degree[*row]).collect(), ..old.clone() };
-        let index = self.add(shape, Extra::Shifted { kernel: bounds.kernel, rows });
-        // The group was found above; adding a kernel moves no group.
-        for own in self.structure.groups.iter_mut().filter(|own| own.bounds.as_ref() == Some(&bounds)) {
-            if own.rows.iter().any(is_changed) {
-                own.bounds = Some(Call { kernel: index, ..bounds.clone() });
-                break;
-            }
-        }
+        let kernel = self.add(shape, Extra::Shifted { kernel: bounds.kernel, rows });
+        self.structure.groups[number].bounds = Some(Call { kernel, ..bounds });
     }
 
     /// Adds groups that hold constraints at more points of their phases.
     fn add_points(&mut self, changes: &BTreeMap<usize, Change>) {
-        let wanted = |constraint: &usize| changes.get(constraint).filter(|change| change.points > 1);
-        let mut held: Vec<(usize, usize)> = vec![]; // Constraints with more points, in phases.
-        for number in 0..self.structure.groups.len() {
+        for number in 0..self.own {
             let group = self.structure.groups[number].clone();
-            let Domain::Path { phase, points, part } = &group.domain else { continue };
+            let Domain::Path { phase, points, .. } = &group.domain else { continue };
             let own = &self.structure.phases[phase.phase];
-            let intervals = most_intervals(own);
             // Sets that accompany Gauss points hold the same constraints again.
-            let (Points::Uniform { points: count } | Points::Gauss { points: count }) = own.points[*points] else {
-                continue;
+            let stretches = match own.points[*points] {
+                Points::Uniform { points } => points.saturating_sub(1).max(1),
+                Points::Gauss { points } => most_intervals(own) * (points + 1),
+                _ => continue,
             };
-            let is_uniform = matches!(own.points[*points], Points::Uniform { .. });
-            let mut by_factor: BTreeMap<(usize, u64), Vec<usize>> = BTreeMap::new();
-            for (row, meaning) in group.rows.iter().enumerate() {
-                let Row::Constraint { constraint, lower, upper } = meaning else { continue };
-                if lower != upper
-                    && !held.contains(&(*constraint, number))
-                    && let Some(change) = wanted(constraint)
-                {
-                    by_factor.entry((change.points, change.parts)).or_default().push(row);
-                    held.push((*constraint, number));
+            for (change, rows) in alike(&group, changes) {
+                for level in change.each_level() {
+                    let set = self.structure.phases[phase.phase].points.len();
+                    let more = Points::Uniform { points: (stretches << level) + 1 };
+                    self.structure.phases[phase.phase].points.push(more);
+                    self.hold(&group, (set, &rows), (&change, Some(level)));
                 }
             }
-            for ((factor, parts), rows) in by_factor {
-                let stretches = if is_uniform { count.saturating_sub(1).max(1) } else { intervals * (count + 1) };
-                let more = Points::Uniform { points: stretches * factor + 1 };
-                let set = self.structure.phases[phase.phase].points.len();
-                self.structure.phases[phase.phase].points.push(more);
-                let copy = self.selection(&group, &rows);
-                for part in (Change { parts, ..Change::default() }).stretches(part) {
-                    let domain = Domain::Path { phase: phase.clone(), points: set, part };
-                    self.structure.groups.push(Group { domain, ..copy.clone() });
+        }
+    }
+
+    /// Adds groups that hold tightened constraints at their own points, but for where they are spared.
+    fn add_insides(&mut self, changes: &BTreeMap<usize, Change>) {
+        for number in 0..self.own {
+            let group = self.structure.groups[number].clone();
+            let Domain::Path { points, .. } = &group.domain else { continue };
+            for (change, rows) in alike(&group, changes) {
+                if change.spares_ends() && change.below.max(change.above) > 0.0 {
+                    self.hold(&group, (*points, &rows), (&change, None));
                 }
+            }
+        }
+    }
+
+    /// Adds groups that hold some rows of a group at other points: where a change has a level, or where it is not
+    /// spared.
+    fn hold(&mut self, group: &Group, (set, rows): (usize, &[usize]), (change, level): (&Change, Option<u8>)) {
+        let Domain::Path { phase, part, .. } = &group.domain else { return };
+        let copy = self.selection(group, rows);
+        let (from, to) = inside(&self.structure.phases[phase.phase], change.ends);
+        let parts = level.map_or(vec![*part], |level| change.stretches(level, part));
+        for part in parts {
+            for (times, is_inside) in [((0.0, from), false), ((from, to), true), ((to, 1.0), false)] {
+                let Some(mut part) = cut(&part, times).filter(|_| is_inside || level.is_some()) else { continue };
+                if is_inside {
+                    part.with_first &= change.ends[0] == Spared::Nothing || part.from != Instant::START;
+                    part.with_last &= change.ends[1] == Spared::Nothing || part.to != Instant::END;
+                    self.inside.insert(self.structure.groups.len());
+                }
+                let domain = Domain::Path { phase: phase.clone(), points: set, part };
+                self.structure.groups.push(Group { domain, ..copy.clone() });
             }
         }
     }
@@ -205,6 +175,32 @@ impl<'p> Tightened<'p> {
     fn rows(&self, kernel: usize) -> usize {
         self.structure.kernels[kernel].rows
     }
+}
+
+/// The inequalities of a group that are changed, by what is done to them.
+fn alike(group: &Group, changes: &BTreeMap<usize, Change>) -> Vec<(Change, Vec<usize>)> {
+    let mut found: Vec<(Change, Vec<usize>)> = vec![];
+    let mut held: BTreeSet<usize> = BTreeSet::new();
+    for (row, meaning) in group.rows.iter().enumerate() {
+        let Row::Constraint { constraint, lower, upper } = meaning else { continue };
+        let Some(change) = changes.get(constraint).filter(|_| lower != upper && held.insert(*constraint)) else {
+            continue;
+        };
+        match found.iter_mut().find(|(own, _)| own == change) {
+            Some((_, rows)) => rows.push(row),
+            None => found.push((*change, vec![row])),
+        }
+    }
+    found
+}
+
+/// Scaled times between which bounds are tightened: without the first and the last interval where these are spared.
+fn inside(phase: &ntg_structure::Phase, ends: [Spared; 2]) -> (f64, f64) {
+    let inner = |own: &[f64]| own.iter().copied().filter(|tau| *tau > 0.0 && *tau < 1.0).collect::<Vec<f64>>();
+    let all: Vec<f64> = phase.outputs.iter().flat_map(|output| inner(&output.spline.breakpoints)).collect();
+    let from = if ends[0] == Spared::Interval { all.iter().copied().fold(1.0, f64::min) } else { 0.0 };
+    let to = if ends[1] == Spared::Interval { all.iter().copied().fold(from, f64::max) } else { 1.0 };
+    (from, to)
 }
 
 /// The intervals of the output that has most.
@@ -265,26 +261,5 @@ impl Problem for Tightened<'_> {
             Some(Extra::Shifted { kernel, .. } | Extra::Rows { kernel, .. }) => *kernel,
         };
         self.probes(own, lanes, inputs, tables, probes);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn marked_parts_are_stretches_of_time() {
-        let mut change = Change::default();
-        assert!(change.stretches(&Part::WHOLE).is_empty());
-        change.mark(0.0, 0.01);
-        change.mark(0.5, 0.5);
-        let found: Vec<(f64, f64)> =
-            change.stretches(&Part::WHOLE).iter().map(|part| (part.from.tau(), part.to.tau())).collect();
-        assert_eq!(found, [(0.0, 2.0 / 64.0), (31.0 / 64.0, 34.0 / 64.0)]);
-        assert_eq!(change.share(), 5.0 / 64.0);
-        change.mark(0.0, 1.0);
-        assert_eq!(change.stretches(&Part::WHOLE), [Part::WHOLE]);
-        let half = Part { to: Instant::new(0.5), with_last: false, ..Part::WHOLE };
-        assert_eq!(change.stretches(&half), [half]);
     }
 }

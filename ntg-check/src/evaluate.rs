@@ -43,7 +43,8 @@ pub(crate) fn piece(certificate: &Certificate, (spline, d): Flat, cell: usize) -
             let x = if k - d - left <= ends { high } else { low };
             for i in 0..left {
                 let (from, to) = (t[span + 1 + i - left], t[span + 1 + i]);
-                row[i] = row[i] + difference(x, from).over(difference(to, from)) * (row[i + 1] - row[i]);
+                let share = difference(x, from).over(difference(to, from));
+                row[i] = if x == to { row[i + 1] } else { row[i] + share * (row[i + 1] - row[i]) };
             }
         }
         row[0]

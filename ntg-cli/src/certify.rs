@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ntg_certify::change::Spared;
 use ntg_certify::guarantee::{self, Guaranteed, Task, guarantee, proved_from};
 use ntg_certify::summary::Summary;
 use ntg_certify::tube::{Ending, Tube};
@@ -163,15 +164,16 @@ pub(crate) fn mend<'p>(
 
 /// What a guarantee did and cost, in words.
 pub(crate) fn words(found: &Guaranteed<'_>) -> String {
+    let rounds = found.rounds.len().saturating_sub(1);
+    let more = format!("{rounds} more solve{}", if rounds == 1 { "" } else { "s" });
     let ending = match &found.ending {
         guarantee::Ending::Proved if found.rounds.len() == 1 => "Guarantee: everything was proved at once".to_owned(),
-        guarantee::Ending::Proved => format!("Guarantee: proved after {} more solves", found.rounds.len() - 1),
+        guarantee::Ending::Proved => format!("Guarantee: proved after {more}"),
         guarantee::Ending::NotSolved => return "Guarantee: none, because there is no solution\n".to_owned(),
-        guarantee::Ending::Rounds => format!("Guarantee: NOT had after {} more solves", found.rounds.len() - 1),
+        guarantee::Ending::Rounds => format!("Guarantee: NOT had after {more}"),
         guarantee::Ending::Rounding => {
-            let rounds = found.rounds.len() - 1;
             format!(
-                "Guarantee: NOT had for what is missed by rounding, where end conditions meet a bound; all else is proved after {rounds} more solves"
+                "Guarantee: NOT had for what is missed by rounding, where end conditions meet a bound; all else is proved after {more}"
             )
         }
         guarantee::Ending::Tightened(status) => {
@@ -185,15 +187,20 @@ pub(crate) fn words(found: &Guaranteed<'_>) -> String {
         let name = constraint.name.as_deref().unwrap_or(&constraint.place.text);
         let (unit, symbol) = (constraint.unit.factor, &constraint.unit.symbol);
         let mut done = vec![];
-        if change.points > 1 {
+        if change.points() > 1 {
             let percent = (100.0 * change.share()).ceil();
-            let points = change.points;
-            done.push(format!("held at {points} times as many points in {percent} % of its time"));
+            let points = change.points();
+            done.push(format!("held at up to {points} times as many points in {percent} % of its time"));
         }
         for (side, by) in [("lower", change.below), ("upper", change.above)] {
             if by > 0.0 {
                 done.push(format!("{side} bound tightened by {:.2e} {symbol}", by / unit).trim_end().to_owned());
             }
+        }
+        let spared = change.ends.iter().zip(["start", "end"]).filter(|(spared, _)| **spared != Spared::Nothing);
+        let spared: Vec<&str> = spared.map(|(_, end)| end).collect();
+        if !spared.is_empty() {
+            done.push(format!("but at its {}, where an end condition meets it", spared.join(" and ")));
         }
         text.push_str(&format!("  {name}: {}\n", done.join(", ")));
     }
@@ -207,12 +214,14 @@ pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
         "cost": found.cost(),
         "rounds": found.rounds.iter().map(|round| json!({
             "objective": round.objective, "open": round.open, "missed": round.missed,
+            "iterations": round.iterations,
             "seconds": { "solve": round.solve, "certify": round.certify },
+            "processor": { "solve": round.processor.0, "certify": round.processor.1 },
         })).collect::<Vec<_>>(),
         "changes": found.changes.iter().map(|(number, change)| json!({
             "constraint": found.report.solution.structure().constraints[*number].name,
             "line": found.report.solution.structure().constraints[*number].place.line,
-            "points": change.points, "share": change.share(), "lower_raised": change.below, "upper_lowered": change.above,
+            "points": change.points(), "share": change.share(), "lower_raised": change.below, "upper_lowered": change.above,
         })).collect::<Vec<_>>(),
     })
 }

@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::solve::{refined, solve_and_refine};
-use crate::strategy::{Session, Task, Tracked};
+use crate::strategy::{Session, Task, Tracked, warm};
 
 /// Solves one problem many times and keeps everything that does not change between the solves: the
 /// transcription, the plans of the method and of the check on the finer grid, and the last solution.
@@ -96,6 +96,18 @@ impl<P: Problem, S> Solver<P, S> {
             }
             None => self.solve(),
         }
+    }
+
+    /// As [`Solver::resolve_from`], in one attempt of at most a hundred iterations: none where there is no way from that
+    /// solution. Its constraints may be held at other points: multipliers are carried over by what their rows stand for.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn attempt_from(&mut self, from: &Solution) -> Result<Option<S>, Error> {
+        let found = self.session.solve_again(&self.problem, from, &warm(&self.settings))?;
+        let Some(report) = found else { return Ok(None) };
+        let report = refined(&self.problem, report, &self.settings)?;
+        Ok(Some(self.keep(report)))
     }
 
     /// Solves from the last solution and its multipliers, for loops: no continuation, no check between the points and no

@@ -7,7 +7,7 @@ use super::reference::{Given, Reference, Rule, collocate};
 use super::system::{System, Values};
 use crate::evaluate::Machine;
 use crate::interval::Interval;
-use crate::jet::Jet;
+use crate::jet::{COUNT, Jet};
 use crate::spline::Piece;
 
 /// What is the same in all boxes of a phase.
@@ -349,7 +349,7 @@ fn wider(size: f64) -> f64 {
 
 /// The difference of two polynomials on the same box.
 fn apart(a: &Piece, b: &Piece) -> Interval {
-    let ((a, over_a), (b, over_b)) = (a.jets(), b.jets());
+    let ((a, over_a), (b, over_b)) = (a.jets::<COUNT>(), b.jets());
     (over_a - over_b).range(&(a - b))
 }
 

@@ -54,7 +54,7 @@ pub(super) fn constraints(
 }
 
 /// Replaces the worst place so far by this one, if this one is worse.
-fn keep(
+pub(super) fn keep(
     nlp: &Transcription,
     x: &[f64],
     worst: &mut Option<Worst>,

@@ -3,7 +3,7 @@
 use super::TermReport;
 use crate::transcribe::Transcription;
 use ntg_nlp::Evaluation;
-use ntg_structure::Row;
+use ntg_structure::{Row, Structure, Term};
 
 /// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.
 pub(super) fn terms(nlp: &Transcription, at: &Evaluation, fine: &[f64]) -> Vec<TermReport> {
@@ -20,13 +20,18 @@ pub(super) fn terms(nlp: &Transcription, at: &Evaluation, fine: &[f64]) -> Vec<T
             }
         }
     }
-    let sign = if structure.maximize { -1.0 } else { 1.0 };
     let terms = structure.terms.iter().zip(sums).zip(fine);
     let report = terms.map(|((term, value), fine)| TermReport {
         name: term.name.clone().unwrap_or_else(|| term.place.text.clone()),
-        value: sign * value / term.unit.factor,
-        fine: sign * fine / term.unit.factor,
+        value: shown(structure, term, value),
+        fine: shown(structure, term, *fine),
         unit: term.unit.clone(),
     });
     report.collect()
+}
+
+/// A minimised value of a term in the user's sense and unit.
+pub(super) fn shown(structure: &Structure, term: &Term, minimised: f64) -> f64 {
+    let sign = if structure.maximize { -1.0 } else { 1.0 };
+    sign * minimised / term.unit.factor
 }

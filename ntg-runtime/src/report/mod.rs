@@ -3,6 +3,7 @@
 //! Takes a transcription and the outcome of a method; gives a [`Report`]. Constraints and cost
 //! are checked again between the points (docs/maths.md, section 9).
 
+mod by_own_points;
 mod constraints;
 mod cost;
 mod display;

@@ -12,10 +12,9 @@ use crate::transcribe::instances::family_members;
 use crate::transcribe::layout::{Layout, Time, narrow};
 use crate::transcribe::node::Site;
 use crate::transcribe::points::Point;
-use crate::transcribe::rows::{RowInfo, RowKind};
+use crate::transcribe::rows::{RowInfo, RowKey};
 use crate::transcribe::{Kept, Model, SetupError, Transcription};
 use ntg_nlp::BlockValues;
-use ntg_splines::Side;
 use ntg_structure::{Bounds, Call, Duration, Phase, Row, Start, Structure};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -115,7 +114,7 @@ impl Form {
         let phases = |(a, b): (&Phase, &Phase)| a.outputs == b.outputs && a.points == b.points;
         let members = |structure: &Structure| structure.parameters.iter().map(|p| p.value.len()).collect::<Vec<_>>();
         let rows = &transcription.elements.rows;
-        let same = |(own, image): (&RowInfo, &u32)| key(own) == key(&rows[*image as usize]);
+        let same = |(own, image): (&RowInfo, &u32)| own.key() == rows[*image as usize].key();
         form.phases.len() == own.phases.len()
             && form.phases.iter().zip(&own.phases).all(phases)
             && form.tables == own.tables
@@ -274,25 +273,13 @@ fn point(solution: &Inner, layout: &Layout, (image, parameters): (&[u32], &[u32]
     x
 }
 
-/// What a row stands for, where, and for which members.
-type RowKey<'a> = (bool, usize, &'a [i64], Option<usize>, u64, bool);
-
-fn key(row: &RowInfo) -> RowKey<'_> {
-    let (integral, number) = match row.kind {
-        RowKind::Constraint(number) => (false, number),
-        RowKind::Integral(number) => (true, number),
-    };
-    let Point { phase, tau, side, .. } = row.point;
-    (integral, number, &row.indices, phase, tau.to_bits(), side == Side::Left)
-}
-
 /// For every row of the solution the one of the parametric program, whose elements may have other shapes.
 fn row_images<'a>(own: &'a [RowInfo], other: &'a [RowInfo]) -> Result<Vec<u32>, SetupError> {
     let mut places: HashMap<RowKey<'a>, VecDeque<u32>> = HashMap::new();
     for (place, row) in other.iter().enumerate() {
-        places.entry(key(row)).or_default().push_back(narrow(place));
+        places.entry(row.key()).or_default().push_back(narrow(place));
     }
-    let image = |row: &'a RowInfo| places.get_mut(&key(row)).and_then(VecDeque::pop_front);
+    let image = |row: &'a RowInfo| places.get_mut(&row.key()).and_then(VecDeque::pop_front);
     let found: Option<Vec<u32>> = own.iter().map(image).collect();
     found
         .filter(|found| found.len() == other.len())

@@ -2,11 +2,12 @@
 //!
 //! A [`Structure`](ntg_structure::Structure) addresses families by index forms; here they are resolved to splines, numbers and members.
 
-use super::Solution;
+use super::{Inner, Solution};
 use crate::transcribe::instances::{index_at, members, range};
 use crate::transcribe::{SetupError, names};
 use ntg_splines::{Knots, Table};
 use ntg_structure::{At, Data, Loop, PhaseRef, Slot};
+use std::sync::Arc;
 
 /// What an input of a call stands for, at one member of the loops around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +67,28 @@ impl Solution {
             }
         }
         found
+    }
+
+    /// A coefficient of one of [`Solution::splines`], as an index into [`Solution::coefficients`].
+    pub fn coefficient(&self, spline: usize, number: usize) -> Option<usize> {
+        let outputs = self.inner.model.layout.phases.iter().flat_map(|phase| &phase.outputs);
+        outputs.skip(spline).next()?.coefficients.get(number).map(|variable| *variable as usize)
+    }
+
+    /// The same solution with other [`Solution::coefficients`], near those that it has; none where they are not as many.
+    pub fn with_coefficients(&self, x: Vec<f64>) -> Option<Self> {
+        let own = &self.inner;
+        (x.len() == own.x.len()).then(|| {
+            let inner = Inner {
+                model: Arc::clone(&own.model),
+                x,
+                rows: own.rows.clone(),
+                row_multipliers: own.row_multipliers.clone(),
+                bound_multipliers: own.bound_multipliers.clone(),
+                sizes: own.sizes.clone(),
+            };
+            Self { inner: Arc::new(inner) }
+        })
     }
 
     /// The durations of all phases in seconds, to the last bit.

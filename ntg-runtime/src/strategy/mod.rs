@@ -11,6 +11,7 @@
 
 mod beside;
 mod budget;
+mod carried;
 mod coarse_start;
 mod continuation;
 mod fallback;
@@ -20,3 +21,4 @@ mod solve;
 
 pub(crate) use session::{Session, Task};
 pub use solve::Tracked;
+pub(crate) use solve::warm;

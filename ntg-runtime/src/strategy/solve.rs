@@ -2,6 +2,7 @@
 //! (docs/maths.md, section 8.4).
 
 use super::budget::{Budget, better};
+use super::carried::carried;
 use super::continuation::{set, steps};
 use super::session::{FirstPoint, Session, Task, record, solution};
 use crate::error::Error;
@@ -13,12 +14,17 @@ use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::status::Status as InWords;
 use crate::transcribe::{SetupError, Transcription};
-use ntg_nlp::{Outcome, Start, Status};
+use ntg_nlp::{Multipliers, Nlp, Outcome, Start, Status};
 use std::time::Instant;
 
 /// Most iterations of an attempt from the last solution, where a second one may follow. A fit: ten thousand steps of each
 /// loop of `examples/closed_loop` take fewer.
 const WARM: usize = 100;
+
+/// The settings of an attempt from the last solution.
+pub(crate) fn warm(settings: &Settings) -> Settings {
+    Settings { max_iterations: settings.max_iterations.min(WARM), ..settings.clone() }
+}
 
 /// How a solve from a solution ended ([`Solver::track`](crate::Solver::track)).
 #[derive(Clone, Debug, PartialEq)]
@@ -131,8 +137,7 @@ impl Session {
     ) -> Result<(Tracked, Option<Solution>), Error> {
         settings.validate()?;
         let began = Instant::now();
-        let warm = Settings { max_iterations: settings.max_iterations.min(WARM), ..settings.clone() };
-        let (mut nlp, mut outcome) = self.attempt_from(problem, last, &warm)?;
+        let (mut nlp, mut outcome) = self.attempt_from(problem, last, &warm(settings))?;
         let (spent, is_infeasible) = (outcome.iterations, matches!(outcome.status, Status::Infeasible { .. }));
         let left = settings.max_iterations.saturating_sub(spent);
         if !outcome.status.is_final() && !is_infeasible && left > 0 {
@@ -163,9 +168,15 @@ impl Session {
         self.structure = Some(structure);
         let first = start(&nlp, Some(&Guess::from(last)))?;
         nlp.set_scales(&first, settings)?;
-        let from = match last.inner.x.len() == first.len() {
-            true => Start::Warm(last.inner.multipliers()),
-            false => Start::Near,
+        let own = last.inner.multipliers();
+        let rows: Vec<f64>; // Of a program with other rows.
+        let from = if last.inner.x.len() != first.len() {
+            Start::Near
+        } else if own.rows.len() == nlp.rows() {
+            Start::Warm(own)
+        } else {
+            rows = carried(&last.inner, &nlp);
+            Start::Warm(Multipliers { rows: &rows, ..own })
         };
         let once = self.solve_measured(&mut nlp, FirstPoint { x: &first, from }, settings);
         Ok((nlp, once))

@@ -8,6 +8,7 @@ use super::frame::Frame;
 use super::names;
 use super::points::Point;
 use super::times::phase_words;
+use ntg_splines::Side;
 use ntg_structure::{Bounds, Call, Constraint, Duration, Group, Place, Row, Start, Unit};
 
 /// What a row of the program stands for.
@@ -28,6 +29,21 @@ pub(crate) struct RowInfo {
     pub(crate) point: Point,
     /// The block, element and row that make it (other elements may add to it).
     pub(crate) maker: (usize, usize, usize),
+}
+
+/// What a row stands for, where, and for which members.
+pub(crate) type RowKey<'a> = (bool, usize, &'a [i64], Option<usize>, u64, bool);
+
+impl RowInfo {
+    /// What it stands for: rows of two transcriptions with one key are the same row.
+    pub(crate) fn key(&self) -> RowKey<'_> {
+        let (integral, number) = match self.kind {
+            RowKind::Constraint(number) => (false, number),
+            RowKind::Integral(number) => (true, number),
+        };
+        let Point { phase, tau, side, .. } = self.point;
+        (integral, number, &self.indices, phase, tau.to_bits(), side == Side::Left)
+    }
 }
 
 /// Lower and upper bound.

@@ -1,0 +1,43 @@
+//! What is between the points, measured anew by another form of the problem.
+//!
+//! Takes a report of a problem whose constraints are held at more points or with other bounds, and the problem itself;
+//! gives the report with violations between the points, and with costs on the finer grid, of the problem itself.
+
+use super::{ConstraintReport, Report, constraints::keep, cost, fine::Plan, fine::Wanted, user};
+use crate::error::Error;
+use crate::problem::Problem;
+use crate::transcribe::Transcription;
+use std::sync::Arc;
+
+impl Report {
+    /// Measures what is between the points of `problem` at this solution, with so many stretches for each point. Where
+    /// the variables are not those of the solution, nothing changes.
+    ///
+    /// # Errors
+    /// The problem cannot be set up with its present parameters.
+    pub fn measure_between(&mut self, problem: &dyn Problem, samples: usize) -> Result<(), Error> {
+        let inner = Arc::clone(&self.solution.inner);
+        let nlp = Transcription::new(problem)?;
+        if nlp.model.layout.variables != inner.x.len()
+            || self.constraints.len() != nlp.model.structure.constraints.len()
+        {
+            return Ok(());
+        }
+        let own: &mut Vec<ConstraintReport> = &mut self.constraints;
+        own.iter_mut().for_each(|own| own.between = None);
+        let terms = Plan::new(&nlp, samples)?.evaluate(&nlp, (&inner.x, Wanted::Violated), |checked| {
+            let own = &mut own[checked.constraint];
+            let sizes = (own.size, own.unit.factor);
+            let value = (checked.value, checked.bounds, sizes);
+            keep(&nlp, &inner.x, &mut own.between, value, (&checked.point, checked.indices));
+        })?;
+        self.objective_fine = user(&nlp, terms.iter().sum());
+        let declared = nlp.model.structure.terms.iter().zip(terms);
+        for (own, (term, fine)) in self.terms.iter_mut().zip(declared) {
+            own.fine = cost::shown(&nlp.model.structure, term, fine);
+        }
+        let relative = self.constraints.iter().filter_map(|own| own.between.as_ref()).map(|worst| worst.relative);
+        self.violation.between = relative.fold(0.0, crate::math::max);
+        Ok(())
+    }
+}
