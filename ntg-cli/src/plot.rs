@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     xy: Vec<(String, String)>,
     /// Draw this quantity or constraint (by name) over time: of all agents and members, or of one
     /// (`striker.x`, `x[2]`); without `--show` and `--xy` everything is drawn, tracks first.
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    #[arg(long, value_name = "NAME")]
     show: Vec<String>,
     /// Draw named expressions that only serve others, too: those without unit and documentation that stand in no
     /// constraint and in no objective.
@@ -83,7 +83,7 @@ fn panels(arguments: &Arguments, runs: &figure::Runs<'_>) -> Result<Vec<Panel>, 
         panels.extend(over_time);
         return Ok(panels);
     }
-    for name in &arguments.show {
+    for name in &arguments.show.iter().flat_map(|one| runs::names(one)).collect::<Vec<_>>() {
         let mut named: Vec<Panel> = over_time.iter().filter(|panel| panel.title == *name).cloned().collect();
         if named.is_empty() {
             named = figure::quantity(runs, name);

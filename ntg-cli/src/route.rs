@@ -5,6 +5,8 @@ use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::{Structure, Unit};
 
+use crate::runs;
+
 /// What is wrong, and what is right.
 const FORM: &str = "write OUTPUTS: POINT; POINT, such as `x, y: -100, -100; -100, -15; 5, -15 [km]`";
 
@@ -13,7 +15,7 @@ const FORM: &str = "write OUTPUTS: POINT; POINT, such as `x, y: -100, -100; -100
 pub(crate) fn add(guess: Guess, problem: &Interpreted, route: &str) -> Result<Guess, String> {
     let say = |message: String| format!("--route {route}: {message}");
     let (names, points) = route.split_once(':').ok_or_else(|| say(FORM.to_owned()))?;
-    let names: Vec<String> = names.split(',').map(|name| name.trim().to_owned()).collect();
+    let names = runs::names(names);
     let structure = problem.structure();
     let units: Vec<Unit> = names.iter().map(|name| unit(&structure, name)).collect::<Result<_, _>>().map_err(say)?;
     let points: Vec<&str> = points.split(';').map(str::trim).filter(|point| !point.is_empty()).collect();

@@ -147,8 +147,34 @@ impl Spec<'_> {
 
 /// `x,y` as two names.
 pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
-    match text.split(',').map(str::trim).collect::<Vec<_>>()[..] {
-        [x, y] if !x.is_empty() && !y.is_empty() => Ok((x.to_owned(), y.to_owned())),
+    match &names(text)[..] {
+        [x, y] if !x.is_empty() && !y.is_empty() => Ok((x.clone(), y.clone())),
         _ => Err(format!("`{text}`: write two names, such as `x,y`")),
+    }
+}
+
+/// Names between commas; those inside brackets, `p[2, 1]`, part none.
+pub(crate) fn names(text: &str) -> Vec<String> {
+    let (mut names, mut depth) = (vec![String::new()], 0_i32);
+    for letter in text.chars() {
+        depth += i32::from(letter == '[') - i32::from(letter == ']');
+        match (letter, names.last_mut()) {
+            (',', _) if depth == 0 => names.push(String::new()),
+            (_, Some(name)) => name.push(letter),
+            (_, None) => {}
+        }
+    }
+    names.iter().map(|name| name.trim().to_owned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commas_inside_brackets_part_no_names() {
+        assert_eq!(names("x, uav[1].p[2, 1],y"), ["x", "uav[1].p[2, 1]", "y"]);
+        assert_eq!(pair("p[1, 1],p[1, 2]"), Ok(("p[1, 1]".to_owned(), "p[1, 2]".to_owned())));
+        assert!(pair("p[1, 1]").is_err() && pair("x,").is_err() && pair("a,b,c").is_err());
     }
 }

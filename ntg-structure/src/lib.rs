@@ -25,7 +25,7 @@ mod quantity;
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
 pub use group::{Block, Constraint, Domain, Group, Integral, Measurement, Named, Row, Term};
 pub use guess::{Continuation, Guess, GuessKind, GuessScope};
-pub use index::{Affine, Family, Loop};
+pub use index::{Affine, Family, Grid, Loop};
 pub use kernel::{Degree, Kernel};
 pub use mission::{
     Agent, Bounds, Duration, Output, Parameter, Phase, Points, Shared, Spline, Start, Table, TableAxis,

@@ -154,13 +154,13 @@ fn snake(name: &str) -> String {
     snake
 }
 
-/// A name in the letters of C: `uav[2].x` becomes `uav_2_x`, a letter that is not ASCII its number.
+/// A name in the letters of C: `uav[2].x` becomes `uav_2_x`, `p[2, 1]` becomes `p_2_1`, a letter that is not ASCII its number.
 fn ascii(name: &str) -> String {
     let mut plain = String::new();
     for c in name.chars() {
         match c {
             c if c.is_ascii_alphanumeric() || c == '_' => plain.push(c),
-            '[' | '.' | '(' => plain.push('_'),
+            '[' | '.' | '(' | ',' => plain.push('_'),
             c if c.is_ascii() => {}
             c => plain.push_str(&format!("u{:04x}", u32::from(c))),
         }
@@ -258,6 +258,7 @@ mod tests {
             assert_eq!(snake(name), wanted);
         }
         assert_eq!(ascii("uav[2].x"), "uav_2_x");
+        assert_eq!(ascii("p[2, 1]"), "p_2_1");
         assert_eq!(ascii("start(covert)"), "start_covert");
         assert_eq!(ascii("θ"), "u03b8");
     }

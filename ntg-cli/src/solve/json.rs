@@ -15,6 +15,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
     let mut document = json!({
         "problem": report.problem,
         "status": report.status.label(),
+        "ending": report.ending(),
         "advice": report.advice,
         "independent": { "name": independent.name, "unit": independent.unit.symbol },
         "objective": report.objective,

@@ -12,10 +12,10 @@
 //! bit for bit.
 
 use ntg_structure::{
-    Affine, Agent, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family, Group,
-    Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement, Named, Output, Parameter,
-    Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline, Start, Table,
-    TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
+    Affine, Agent, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family, Grid,
+    Group, Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement, Named, Output,
+    Parameter, Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline, Start,
+    Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -105,7 +105,7 @@ structs! {
     Agent { name, family, start, duration_name, place }
     Constraint { name, place, block, unit }
     Continuation { parameter, steps }
-    Family { first, last }
+    Grid { row, column, columns }
     Group { loops, domain, call, rows, bounds }
     Guess { loops, scope, kind }
     Integral { loops, place }
@@ -121,6 +121,20 @@ structs! {
     TableAxis { name, unit, nodes, symmetry }
     Term { name, place, unit }
     Variable { name, doc, unit, family, bounds, place }
+}
+
+impl ToRust for Family {
+    fn to_rust(&self) -> TokenStream {
+        let Self { first, last, grid } = self;
+        let (first, last) = (first.to_rust(), last.to_rust());
+        match grid {
+            Some(_) => {
+                let grid = grid.to_rust();
+                quote! { Family { first: #first, last: #last, grid: #grid } }
+            }
+            None => quote! { Family::of(#first, #last) },
+        }
+    }
 }
 
 structs_with_default! {

@@ -4,7 +4,7 @@
 //! are names with the path of their agent or phase: `x`, `x[3]`, `uav[2].x`, `covert.x`. The structs of
 //! agents and phases hold that path as `_path`; the problem's own needs none.
 
-use ntg_structure::{Family, Unit};
+use ntg_structure::{Family, Grid, Unit};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
@@ -29,15 +29,14 @@ pub(super) enum Question {
 pub(super) struct Shape {
     /// All elements.
     pub(super) family: Family,
-    /// How many columns a matrix has.
-    pub(super) columns: Option<usize>,
 }
 
 impl Shape {
     /// `Vector<T, 3>`, `Matrix<T, 4, 3>`.
     fn kind(self, of: &TokenStream) -> TokenStream {
         let count = Literal::usize_unsuffixed(self.family.len());
-        let Some(columns) = self.columns else { return quote! { ::ntg::runtime::solution::Vector<#of, #count> } };
+        let Some(grid) = self.family.grid else { return quote! { ::ntg::runtime::solution::Vector<#of, #count> } };
+        let columns = usize::try_from(grid.columns).unwrap_or(0);
         let rows = Literal::usize_unsuffixed(self.family.len() / columns.max(1));
         let columns = Literal::usize_unsuffixed(columns);
         quote! { ::ntg::runtime::solution::Matrix<#of, #rows, #columns> }
@@ -45,9 +44,9 @@ impl Shape {
 
     /// The value for what each element is at its index `i`.
     fn value(self, one: &TokenStream) -> TokenStream {
-        let Family { first, last } = self.family;
+        let Family { first, last, grid } = self.family;
         let (first, last) = (first.to_rust(), last.to_rust());
-        let name = if self.columns.is_some() {
+        let name = if grid.is_some() {
             quote! { Matrix }
         } else {
             quote! { Vector }
@@ -86,7 +85,7 @@ pub(super) fn method(
         Question::Variable => (quote! { known(self._solution.variable(#path)) }, quote! { f64 }),
         Question::Duration => (quote! { known(self._solution.time(#path)) }, quote! { f64 }),
     };
-    let shape = family.filter(|_| matches!(question, Question::Signal)).map(|family| Shape { family, columns: None });
+    let shape = family.filter(|_| matches!(question, Question::Signal)).map(|family| Shape { family });
     let (answer, kind) = match shape {
         Some(shape) => (shape.value(&answer), shape.kind(&kind)),
         None => (members(family, answer), in_family(kind, family)),
@@ -111,7 +110,7 @@ pub(super) fn own_duration(ident: &Ident, doc: &[String]) -> TokenStream {
 
 /// `one`, or the family of what it is for each index `i`.
 pub(super) fn members(family: Option<Family>, one: TokenStream) -> TokenStream {
-    let Some(Family { first, last }) = family else { return one };
+    let Some(Family { first, last, .. }) = family else { return one };
     let (first, last) = (first.to_rust(), last.to_rust());
     quote! { ::ntg::runtime::solution::Family::new(#first, (#first..=#last).map(|i| #one).collect()) }
 }
@@ -124,9 +123,18 @@ fn in_family(kind: TokenStream, family: Option<Family>) -> TokenStream {
     }
 }
 
-/// `"x"`, `&format!("{}.x[{i}]", self._path)`: the path of a thing.
+/// `"x"`, `&format!("{}.x[{i}]", self._path)`: the path of a thing; `p[{}, {}]` of an element of a matrix.
 pub(super) fn path(name: &str, family: Option<Family>, within: Option<TokenStream>) -> TokenStream {
-    let index = if family.is_some() { "[{i}]" } else { "" };
+    let grid = family.and_then(|family| Some((family.first, family.grid?)));
+    let index = match (family, grid) {
+        (_, Some(_)) => "[{}, {}]",
+        (Some(_), None) => "[{i}]",
+        (None, None) => "",
+    };
+    let elements = grid.map(|(first, Grid { row, column, columns })| {
+        let [first, row, column, columns] = [first, row, column, columns.max(1)].map(Literal::i64_unsuffixed);
+        quote! { , #row + (i - #first) / #columns, #column + (i - #first) % #columns }
+    });
     match within {
         None if index.is_empty() => {
             let name = Literal::string(name);
@@ -134,11 +142,11 @@ pub(super) fn path(name: &str, family: Option<Family>, within: Option<TokenStrea
         }
         None => {
             let format = Literal::string(&format!("{name}{index}"));
-            quote! { &::std::format!(#format) }
+            quote! { &::std::format!(#format #elements) }
         }
         Some(within) => {
             let format = Literal::string(&format!("{{}}.{name}{index}"));
-            quote! { &::std::format!(#format, #within) }
+            quote! { &::std::format!(#format, #within #elements) }
         }
     }
 }

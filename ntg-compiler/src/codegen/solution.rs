@@ -103,7 +103,7 @@ pub(super) fn solution(program: &Program, place_of: &dyn Fn(&str) -> Span) -> To
     types.take(&structure.name, |_| false);
     let own = type_name(&structure.name);
     types.take(&own.to_string(), |_| false);
-    let writer = Writer { program, structure, place_of };
+    let writer = Writer { structure, place_of };
 
     let mut items = vec![];
     // A list of scopes still to be written, instead of a recursion.
@@ -125,7 +125,6 @@ pub(super) fn solution(program: &Program, place_of: &dyn Fn(&str) -> Span) -> To
 
 /// What every part of the solution needs.
 struct Writer<'a> {
-    program: &'a Program,
     structure: &'a Structure,
     place_of: &'a dyn Fn(&str) -> Span,
 }
@@ -148,8 +147,7 @@ impl Writer<'_> {
         for output in &scope.outputs {
             let ident = self.ident(&output.name);
             let doc = doc_lines(&output.doc, &in_unit(&output.unit));
-            let columns = self.program.columns.get(&(scope.agent, output.name.clone())).copied();
-            let shape = output.family.map(|family| Shape { family, columns });
+            let shape = output.family.map(|family| Shape { family });
             let (kind, value) = (members::trajectory(shape), members::output(&output.name, shape, in_root));
             parts.fields.push(quote! { #(#[doc = #doc])* pub #ident: #kind });
             parts.values.push(quote! { #ident: #value });
@@ -200,7 +198,7 @@ impl Writer<'_> {
         let path = members::path(name, family, (!in_root).then(|| quote! { path }));
         let one = quote! { #kind::new(&problem, &solution, #path) };
         let ident = self.ident(name);
-        let Some(Family { first, last }) = family else {
+        let Some(Family { first, last, .. }) = family else {
             let doc = format!(" What happens in `{name}`.");
             parts.fields.push(quote! { #[doc = #doc] pub #ident: #kind });
             parts.values.push(quote! { #ident: #one });

@@ -24,8 +24,6 @@ pub(super) enum Kind {
 pub(super) struct Scope<'a> {
     /// What it stands for.
     pub(super) kind: Kind,
-    /// The agent that its outputs belong to.
-    pub(super) agent: usize,
     /// The names from the problem down to here, each with its family.
     pub(super) path: Vec<(&'a str, Option<Family>)>,
     /// Outputs, which become fields.
@@ -40,7 +38,7 @@ pub(super) struct Scope<'a> {
 
 impl<'a> Scope<'a> {
     fn new(kind: Kind, path: Vec<(&'a str, Option<Family>)>) -> Self {
-        Self { kind, agent: 0, path, outputs: vec![], named: vec![], durations: vec![], children: vec![] }
+        Self { kind, path, outputs: vec![], named: vec![], durations: vec![], children: vec![] }
     }
 }
 
@@ -62,7 +60,6 @@ pub(super) fn scopes(structure: &Structure) -> Scope<'_> {
 
 /// Puts an agent's things into its scope, and its named phases below.
 fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
-    scope.agent = agent;
     scope.durations.extend(structure.agents[agent].duration_name.as_deref());
     // Numbers belong to the agent as a whole.
     let numbers = structure.named.iter().filter(|named| named.domain == Domain::Mission && named.agent == agent);
@@ -89,7 +86,6 @@ fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
         let mut path = scope.path.clone();
         path.push((name, declared.family));
         let mut within = Scope::new(Kind::Phase, path);
-        within.agent = agent;
         within.outputs.extend(&declared.outputs);
         within.named.extend(along(phase));
         within.durations.extend(declared.duration_name.as_deref());

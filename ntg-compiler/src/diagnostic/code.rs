@@ -139,6 +139,8 @@ codes! {
     FreeStart "N005" "an end without a start";
     UnitTaken "N006" "a name in a list takes the next unit";
     UnboundedInList "N007" "a name in a list without the bounds of the next one";
+    UnitLikeSize "N008" "a unit that is also the name of a size";
+    BareAngle "N009" "a bare number beside an angle, of more than a turn";
 }
 
 impl Code {

@@ -286,7 +286,10 @@ impl<'a> Elaborator<'a> {
         };
         let message = format!("`if` may jump at {place}");
         let finding = Diagnostic::new(Code::GradientJumps, branch.span, message);
-        self.report(finding.help("where that slows the solver down, write `smooth width` behind the condition"));
+        self.report(finding.help(
+            "derivatives are those of the branch taken: the solver does not see the jump, and neither seeks nor avoids \
+             it; write `smooth width` behind the condition",
+        ));
     }
 
     /// The shape of a conditional: that of the branch that is chosen when compiled, else that of all branches.

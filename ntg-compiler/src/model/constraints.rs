@@ -13,7 +13,6 @@ use super::element_text::member_text;
 use super::problem::{Bounds, Constraint, Domain, Form, Part};
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
-use super::units;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{self, BlockPlace, Comparison, Expr, ItemKind, Relation, Statement};
@@ -197,6 +196,7 @@ impl<'a> Elaborator<'a> {
             return None;
         }
         self.decided(comparison, left, right);
+        self.note_bare_angle(left, right);
         let (a, b) = (self.kinds(left.node).is_fixed(), self.kinds(right.node).is_fixed());
         // The side that changes is the body; a difference where both do.
         let (body, bound, swapped) = match (a, b) {
@@ -232,6 +232,7 @@ impl<'a> Elaborator<'a> {
         if let (Some(lower), Some(upper)) = (lower, upper) {
             self.crossing(&bounds, lower.span.to(upper.span));
         }
+        [lower, upper].into_iter().flatten().for_each(|bound| self.note_bare_angle(body, bound));
         let sides: Vec<&Value> = [Some(body), lower, upper].into_iter().flatten().collect();
         let unit = self.shown(&sides);
         vec![Body { value: body.clone(), bounds, unit }]
@@ -251,13 +252,6 @@ impl<'a> Elaborator<'a> {
         let below = lower.is_some_and(|lower| self.clash("compare", lower, body));
         let above = upper.is_some_and(|upper| self.clash("compare", body, upper));
         below || above
-    }
-
-    /// The unit in which violations are shown: that of the first value that has one.
-    fn shown(&self, values: &[&Value]) -> Unit {
-        let unit = values.iter().find_map(|value| value.unit.as_ref());
-        let dimension = values.iter().find_map(|value| value.dimension).unwrap_or(Dimension::NONE);
-        unit.map_or_else(|| units::si(&dimension), |unit| (**unit).clone())
     }
 
     /// Tells when both sides are constants.

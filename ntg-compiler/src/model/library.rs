@@ -6,13 +6,14 @@
 //! library does not have.
 //! Afterwards: [`Libraries::told`] gives every finding the places of the files that it is about.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::Loader;
 use super::elaborator::Elaborator;
 use super::scope::{Declared, PROBLEM, ScopeId, library_named};
 use super::suggest::nearest;
-use crate::diagnostic::{Code, Diagnostic, InLibrary, Severity};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, InLibrary, Severity};
 use crate::source::{Source, Span};
 use crate::standard::{self, APPLIED, VALUES};
 use crate::syntax::ast::{self, ItemKind, Use, UseTarget};
@@ -25,7 +26,7 @@ pub(super) struct File {
     source: Arc<Source>,
     /// Where its text stands in the joined one.
     span: Span,
-    pub(super) library: ast::Library,
+    pub(super) library: Arc<ast::Library>,
     /// For each of its `use`s, which file that is.
     uses: Vec<Option<usize>>,
     is_standard: bool,
@@ -49,6 +50,34 @@ pub(super) struct Libraries {
 
 /// What stands beside the place in a library of the language that does not take the arguments of a call.
 const MET: &str = "met here";
+
+/// Texts of libraries of the language begin at multiples of this in the joined text, so that their places, which their
+/// syntax trees hold, stay the same while someone writes a spec. A law: longer than what is typed between two pauses.
+const STEP: usize = 1 << 14;
+/// Syntax trees that are kept: those of all libraries for some lengths of a spec.
+const KEPT: usize = 64;
+
+/// The syntax tree of a library of the language at a place, read once.
+fn parsed(key: &str, source: &Source, base: usize) -> Result<Arc<ast::Library>, Diagnostics> {
+    type Known = BTreeMap<(String, usize), Arc<ast::Library>>;
+    static READ: Mutex<Known> = Mutex::new(BTreeMap::new());
+    let place = (key.to_owned(), base);
+    if let Some(known) = lock(&READ).get(&place) {
+        return Ok(known.clone());
+    }
+    let read = Arc::new(syntax::parse_library(source, base)?);
+    let mut known = lock(&READ);
+    if known.len() >= KEPT {
+        known.clear();
+    }
+    known.insert(place, read.clone());
+    Ok(read)
+}
+
+/// What another thread may have left behind in a panic is whole: trees are put in when they are read.
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// The folder of a path, with its slash.
 fn folder(path: &str) -> &str {
@@ -170,11 +199,19 @@ impl Libraries {
                 }
             };
         self.joined.text.push('\n');
+        if is_standard {
+            let blank = self.joined.text.len().next_multiple_of(STEP) - self.joined.text.len();
+            self.joined.text.extend(std::iter::repeat_n(' ', blank));
+        }
         let base = self.joined.text.len();
         self.joined.text.push_str(&source.text);
         let span = Span::new(base, self.joined.text.len());
         let mut is_broken = false;
-        let library = match syntax::parse_library(&source, base) {
+        let parsed = match is_standard {
+            true => parsed(&key, &source, base),
+            false => syntax::parse_library(&source, base).map(Arc::new),
+        };
+        let library = match parsed {
             Ok(library) => library,
             Err(found) => {
                 // A spec is refused as a whole: where it begins says enough.
@@ -188,7 +225,7 @@ impl Libraries {
                 }
                 self.found.extend(found);
                 is_broken = true;
-                ast::Library { uses: vec![], items: vec![] }
+                Arc::new(ast::Library { uses: vec![], items: vec![] })
             }
         };
         let at = self.files.len();

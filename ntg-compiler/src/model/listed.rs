@@ -7,7 +7,7 @@
 use ntg_structure::Unit;
 
 use super::dimension::Dimension;
-use super::elaborator::Elaborator;
+use super::elaborator::{Definition, Elaborator};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{self, DeclaredName, Role};
 
@@ -35,6 +35,7 @@ impl Elaborator<'_> {
     /// their places in the list: what they are measured in is not known.
     pub(super) fn units_in_doubt(&mut self, names: &[DeclaredName], measured: &[Measured]) -> Vec<usize> {
         self.note_taken(names);
+        self.note_sizes(names);
         let mut in_doubt = vec![];
         for (i, name) in names.iter().enumerate() {
             let Some(rival) = rival(names, i) else { continue };
@@ -61,6 +62,23 @@ impl Elaborator<'_> {
         in_doubt
     }
 
+    /// Notes a unit of one symbol that is also the name of a whole number, once in each list: it looks like a size.
+    fn note_sizes(&mut self, names: &[DeclaredName]) {
+        let looks_like_size = |name: &&DeclaredName| {
+            let symbol = name.unit.as_ref().filter(|unit| name.span.contains(unit.span)).and_then(only_symbol);
+            let named = |own: &&Definition<'_>| Some(own.name.text.as_str()) == symbol && own.is_const;
+            name.shape.is_none() && self.definitions.iter().find(named).is_some_and(|own| is_size(own.value))
+        };
+        let Some((name, unit)) = names.iter().find(looks_like_size).and_then(|name| Some((name, name.unit.as_ref()?)))
+        else {
+            return;
+        };
+        let (text, symbol) = (&name.name.text, only_symbol(unit).unwrap_or_default());
+        let message = format!("`[{symbol}]` is a unit here, and no size, although there is a constant `{symbol}`");
+        let note = Diagnostic::new(Code::UnitLikeSize, unit.span, message);
+        self.report(note.help(format!("as a size write `{text}[1 .. {symbol}]`")));
+    }
+
     /// Notes names right before one with bounds that have neither bounds nor a unit of their own: the bounds look as if they
     /// were about all of them.
     fn note_unbounded(&mut self, names: &[DeclaredName]) {
@@ -79,6 +97,20 @@ impl Elaborator<'_> {
             self.report(note.help(help));
         }
     }
+}
+
+/// The symbol of a unit that is one symbol and nothing else.
+fn only_symbol(unit: &ast::Unit) -> Option<&str> {
+    match unit.factors.as_slice() {
+        [ast::UnitFactor { base: ast::UnitBase::Symbol(name), power: 1, .. }] => Some(&name.text),
+        _ => None,
+    }
+}
+
+/// Whether a constant is written as a whole number from 2 on, without a unit.
+fn is_size(value: &ast::Expr) -> bool {
+    matches!(&value.kind, ast::ExprKind::Number(number)
+        if number.unit.is_none() && number.value >= 2.0 && number.value.fract() == 0.0)
 }
 
 /// Whether a name has neither bounds nor a unit of its own.

@@ -7,7 +7,9 @@
 
 mod acknowledged;
 mod arguments;
+mod bare_angles;
 mod bodies;
+mod borrowed;
 mod check;
 mod collocated;
 mod conditions;
@@ -63,6 +65,7 @@ mod shape;
 mod shape_calls;
 mod shape_names;
 mod shared;
+mod shown_unit;
 mod soft;
 mod steps;
 mod suggest;
@@ -124,11 +127,23 @@ fn elaborated(
     loader: &dyn Loader,
     given: &[Given],
 ) -> (Problem, Vec<Diagnostic>) {
-    let (expanded, misplaced) = scenarios::expanded(&spec.problem);
+    let pass = |problem: &ast::Problem| elaborated_once(problem, (libraries, &spec.uses), loader, given);
+    let (problem, found) = pass(&spec.problem);
+    let found = borrowed::told_once(&spec.problem, &libraries.joined, found, &|other| pass(other).1);
+    (problem, found)
+}
+
+fn elaborated_once(
+    spec: &ast::Problem,
+    (libraries, uses): (&Libraries, &[ast::Use]),
+    loader: &dyn Loader,
+    given: &[Given],
+) -> (Problem, Vec<Diagnostic>) {
+    let (expanded, misplaced) = scenarios::expanded(spec);
     let mut pass = Elaborator::new(&libraries.joined, loader);
-    pass.elaborate(&expanded, (libraries, &spec.uses), given);
+    pass.elaborate(&expanded, (libraries, uses), given);
     let Elaborator { mut found, problem, .. } = pass;
-    let scenarios = scenarios::scenarios(&spec.problem.items);
+    let scenarios = scenarios::scenarios(&spec.items);
     found.iter_mut().for_each(|finding| scenarios::in_own_words(finding, &scenarios));
     // What leads nowhere in a scenario has no meaning elsewhere either.
     found.retain(|finding| {

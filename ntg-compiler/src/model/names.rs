@@ -26,6 +26,7 @@ const HABITS: &[(&[&str], &str)] = &[
     (&["t0", "t_0"], "the time at the start is `initial(t)`"),
     (&["inf", "Inf", "infinity", "Infinity", "oo"], "leave the bound out: `1 ..` or `.. 5`"),
     (&["free"], "what is free is written with `in`, between bounds: `in 1 .. 9`"),
+    (&["Pi", "PI", "π"], "did you mean `pi`?"),
     (&["e"], "write `exp(1)`, and `exp(x)` for a power of it"),
     (
         &["true", "false", "True", "False"],

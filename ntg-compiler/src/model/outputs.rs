@@ -5,7 +5,7 @@
 //! Finds: splines that do not exist, arrays with impossible sizes.
 
 use ntg_splines::{KnotError, Knots};
-use ntg_structure::{Spline, Unit};
+use ntg_structure::{Grid, Spline, Unit};
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, doc_text};
@@ -18,6 +18,13 @@ use crate::syntax::ast::{self, Course, DeclaredName, ItemKind, Role};
 /// A spline in place of one that is wrong: so high that no derivative is refused because of it.
 pub(super) fn stand_in() -> Spline {
     Spline { order: 40, smoothness: 39, breakpoints: vec![0.0, 1.0] }
+}
+
+/// The indices of the elements of a matrix.
+pub(super) fn grid_of(axes: &[Ends]) -> Option<Grid> {
+    let [rows, columns] = axes else { return None };
+    let ((row, _), (column, last)) = (rows.numbers()?, columns.numbers()?);
+    Some(Grid { row, column, columns: (last - column + 1).max(0) })
 }
 
 /// One declared output.
@@ -125,14 +132,15 @@ impl<'a> Elaborator<'a> {
             None => self.unit_of_bounds(scope, name),
         };
         let extent = |ends: &Ends| ends.extent().and_then(|extent| usize::try_from(extent).ok());
-        let columns = if let [_, columns] = axes.as_slice() { extent(columns) } else { None };
+        let grid = grid_of(&axes);
         let by_size = name.shape.as_ref().is_some_and(|shape| shape.axes.iter().all(|axis| axis.first.is_none()));
         let vector = match axes.as_slice() {
             [only] if by_size => extent(only),
-            _ => columns,
+            [_, columns] => extent(columns),
+            _ => None,
         };
         let (name, span, spline) = (name.name.text.clone(), name.name.span, spline.clone());
-        let output = Output { name, doc, unit, family, columns, vector, spline, span };
+        let output = Output { name, doc, unit, family, grid, vector, spline, span };
         Declared { output, axes, dimension, has_unit }
     }
 

@@ -133,6 +133,16 @@ impl<'a> Elaborator<'a> {
             let order = if own == Some(Some("ddot")) { ", 2" } else { "" };
             return self.report(finding.help(format!("the derivative is `der({name}{order})`")));
         }
+        // The coordinates of a vector as a structure would have them.
+        if let (true, None, Some(Some(letter @ ("x" | "y" | "z" | "w")))) = (of_array, outer, own) {
+            let index = match letter {
+                "x" => 1,
+                "y" => 2,
+                "z" => 3,
+                _ => 4,
+            };
+            return self.report(finding.help(format!("an element of a vector is `{name}[{index}]`")));
+        }
         let finding = match nearest(name, paths.iter().copied()) {
             Some(near) => finding.help(format!("did you mean `{near}`?")),
             None if paths.is_empty() => match outer {

@@ -5,7 +5,7 @@
 //! with `program`. Arrays, loops, phases and agents are families: an index is a [`Form`] in
 //! [`IndexId`]s, and whoever holds an expression also holds the [`Loop`]s that bind its indices.
 
-use ntg_structure::{Block, Independent, Parameter, Shared, Spline, Table, Unit};
+use ntg_structure::{Block, Grid, Independent, Parameter, Shared, Spline, Table, Unit};
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Dag, InputId, Map, NodeId};
@@ -145,6 +145,8 @@ pub struct Variable {
     pub unit: Unit,
     /// Its members, when it is an array (ends are constants).
     pub family: Option<Loop>,
+    /// The indices of its elements, when it is a matrix, whose members go row by row.
+    pub grid: Option<Grid>,
     /// Its bounds, those of each member for an array.
     pub bounds: Bounds,
     /// Where it is declared.
@@ -197,8 +199,8 @@ pub struct Output {
     pub unit: Unit,
     /// Its members `first ..= last`, when it is an array (ends are constants).
     pub family: Option<(i64, i64)>,
-    /// How many columns it has, when it is a matrix, whose members go row by row.
-    pub columns: Option<usize>,
+    /// The indices of its elements, when it is a matrix, whose members go row by row.
+    pub grid: Option<Grid>,
     /// How many elements each of its vectors has: all of an array that is declared by its size alone, else its columns.
     pub vector: Option<usize>,
     /// Its spline in this phase.

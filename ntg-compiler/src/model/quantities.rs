@@ -12,6 +12,7 @@ use ntg_structure::{Parameter, Unit};
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, Steps, doc_text};
 use super::mention::names_in;
+use super::outputs::grid_of;
 use super::problem::{Bounds, Continuation, Form, Loop, Variable};
 use super::scope::{Allow, Context, Entity, PROBLEM};
 use super::settle::Use;
@@ -293,6 +294,7 @@ impl<'a> Elaborator<'a> {
         let what = format!("a bound of `{name}`");
         let axes = variable.shape.as_ref().map_or(Vec::new(), |shape| self.declared_axes(&cx, shape));
         let (family, bounds, joined) = self.variable_bounds(&cx, variable, &axes, &what);
+        let grid = grid_of(&axes);
         self.variable_axes.push(axes);
         let declared = variable.unit.as_ref().and_then(|unit| self.unit(unit));
         let is_refused = variable.unit.is_some() && declared.is_none();
@@ -312,7 +314,7 @@ impl<'a> Elaborator<'a> {
         self.variables[k].1 = (!is_refused).then_some(dimension);
         let unit = unit.unwrap_or_else(|| units::si(&dimension));
         let (name, span) = (name.clone(), variable.name.span);
-        self.problem.variables.push(Variable { name, doc, unit, family, bounds, span });
+        self.problem.variables.push(Variable { name, doc, unit, family, grid, bounds, span });
     }
 
     /// The bounds of a variable, for an array those of each member.

@@ -174,16 +174,8 @@ impl<'a> Elaborator<'a> {
         let place = self.problem.phases[phase].outputs.len();
         let spline = self.slack_spline(phase);
         let (doc, span) = (self.slack_doc(constraint), constraint.span);
-        let output = Output {
-            name: name.to_owned(),
-            doc,
-            unit: unit.clone(),
-            family,
-            columns: None,
-            vector: None,
-            spline,
-            span,
-        };
+        let output =
+            Output { name: name.to_owned(), doc, unit: unit.clone(), family, grid: None, vector: None, spline, span };
         self.problem.phases[phase].outputs.push(output);
         self.output_axes[phase].push(family.iter().map(|(_, count)| Ends::to(*count)).collect());
         self.output_dimensions[phase].push(Some(dimension));
@@ -242,7 +234,7 @@ impl<'a> Elaborator<'a> {
         let family = members.family.as_ref().map(|(count, _)| self.new_index(Form::number(1), Form::number(*count)));
         let (doc, span) = (self.slack_doc(constraint), constraint.span);
         let bounds = Bounds { lower: Some(zero), upper: None };
-        self.problem.variables.push(Variable { name: name.to_owned(), doc, unit, family, bounds, span });
+        self.problem.variables.push(Variable { name: name.to_owned(), doc, unit, family, grid: None, bounds, span });
         let index = members.family.as_ref().map(|(_, member)| member.clone());
         let missed = self.leaf(Leaf::Variable { variable: place, index });
         let linear = prices.linear.map(|price| self.problem.dag.mul(price, missed));

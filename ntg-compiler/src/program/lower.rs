@@ -6,7 +6,7 @@
 //! into one kernel for each such place (`kernel.rs`), so that they share their subexpressions.
 //! Afterwards: no formula is left outside kernels; equal kernels exist once.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 use ntg_structure::{Affine, Call, Domain, Group, Integral, Kernel, Place, Points, Row, Structure};
 
@@ -33,7 +33,6 @@ pub fn lower(problem: Problem, source: &Source) -> Program {
         integral_ids: HashMap::new(),
         pending: Vec::new(),
     };
-    let columns = columns(&lowering.problem);
     let mut structure = mission::structure(&mut lowering);
     structure.named = mission::named(&mut lowering);
     structure.measurements = mission::measurements(&mut lowering);
@@ -45,13 +44,7 @@ pub fn lower(problem: Problem, source: &Source) -> Program {
     }
     structure.integrals = lowering.integrals;
     structure.kernels = lowering.kernels;
-    Program { structure, kernels: lowering.bodies, columns }
-}
-
-/// The columns of the outputs that are matrices.
-fn columns(problem: &Problem) -> BTreeMap<(usize, String), usize> {
-    let outputs = problem.phases.iter().flat_map(|phase| phase.outputs.iter().map(|output| (phase.agent, output)));
-    outputs.filter_map(|(agent, output)| Some(((agent, output.name.clone()), output.columns?))).collect()
+    Program { structure, kernels: lowering.bodies }
 }
 
 /// What has been made so far.

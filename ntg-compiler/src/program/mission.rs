@@ -65,7 +65,7 @@ fn variables(lowering: &mut Lowering<'_>) -> Vec<out::Variable> {
             name: v.name,
             doc: v.doc,
             unit: v.unit,
-            family: v.family.as_ref().map(family),
+            family: v.family.as_ref().map(|over| out::Family { grid: v.grid, ..family(over) }),
         })
         .collect()
 }
@@ -105,7 +105,7 @@ fn phases(lowering: &mut Lowering<'_>) -> Vec<out::Phase> {
                 name: o.name,
                 doc: o.doc,
                 unit: o.unit,
-                family: o.family.map(|(first, last)| out::Family { first, last }),
+                family: o.family.map(|(first, last)| out::Family { first, last, grid: o.grid }),
                 vector: o.vector,
                 spline: o.spline,
             };
@@ -222,5 +222,5 @@ fn setup(lowering: &mut Lowering<'_>, name: &str, rows: &[NodeId], loops: &[Loop
 
 /// The members of a declared family: its ends are constants.
 fn family(range: &Loop) -> out::Family {
-    out::Family { first: range.first.constant, last: range.last.constant }
+    out::Family::of(range.first.constant, range.last.constant)
 }

@@ -20,8 +20,6 @@ mod probes;
 pub use lower::lower;
 pub use parametric::parametric;
 
-use std::collections::BTreeMap;
-
 use ntg_structure::Structure;
 
 use crate::expr::{Dag, NodeId};
@@ -65,6 +63,4 @@ pub struct Program {
     pub structure: Structure,
     /// The formulas, one for each of `structure.kernels`.
     pub kernels: Vec<KernelBody>,
-    /// How many columns an output has that is a matrix, by its agent and its name.
-    pub columns: BTreeMap<(usize, String), usize>,
 }

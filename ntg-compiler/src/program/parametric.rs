@@ -23,7 +23,7 @@ use crate::expr::{Dag, InputId, Map, Node, NodeId};
 
 /// The program whose variables include the parameters.
 pub fn parametric(program: &Program) -> Program {
-    let Program { structure, kernels, columns } = program;
+    let Program { structure, kernels } = program;
     let mut promotion = Promotion {
         structure,
         bodies: kernels,
@@ -34,7 +34,7 @@ pub fn parametric(program: &Program) -> Program {
     };
     let promoted = promotion.structure();
     let structure = Structure { kernels: promotion.shapes, ..promoted };
-    Program { structure, kernels: promotion.made, columns: columns.clone() }
+    Program { structure, kernels: promotion.made }
 }
 
 /// Where a call stands, which decides what becomes of it.
@@ -200,7 +200,7 @@ fn variable(parameter: &Parameter) -> Variable {
         name: parameter.name.clone(),
         doc: parameter.doc.clone(),
         unit: parameter.unit.clone(),
-        family: parameter.array.then_some(Family { first: 1, last }),
+        family: parameter.array.then_some(Family::of(1, last)),
         bounds: Bounds::default(),
         place: Place::default(),
     }

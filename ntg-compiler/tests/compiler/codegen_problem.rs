@@ -95,11 +95,11 @@ fn a_replaceable_table_is_a_field_with_nodes_and_values() {
 fn a_solution_has_fields_for_outputs_and_methods_for_the_rest() {
     let mut program = rest();
     let structure = &mut program.structure;
-    structure.phases[0].outputs[0].family = Some(Family { first: 1, last: 3 });
+    structure.phases[0].outputs[0].family = Some(Family::of(1, 3));
     structure.named = vec![
         named("speed", along(0), 0, None),
         named("report", Domain::Mission, 0, None),
-        named("gap", along(0), 1, Some(Family { first: 0, last: 4 })),
+        named("gap", along(0), 1, Some(Family::of(0, 4))),
     ];
     structure.variables = vec![Variable {
         name: "m0".into(),
@@ -125,7 +125,7 @@ fn phases_and_agents_nest_as_in_the_spec() {
         duration_name: None,
         place: Place::default(),
     };
-    structure.agents = vec![agent("uav", Some(Family { first: 1, last: 3 })), agent("striker", None)];
+    structure.agents = vec![agent("uav", Some(Family::of(1, 3))), agent("striker", None)];
     structure.phases = vec![phase(), phase(), phase()];
     for (phase, (name, agent)) in structure.phases.iter_mut().zip([("covert", 0), ("exposed", 0), ("", 1)]) {
         phase.name = (!name.is_empty()).then(|| name.into());
@@ -147,7 +147,7 @@ fn size_grows_neither_with_breakpoints_nor_with_members() {
         let mut program = rest();
         let output = &mut program.structure.phases[0].outputs[0];
         output.spline.breakpoints = (0..=intervals).map(|i| f64::from(i) / f64::from(intervals)).collect();
-        output.family = Some(Family { first: 1, last: members });
+        output.family = Some(Family::of(1, members));
         program.structure.parameters =
             vec![parameter("p", Unit::default(), true, &vec![0.5; usize::try_from(members).expect("small")])];
         generate(&program).to_string().split_whitespace().count()

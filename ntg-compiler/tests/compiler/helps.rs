@@ -100,9 +100,18 @@ const TURNING: &str =
 fn a_unit_from_another_name_of_the_list_is_told() {
     let help = "`q` took [deg/s] from `w`; write `q[4] [1], w[3] [deg/s]`";
     let whole = TURNING.replace("q[1:3]", "(q[1], q[2], q[3])");
+    // Several clashes, one of them of `q` by itself: one mistake, told where it was made.
     let found = told(&whole);
-    assert!(found.contains(&format!("= help: {help}")), "{found}");
-    assert!(!found.contains("* 1 [deg/s]`"), "{found}");
+    says(
+        &found,
+        "error[E096]: `q` takes the unit [deg/s] of the list",
+        "spec.ntg:3:11",
+        "write the unit that is meant: `q[4] [1]`",
+    );
+    assert_eq!(found.matches("error[").count(), 1, "{found}");
+    // One alone may be the equation's.
+    let found = told(&whole.replace("initial { q == (1, 0, 0, 0); }", "initial { q == 0; }"));
+    assert!(found.contains("error[E041]") && !found.contains("E096") && !found.contains("* 1 [deg/s]`"), "{found}");
     assert_eq!(told(&whole.replace("q[4],", "q[4] [1],")), "");
     // Inside a library of the language the call is the place, and the library stands behind.
     let with = whole.replace("initial { q == (1, 0, 0, 0); }", "trajectory { rotation::matrix(q)[1, 1] >= 0; }");

@@ -53,6 +53,9 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("let a = deriv(x, t);", "E024"),
             ("let a = der x;", "E001"),
             ("let a = ẏ;", "E020"),
+            ("trajectory { r.x <= 1 [m]; }", "E080"),
+            ("let a = Pi * x;", "E020"),
+            ("param a 120;", "E001"),
         ],
     ),
     (
@@ -62,6 +65,7 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
             ("initial { x(0) == 0; }", "E024"),
             ("final { x(T) == 1 [m]; }", "E024"),
             ("minimize x^2;", "E050"),
+            ("minimize fuel = integral(x);", "E001"),
             ("minimize integral(x^2, 0, T) / 1 [m^2*s];", "E001"),
             ("trajectory { final(x) <= 1 [m]; }", "E052"),
             ("param a = x;", "E029"),

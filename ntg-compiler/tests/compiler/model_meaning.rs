@@ -436,3 +436,30 @@ fn a_bound_of_zero_that_is_missed_by_rounding_alone_is_no_contradiction() {
     }",
     );
 }
+
+#[test]
+fn misses_are_shown_in_units_of_the_spec() {
+    let p = good(
+        "problem Vessel {
+            domain t [h];
+            duration T = 2 [h];
+            state E [kWh], P [mbar], V [L], x [km], v [m/s];
+            input heat in 0 .. 5 [kW], a [m/s^2];
+            collocation gauss(points = 3, intervals = 4);
+            param R = 8.3 [J/(mol*K)];
+            param amount = 2 [mol];
+            param size = 3 [L];
+            minimize integral(a^2) / 1 [m^2/s^3];
+            dynamics {
+                der(E) == heat * 0.5 - 3 * (E / 1 [h]);
+                der(P) * V == P * V / 1 [h] - amount * R * 1 [K/h];
+                der(V) == 0.1 * sqrt(V * size) / 1 [h];
+                der(x) == v * v / sqrt(v * v);
+                der(v) == a * (x / x);
+            }
+        }",
+    );
+    let units: Vec<&str> = p.constraints.iter().map(|constraint| constraint.unit.symbol.as_str()).collect();
+    // The side's own unit; one of a name that stands far away; the rate of a name; a name inside; again the side's own.
+    assert_eq!(units, ["kW", "kW", "L/h", "m/s", "m/s^2", "kW"], "{units:?}");
+}

@@ -7,11 +7,10 @@ use super::spec::{State, state};
 use super::tables::{number, place_words, prose, with_unit};
 use crate::run::{Constraint, Run};
 
-/// Difference of the objective and its finer integral, relative to the larger of both, that is worth a warning. A fit:
-/// the specs beside the gallery stay below 0.5 %, and 1 % is more than a comparison of runs may hide.
+/// Violation of a constraint between the points, and difference of the objective and its finer integral relative to the
+/// larger of both, that are worth a warning: `Settings::between_tolerance` without a word. A fit: the specs beside the
+/// gallery stay below 0.5 %, and 1 % is more than a comparison of runs may hide.
 const OFF: f64 = 0.01;
-/// An objective below this, in its unit, is what a solve to tolerances of 1e-8 leaves of zero. A fit, too.
-const ZERO: f64 = 1e-9;
 /// What `ntg solve --refine` is told where the objective is off: an error that nobody would see.
 const REFINED: &str = "1e-3";
 
@@ -22,9 +21,8 @@ fn missed_between(run: &Run) -> Vec<&Constraint> {
 
 /// The relative difference of the objective and its finer integral, where it is worth a warning.
 fn off(run: &Run) -> Option<f64> {
-    let size = run.objective.abs().max(run.objective_fine.abs());
-    let apart = (run.objective_fine - run.objective).abs() / size;
-    (run.has_solution() && size > ZERO && apart > OFF).then_some(apart)
+    let apart = ntg_runtime::report::cost_apart(run.objective, run.objective_fine);
+    (run.has_solution() && apart > OFF).then_some(apart)
 }
 
 /// Whether what holds at the points holds between them.
@@ -32,9 +30,17 @@ fn holds_between(run: &Run) -> bool {
     missed_between(run).is_empty() && off(run).is_none()
 }
 
-/// How the solve ended, in words: `solved at the points` where something is missed between them.
+/// How the solve ended, in the words of `ntg solve`: `solved at the points` where what is missed between them is worth a
+/// warning.
 pub fn ending(run: &Run) -> String {
-    if run.is_solved() && !holds_between(run) { format!("{} at the points", run.status) } else { run.status.clone() }
+    if !run.has_solution() {
+        return run.status.clone();
+    }
+    let is_missed = |constraint: &Constraint| {
+        constraint.between.as_ref().is_some_and(|worst| worst.relative > OFF || worst.relative.is_nan())
+    };
+    let missed = run.constraints.iter().any(is_missed) || off(run).is_some();
+    ntg_runtime::report::ending(&run.status, run.violation.between, missed)
 }
 
 /// How the solve ended. What is missed between the points is no good end.
@@ -110,6 +116,15 @@ mod tests {
     fn an_objective_that_its_finer_integral_does_not_bear_out_is_no_good_end() {
         let run = solved(11.0458, 12.8027);
         assert_eq!(ending(&run), "solved at the points");
+        // Less than a warning is worth is not said in the head, and no good end either.
+        let mut little = solved(1.0, 1.0);
+        let between = Some(Worst { violation: 1e-3, relative: 1e-3, ..Worst::default() });
+        little.constraints = vec![Constraint { between, ..Constraint::default() }];
+        assert_eq!(ending(&little), "solved");
+        assert!(status(&little).into_string().contains("status warned"));
+        let mut nowhere = solved(1.0, 1.0);
+        nowhere.violation.between = 1.4;
+        assert_eq!(ending(&nowhere), "solved at the points, and not between them");
         assert!(status(&run).into_string().contains("status warned"));
         let words = cost(&run).into_string();
         assert!(words.contains("12.8027 instead of 11.0458: the two differ by 13.7 % of the larger"), "{words}");

@@ -47,7 +47,11 @@ fn path(structure: &Structure, phase: &PhaseRef, output: usize, index: Option<i6
     let declared = structure.phases.get(phase.phase)?;
     let agent = structure.agents.get(declared.agent)?;
     let indexed = |name: &str, index: Option<i64>| index.map_or_else(|| name.to_owned(), |i| format!("{name}[{i}]"));
-    let own = indexed(&declared.outputs.get(output)?.name, index);
+    let output = declared.outputs.get(output)?;
+    let own = match (output.family, index) {
+        (Some(family), Some(index)) => format!("{}{}", output.name, family.index(index)),
+        _ => indexed(&output.name, index),
+    };
     let member = agent.family.and(phase.agent.as_ref()).map(|form| form.at(indices));
     Some(agent.name.as_ref().map_or_else(|| own.clone(), |name| format!("{}.{own}", indexed(name, member))))
 }

@@ -39,7 +39,12 @@ impl fmt::Display for Conflict {
         } else {
             "; perhaps not all of them are needed for that:"
         })?;
-        self.parts.iter().try_for_each(|part| write!(f, "\n  {part}"))
+        self.parts.iter().try_for_each(|part| write!(f, "\n  {part}"))?;
+        match self.undecided {
+            0 => Ok(()),
+            1 => f.write_str("\n  perhaps with one more that holds there"),
+            more => write!(f, "\n  perhaps with {more} more that hold there"),
+        }
     }
 }
 

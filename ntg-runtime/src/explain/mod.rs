@@ -88,6 +88,8 @@ pub struct Conflict {
     pub parts: Vec<Part>,
     /// Whether every one of them is known to be needed.
     pub minimal: bool,
+    /// How many more hold there of which it was not decided whether they are needed.
+    pub undecided: usize,
     /// The least sum of violations: each is the distance that the point would have to move, relative to the sizes of
     /// the variables, and what is held counts more (docs/maths.md, section 13).
     pub violation: f64,
@@ -208,11 +210,12 @@ fn near(
     if relaxed.violation <= NOTHING {
         return Explanation::Consistent(near);
     }
-    let (kept, relaxed, minimal) = search.smaller(all, relaxed);
+    let (kept, relaxed, open) = search.smaller(all, relaxed);
     let measured = search.round(&kept, &relaxed.outcome.x, (PRICE, FINE)).filter(Relaxed::is_infeasible);
     let relaxed = measured.unwrap_or(relaxed);
-    let parts = search.parts(&kept, &relaxed);
-    Explanation::Conflict(Conflict { near, settled, parts, minimal, violation: relaxed.violation })
+    let (parts, undecided) = search.parts(&kept, &open, &relaxed);
+    let (minimal, violation) = (open.is_empty(), relaxed.violation);
+    Explanation::Conflict(Conflict { near, settled, parts, minimal, undecided, violation })
 }
 
 impl Relaxed {
@@ -256,8 +259,8 @@ impl Search<'_> {
         }
     }
 
-    /// A conflict without the constraints that it does not need, and whether each of the others is known to be needed.
-    fn smaller(&self, all: Constraints, relaxed: Relaxed) -> (Constraints, Relaxed, bool) {
+    /// A conflict without the constraints that it does not need, and those of it of which that could not be decided.
+    fn smaller(&self, all: Constraints, relaxed: Relaxed) -> (Constraints, Relaxed, Constraints) {
         let (mut kept, mut relaxed) = match self.without_idle(&all, &relaxed) {
             Some(fewer) => fewer,
             None => (all, relaxed),
@@ -276,8 +279,7 @@ impl Search<'_> {
                 }
             }
         }
-        let minimal = open.is_empty();
-        (kept, relaxed, minimal)
+        (kept, relaxed, open.into_iter().collect())
     }
 
     /// As [`Search::least`], from a point and, where that finds more than `enough`, from the guess too: a few constraints

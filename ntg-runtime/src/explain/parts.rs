@@ -25,17 +25,22 @@ impl Ranked {
 }
 
 impl Search<'_> {
-    /// The parts of a conflict in the order of [`super::Conflict::parts`].
-    pub(super) fn parts(&self, kept: &Constraints, relaxed: &Relaxed) -> Vec<Part> {
-        let mut parts: Vec<Ranked> = kept.iter().filter_map(|c| self.part(*c, relaxed)).collect();
+    /// The parts of a conflict in the order of [`super::Conflict::parts`], and how many were left out: what holds and is not
+    /// known to be needed, `open`, is no part. Where anything is open, that is so of all bounds.
+    pub(super) fn parts(&self, kept: &Constraints, open: &Constraints, relaxed: &Relaxed) -> (Vec<Part>, usize) {
+        let own = kept.iter().filter_map(|c| Some((open.contains(c), self.part(*c, relaxed)?)));
+        let (doubtful, mut parts): (Vec<bool>, Vec<Ranked>) = own.unzip();
         let largest = parts.iter().map(|ranked| ranked.relative).fold(0.0, f64::max);
         for ranked in parts.iter_mut().filter(|ranked| ranked.relative < AS_GOOD_AS_NONE * largest) {
             ranked.part.amount = 0.0;
         }
         let bound = |part| Ranked { part, is_held: false, relative: 0.0, share: 0.0 };
-        parts.extend(self.bounds(relaxed).into_iter().map(bound));
-        parts.sort_by(|a, b| a.rank().cmp(&b.rank()).then(b.share.total_cmp(&a.share)));
-        parts.into_iter().map(|ranked| ranked.part).collect()
+        let bounds = self.bounds(relaxed).into_iter().map(|part| (!open.is_empty(), bound(part)));
+        let all: Vec<(bool, Ranked)> = doubtful.into_iter().zip(parts).chain(bounds).collect();
+        let is_part = |(doubtful, ranked): &(bool, Ranked)| !doubtful || ranked.part.amount != 0.0;
+        let (mut parts, left): (Vec<_>, Vec<_>) = all.into_iter().partition(is_part);
+        parts.sort_by(|(_, a), (_, b)| a.rank().cmp(&b.rank()).then(b.share.total_cmp(&a.share)));
+        (parts.into_iter().map(|(_, ranked)| ranked.part).collect(), left.len())
     }
 
     /// One constraint at its worst row, or at the row with the largest multiplier where all hold.

@@ -44,7 +44,8 @@ pub(super) fn times(nlp: &Transcription, solution: &Solution, x: &mut [f64]) {
     for value in solution.variables() {
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
             let members = crate::transcribe::instances::family_members(declared.family);
-            let member = members.iter().position(|index| names::indexed(&declared.name, *index) == value.name);
+            let member =
+                members.iter().position(|index| names::member(&declared.name, declared.family, *index) == value.name);
             if let Some(member) = member {
                 x[*first as usize + member] = value.value * value.unit.factor;
             }

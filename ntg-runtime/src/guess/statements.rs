@@ -130,7 +130,7 @@ impl<'a> Statements<'a> {
                     for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
                         let members = crate::transcribe::instances::family_members(declared.family);
                         for (member, index) in members.into_iter().enumerate() {
-                            if names::means(name, "", &declared.name, index) {
+                            if names::means_member(name, "", (&declared.name, declared.family), index) {
                                 found = true;
                                 x[*first as usize + member] = value * declared.unit.factor;
                             }
@@ -191,7 +191,7 @@ impl<'a> Statements<'a> {
             for (output, member) in layout.phases[phase].outputs.iter().enumerate() {
                 let path = names::phase(structure, layout, phase);
                 let declared = &structure.phases[layout.phases[phase].phase].outputs[member.output];
-                if !names::means(name, &path, &declared.name, member.index) {
+                if !names::means_member(name, &path, (&declared.name, declared.family), member.index) {
                     continue;
                 }
                 let Some(spline) = ntg_splines::Spline::new(&member.knots, values) else {
@@ -225,8 +225,9 @@ impl<'a> Statements<'a> {
             let path = names::phase(structure, layout, phase);
             for (output, found) in member.outputs.iter().enumerate() {
                 let declared = &structure.phases[member.phase].outputs[found.output];
-                let whole = names::means(name, &agent, &declared.name, found.index);
-                if whole || names::means(name, &path, &declared.name, found.index) {
+                let own = (declared.name.as_str(), declared.family);
+                let whole = names::means_member(name, &agent, own, found.index);
+                if whole || names::means_member(name, &path, own, found.index) {
                     curves.push(Curve { phase, output, whole, function: make(declared.unit.factor)? });
                 }
             }

@@ -1,7 +1,7 @@
 //! The starts themselves: made, solved side by side, and put together.
 
 use super::parameters::{self, Open};
-use super::vehicles::{Vehicle, vehicles};
+use super::vehicles::{Vehicle, positions, vehicles};
 use super::{MultiReport, Origin, StartKind, StartProgress, StartReport, Starts};
 use super::{lattice, minima, random};
 use crate::error::Error;
@@ -65,8 +65,9 @@ pub fn multistart_from(
         Some(watch.done(plan.solve((problem, session), number, &settings), nlp.model.structure.maximize))
     });
     let solved: Vec<One> = solved.collect::<Vec<_>>().into_iter().flatten().collect();
-    let mut report = gather(solved);
-    report.finish(problem, &settings.after(began.elapsed()))?;
+    let positions = positions(&nlp, &vehicles);
+    let mut report = gather(solved, &positions);
+    report.finish(problem, &settings.after(began.elapsed()), &positions)?;
     report.problem.clone_from(&nlp.model.structure.name);
     report.notes = plan.notes;
     report.seconds = began.elapsed().as_secs_f64();
@@ -203,7 +204,7 @@ impl Watch<'_> {
 }
 
 /// Puts the starts together, in their own order.
-fn gather(all: Vec<One>) -> MultiReport {
+fn gather(all: Vec<One>, positions: &[String]) -> MultiReport {
     let (mut starts, mut solved, mut nearest) = (vec![], vec![], None::<Box<Report>>);
     for (number, One { origin, result, seconds }) in all.into_iter().enumerate() {
         let (status, objective, iterations) = match &result {
@@ -222,7 +223,7 @@ fn gather(all: Vec<One>) -> MultiReport {
             Err(_) => {}
         }
     }
-    let minima = minima::minima(solved);
+    let minima = minima::minima(solved, positions);
     for (index, minimum) in minima.iter().enumerate() {
         minimum.starts.iter().for_each(|start| starts[*start].minimum = Some(index));
     }
@@ -234,7 +235,7 @@ fn gather(all: Vec<One>) -> MultiReport {
 impl MultiReport {
     /// Refines every minimum where the settings say so, puts those together that are one on finer meshes, and leaves out
     /// those that the settings refuse.
-    fn finish(&mut self, problem: &dyn Problem, settings: &Settings) -> Result<(), Error> {
+    fn finish(&mut self, problem: &dyn Problem, settings: &Settings, positions: &[String]) -> Result<(), Error> {
         if settings.refine.is_none() && settings.between == Between::Report {
             return Ok(());
         }
@@ -246,7 +247,7 @@ impl MultiReport {
             self.nearest = refined.first().cloned().map(Box::new);
         }
         let kept = refined.into_iter().enumerate().filter(|(_, report)| !is_refused(report));
-        let groups = minima::minima(kept.collect());
+        let groups = minima::minima(kept.collect(), positions);
         let now = |before: usize| groups.iter().position(|group| group.starts.contains(&before));
         self.starts.iter_mut().for_each(|start| start.minimum = start.minimum.and_then(now));
         for (index, group) in groups.into_iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::transcribe::layout::Layout;
 use crate::transcribe::slots::AffineMap;
 use crate::transcribe::{Transcription, names};
 use ntg_splines::Side;
-use ntg_structure::{GuessKind, GuessScope, Output};
+use ntg_structure::{Family, GuessKind, GuessScope, Output};
 
 /// An output by name and index.
 type Axis = (String, Option<i64>);
@@ -48,6 +48,20 @@ pub(super) fn vehicles(nlp: &Transcription, guess: &Guess) -> Vec<Vehicle> {
         }
     }
     found
+}
+
+/// The paths of all coordinates of vehicles.
+pub(super) fn positions(nlp: &Transcription, vehicles: &[Vehicle]) -> Vec<String> {
+    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+    let paths = vehicles.iter().flat_map(|vehicle| {
+        let (path, phase) = (names::agent(structure, layout, vehicle.agent), layout.agents[vehicle.agent].phases.start);
+        vehicle.members.first().into_iter().flatten().map(move |output| {
+            let own = &layout.phases[phase].outputs[*output];
+            let declared = &structure.phases[layout.phases[phase].phase].outputs[own.output];
+            names::join(&path, &names::member(&declared.name, declared.family, own.index))
+        })
+    });
+    paths.collect()
 }
 
 impl Vehicle {
@@ -135,19 +149,25 @@ fn guessed(nlp: &Transcription, guess: &Guess) -> Vec<(usize, Vec<Axis>)> {
     for route in guess.routes() {
         for agent in 0..layout.agents.len() {
             let path = names::agent(structure, layout, agent);
-            let axis = |given: &String| outputs(nlp, agent).into_iter().find(|o| names::means(given, &path, &o.0, o.1));
+            let axis = |given: &String| {
+                let mut own = outputs(nlp, agent).into_iter();
+                own.find_map(|(axis, family)| {
+                    names::means_member(given, &path, (&axis.0, family), axis.1).then_some(axis)
+                })
+            };
             found.extend(route.iter().map(axis).collect::<Option<Vec<_>>>().map(|axes| (agent, axes)));
         }
     }
     found
 }
 
-/// Name and index of every output of an agent's first phase.
-fn outputs(nlp: &Transcription, agent: usize) -> Vec<Axis> {
+/// Name and index of every output of an agent's first phase, and the array that it is a member of.
+fn outputs(nlp: &Transcription, agent: usize) -> Vec<(Axis, Option<Family>)> {
     let layout = &nlp.model.layout;
     let Some(phase) = layout.agents[agent].phases.clone().next() else { return vec![] };
     let declared = &nlp.model.structure.phases[layout.phases[phase].phase].outputs;
-    layout.phases[phase].outputs.iter().map(|o| (declared[o.output].name.clone(), o.index)).collect()
+    let own = layout.phases[phase].outputs.iter().map(|o| (&declared[o.output], o.index));
+    own.map(|(output, index)| ((output.name.clone(), index), output.family)).collect()
 }
 
 /// A coordinate that may be one of a position.

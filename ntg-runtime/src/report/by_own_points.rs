@@ -23,11 +23,12 @@ impl Report {
         {
             return Ok(());
         }
+        let all_sizes = &self.sizes;
         let own: &mut Vec<ConstraintReport> = &mut self.constraints;
         own.iter_mut().for_each(|own| own.between = None);
         let terms = Plan::new(&nlp, samples)?.evaluate(&nlp, (&inner.x, Wanted::Violated), |checked| {
             let own = &mut own[checked.constraint];
-            let sizes = (own.size, own.unit.factor);
+            let sizes = (|| all_sizes.of(&nlp, checked.constraint, checked.indices), own.unit.factor);
             let value = (checked.value, checked.bounds, sizes);
             keep(&nlp, &inner.x, &mut own.between, value, (&checked.point, checked.indices));
         })?;

@@ -8,6 +8,7 @@ use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
 use crate::transcribe::{SetupError, Transcription, names};
 use ntg_nlp::{Evaluation, Outcome, Target};
 use ntg_structure::Domain;
+use std::collections::BTreeMap;
 
 /// One entry for each constraint of the spec, and the terms on the finer grid.
 /// `at` holds the program's values and first derivatives at the last point.
@@ -89,9 +90,9 @@ pub(super) fn have_zero_bounds(nlp: &Transcription) -> bool {
     limits.row_lower.iter().zip(&limits.row_upper).any(is_zero)
 }
 
-/// What violations of bounds of 0 are relative to, SI, by relation of the rows.
+/// What violations of bounds of 0 are relative to, SI, by constraint and the indices of its member.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Sizes(Vec<f64>);
+pub(crate) struct Sizes(BTreeMap<(usize, Vec<i64>), f64>);
 
 impl Sizes {
     /// The largest term of each member of a trajectory constraint along the solution, equation (9.3a); where all terms are
@@ -130,15 +131,17 @@ impl Sizes {
                 slopes[*relation as usize] = slopes[*relation as usize].max(1.0 / factor);
             }
         }
-        let larger = |(term, slope): (f64, f64)| [term, slope].into_iter().find(|size| *size > 0.0).unwrap_or(0.0);
-        Self(terms.into_iter().zip(slopes).map(larger).collect())
+        let known = relations.of_constraints().filter_map(|(constraint, indices, relation)| {
+            let size = [terms[relation], slopes[relation]].into_iter().find(|size| *size > 0.0)?;
+            Some(((constraint, indices.to_vec()), size))
+        });
+        Self(known.collect())
     }
 
     /// The size of a member of a constraint; the constraint's unit where none is known.
     pub(super) fn of(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> f64 {
-        let relation = nlp.elements.relations.of_constraint(constraint, indices);
-        let size = relation.and_then(|relation| self.0.get(relation)).filter(|size| **size > 0.0);
-        size.copied().unwrap_or(nlp.model.structure.constraints[constraint].unit.factor)
+        let size = self.0.get(&(constraint, indices.to_vec())).copied();
+        size.unwrap_or(nlp.model.structure.constraints[constraint].unit.factor)
     }
 }
 

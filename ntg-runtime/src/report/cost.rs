@@ -5,6 +5,17 @@ use crate::transcribe::Transcription;
 use ntg_nlp::Evaluation;
 use ntg_structure::{Row, Structure, Term};
 
+/// An objective below this, in its unit, is what a solve to tolerances of 1e-8 leaves of zero. A fit.
+const ZERO: f64 = 1e-9;
+
+/// The difference of an objective and its finer integral, relative to the larger of both; 0 where both are next to nothing
+/// or no numbers.
+pub fn cost_apart(objective: f64, fine: f64) -> f64 {
+    let size = objective.abs().max(fine.abs());
+    let apart = (fine - objective).abs() / size;
+    if size > ZERO && apart.is_finite() { apart } else { 0.0 }
+}
+
 /// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.
 pub(super) fn terms(nlp: &Transcription, at: &Evaluation, fine: &[f64]) -> Vec<TermReport> {
     let structure = &nlp.model.structure;

@@ -14,10 +14,9 @@ const LISTED: usize = 8;
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = if self.problem.is_empty() { "the problem" } else { &self.problem };
-        write!(f, "{name}: {}", self.status)?;
-        // An equation that is missed by more than its largest term holds nowhere but at the points.
-        let is_missed = self.has_solution() && self.violation.between > 1.0;
-        writeln!(f, "{}", if is_missed { " at the points, and not between them" } else { "" })?;
+        // Behind `acceptable` stands what that means.
+        let words = self.status.to_string();
+        writeln!(f, "{name}: {}{}", self.ending(), words.strip_prefix(&self.status.label()).unwrap_or_default())?;
         if !self.advice.is_empty() {
             writeln!(f, "  try: {}", self.advice)?;
         }

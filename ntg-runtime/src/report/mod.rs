@@ -7,8 +7,10 @@ mod by_own_points;
 mod constraints;
 mod cost;
 mod display;
+mod ending;
 mod estimate;
 pub(crate) mod fine;
+mod hints;
 mod means;
 mod multipliers;
 mod refined;
@@ -17,6 +19,8 @@ mod traces;
 mod warnings;
 
 pub use crate::transcribe::rows::member_words;
+pub use cost::cost_apart;
+pub use ending::ending;
 pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
 pub use refined::{RefineStatus, Refined, Round};
 pub use traces::Trace;
@@ -89,13 +93,13 @@ pub struct Report {
     /// Expressions whose value or derivative is singular at the guess. They stop nothing; where a
     /// solve ends badly, they are the first to look at.
     pub singular: Vec<Singular>,
-    /// Durations without a lower bound that the solve has made as short as it may, in words, each with the place of its
-    /// declaration.
-    pub(crate) shortest: Vec<(String, Place)>,
     /// Whether the solution fails the second-order conditions ([`Outcome::is_saddle`]).
     pub(crate) is_saddle: bool,
     /// What violations of bounds of 0 are relative to.
     pub(crate) sizes: constraints::Sizes,
+    /// What is to be looked at beside constraints and residuals, in words, each with its place in the spec: durations without
+    /// a lower bound that are as short as they may be, variables of an estimate at their bounds, outputs that ran off.
+    pub(crate) told: Vec<(String, Place)>,
     /// What a simulation tells of the motion that was to be found.
     pub(crate) simulation: Option<String>,
     /// The residuals of the optimality conditions.
@@ -272,7 +276,7 @@ impl Report {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };
         let violation = Violations { points: largest(|c| c.points.as_ref()), between: largest(|c| c.between.as_ref()) };
-        let shortest = warnings::shortest(nlp, &outcome.x);
+        let mut told = warnings::shortest(nlp, &outcome.x);
         let solution = Solution {
             inner: Arc::new(Inner {
                 model: nlp.model.clone(),
@@ -285,12 +289,23 @@ impl Report {
         };
         let status = status::in_words(nlp, outcome.status);
         let estimate = estimate::estimate(nlp, &solution, status.has_solution())?;
+        told.extend(match status.has_solution() {
+            true => hints::of_estimate(nlp, solution.coefficients(), estimate.as_ref()),
+            false => hints::ran_off(nlp, solution.coefficients()),
+        });
+        let (objective, objective_fine) = (user(nlp, outcome.objective), user(nlp, fine_terms.iter().sum()));
+        let tolerance = Settings::default().between_tolerance;
+        let is_off = status.has_solution() && cost_apart(objective, objective_fine) > tolerance;
+        // Where an equation is missed by more than its terms, or the cost is another, there may be a pole.
+        if is_off || (status.has_solution() && violation.between > 1.0 - tolerance) || status == Status::Unbounded {
+            told.extend(hints::poles(nlp, solution.coefficients())?);
+        }
         Ok(Self {
             problem: structure.name.clone(),
             advice: status.advice().to_owned(),
             status,
-            objective: user(nlp, outcome.objective),
-            objective_fine: user(nlp, fine_terms.iter().sum()),
+            objective,
+            objective_fine,
             objective_unit: structure.objective_unit.clone(),
             terms,
             estimate,
@@ -298,9 +313,9 @@ impl Report {
             violation,
             between_tolerance: Settings::default().between_tolerance,
             singular: vec![],
-            shortest,
             is_saddle: outcome.is_saddle,
             sizes,
+            told,
             simulation: None,
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),

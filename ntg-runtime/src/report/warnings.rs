@@ -1,5 +1,6 @@
 //! What a person should know about a report although it is a solution.
 
+use super::cost::cost_apart;
 use super::{ConstraintReport, RefineStatus, Report};
 use crate::digits::brief;
 use crate::transcribe::Transcription;
@@ -30,7 +31,8 @@ impl fmt::Display for Warning {
 
 impl Report {
     /// What is to be known beside the status: expressions that are singular at the guess, durations that are as short as
-    /// they may be, a simulated motion that the mesh does not follow, constraints of a solution that are violated between
+    /// they may be, variables of an estimate at their bounds, a fit that is worse than its deviations say, outputs that ran
+    /// off where there is no solution, a simulated motion that the mesh does not follow, constraints of a solution that are violated between
     /// the points by more than `Settings::between_tolerance`, the worst first, and a refinement that has not come to its
     /// tolerance.
     pub fn warnings(&self) -> Vec<Warning> {
@@ -40,7 +42,7 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        let shortest = self.shortest.iter().map(|(message, place)| Warning {
+        let told = self.told.iter().map(|(message, place)| Warning {
             message: message.clone(),
             place: place.clone(),
             constraint: String::new(),
@@ -71,7 +73,7 @@ impl Report {
             time: None,
         });
         singular
-            .chain(shortest)
+            .chain(told)
             .chain(saddle)
             .chain(coarse)
             .chain(self.cost_is_off())
@@ -82,13 +84,10 @@ impl Report {
 
     /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to
     /// the larger of both. A refined solution tells of it there.
-    fn cost_is_off(&self) -> Option<Warning> {
-        /// An objective below this, in its unit, is what a solve to tolerances of 1e-8 leaves of zero.
-        const ZERO: f64 = 1e-9;
+    pub(super) fn cost_is_off(&self) -> Option<Warning> {
         let (points, fine) = (self.objective, self.objective_fine);
-        let size = points.abs().max(fine.abs());
-        let apart = (fine - points).abs() / size;
-        let is_off = self.meets_points() && self.refined.is_none() && size > ZERO && apart > self.between_tolerance;
+        let apart = cost_apart(points, fine);
+        let is_off = self.meets_points() && self.refined.is_none() && apart > self.between_tolerance;
         is_off.then(|| Warning {
             message: format!(
                 "finely integrated, the objective is {} instead of {}, {} % of the larger: the points are too few for it",

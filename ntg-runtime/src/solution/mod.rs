@@ -225,7 +225,7 @@ impl Solution {
         let declared = model.structure.variables.iter().zip(&model.layout.variable_first);
         let members = declared.flat_map(|(declared, first)| {
             family_members(declared.family).into_iter().enumerate().map(move |(i, index)| Value {
-                name: names::indexed(&declared.name, index),
+                name: names::member(&declared.name, declared.family, index),
                 value: self.inner.x[*first as usize + i] / declared.unit.factor,
                 unit: declared.unit.clone(),
             })

@@ -218,7 +218,7 @@ impl Solution {
             let member = structure.agents[declared.agent].family.and_then(|_| indices.first().copied());
             let owner = structure.agents[declared.agent].name.as_deref();
             let path = owner.map_or_else(String::new, |owner| names::indexed(owner, member));
-            let name = names::join(&path, &names::indexed(&declared.name, index));
+            let name = names::join(&path, &names::member(&declared.name, declared.family, index));
             let phases = agent.map(|agent| layout.agents[agent].phases.clone());
             let piece = Piece { phase, named, indices };
             match found.iter_mut().find(|signal| signal.name == name && signal.phases == phases) {

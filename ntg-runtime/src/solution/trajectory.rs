@@ -170,16 +170,18 @@ impl Solution {
     /// An output in consecutive phases, which have a path.
     fn one(&self, (path, phases): (&str, Range<usize>), output: &str, index: Option<i64>) -> Option<Trajectory> {
         let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
-        let mut unit = None;
+        let (mut unit, mut family) = (None, None);
         let outputs = phases.clone().map(|phase| {
             let member = &layout.phases[phase];
             let declared = &structure.phases[member.phase].outputs;
             let found = member.outputs.iter().position(|o| o.index == index && declared[o.output].name == output)?;
-            unit.get_or_insert_with(|| declared[member.outputs[found].output].unit.clone());
+            let own = &declared[member.outputs[found].output];
+            unit.get_or_insert_with(|| own.unit.clone());
+            family = family.or(own.family);
             Some(found)
         });
         let outputs: Vec<Option<usize>> = outputs.collect();
-        let name = names::join(path, &names::indexed(output, index));
+        let name = names::join(path, &names::member(output, family, index));
         Some(Trajectory { inner: self.inner.clone(), phases, name, unit: unit?, outputs })
     }
 

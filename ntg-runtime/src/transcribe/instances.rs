@@ -54,7 +54,7 @@ pub(crate) fn position(
         (Some(family), Some(index)) if (family.first..=family.last).contains(&index) => {
             usize::try_from(index - family.first).map_err(|_| SetupError::malformed("a family is too large"))
         }
-        (Some(Family { first, last }), Some(index)) => {
+        (Some(Family { first, last, .. }), Some(index)) => {
             Err(SetupError::IndexOutOfRange { what: what(), index, first, last, place: place.clone() })
         }
         (Some(_), None) => Err(SetupError::malformed(format!("{} is a family and is named without index", what()))),

@@ -311,7 +311,7 @@ pub(crate) fn narrow(index: usize) -> u32 {
 
 /// Several indices at once that name no member.
 pub(crate) fn outside(what: String, index: &[i64], place: Place) -> SetupError {
-    let Family { first, last } = Family { first: 1, last: 0 };
+    let Family { first, last, .. } = Family::of(1, 0);
     SetupError::IndexOutOfRange {
         what: format!("{what}{index:?}"),
         index: index.first().copied().unwrap_or(0),

@@ -34,7 +34,7 @@ mod repeated;
 pub(crate) mod rows;
 mod scale;
 pub(crate) mod shape;
-mod singular;
+pub(crate) mod singular;
 mod sizes;
 pub(crate) mod slot_maps;
 pub(crate) mod slots;
@@ -264,7 +264,7 @@ impl<'p> Transcription<'p> {
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
             let members = instances::family_members(declared.family);
             if let Some(index) = variable.checked_sub(*first as usize).and_then(|m| members.get(m)) {
-                return format!("variable `{}`", names::indexed(&declared.name, *index));
+                return format!("variable `{}`", names::member(&declared.name, declared.family, *index));
             }
         }
         for (declared, (first, members)) in

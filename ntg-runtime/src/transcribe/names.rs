@@ -4,11 +4,19 @@ use super::error::SetupError;
 use super::layout::{Layout, Time};
 use super::points::Point;
 use crate::digits::brief;
-use ntg_structure::Structure;
+use ntg_structure::{Family, Structure};
 
 /// `name`, or `name[index]` for a member of a family.
 pub(crate) fn indexed(name: &str, index: Option<i64>) -> String {
     index.map_or_else(|| name.to_owned(), |index| format!("{name}[{index}]"))
+}
+
+/// `name`, or a member of an array with its indices in the spec: `name[3]`, `name[2, 1]`.
+pub(crate) fn member(name: &str, family: Option<Family>, index: Option<i64>) -> String {
+    match (family, index) {
+        (Some(family), Some(index)) => format!("{name}{}", family.index(index)),
+        _ => indexed(name, index),
+    }
 }
 
 /// `first.second`, or whichever is not empty.
@@ -38,8 +46,8 @@ pub(crate) fn phase(structure: &Structure, layout: &Layout, phase: usize) -> Str
 pub(crate) fn output(structure: &Structure, layout: &Layout, phase: usize, output: usize) -> String {
     let member = &layout.phases[phase];
     let found = &member.outputs[output];
-    let name = &structure.phases[member.phase].outputs[found.output].name;
-    join(&self::phase(structure, layout, phase), &indexed(name, found.index))
+    let declared = &structure.phases[member.phase].outputs[found.output];
+    join(&self::phase(structure, layout, phase), &self::member(&declared.name, declared.family, found.index))
 }
 
 /// "phase `covert`, t = 12.5 s (tau = 0.25)", for known variables; empty for no point.
@@ -74,8 +82,18 @@ pub(crate) fn fixed_point(structure: &Structure, layout: &Layout, at: &Point) ->
 /// Whether a name that a program gives means this thing: by its name, for a family also without
 /// index, and with or without the path of its agent.
 pub(crate) fn means(given: &str, path: &str, name: &str, index: Option<i64>) -> bool {
+    means_member(given, path, (name, None), index)
+}
+
+/// As [`means`], of a member of an array.
+pub(crate) fn means_member(
+    given: &str,
+    path: &str,
+    (name, family): (&str, Option<Family>),
+    index: Option<i64>,
+) -> bool {
     let bare = given.strip_prefix(path).and_then(|rest| rest.strip_prefix('.')).unwrap_or(given);
-    bare == name || bare == indexed(name, index)
+    bare == name || bare == member(name, family, index)
 }
 
 /// Whether a name means a phase's duration: the phase's path or name, or the name of its duration.

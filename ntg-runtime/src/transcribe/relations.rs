@@ -39,9 +39,11 @@ impl Relations {
         self.numbers.len()
     }
 
-    /// The number of a constraint's member; none where it has no row.
-    pub(crate) fn of_constraint(&self, constraint: usize, indices: &[i64]) -> Option<usize> {
-        let number = self.numbers.get(&(RowKind::Constraint(constraint), indices.to_vec()))?;
-        Some(*number as usize)
+    /// Every member of every constraint that has a row, with the number of its relation.
+    pub(crate) fn of_constraints(&self) -> impl Iterator<Item = (usize, &[i64], usize)> {
+        self.numbers.iter().filter_map(|((kind, indices), number)| match kind {
+            RowKind::Constraint(constraint) => Some((*constraint, &indices[..], *number as usize)),
+            RowKind::Integral(_) => None,
+        })
     }
 }

@@ -97,7 +97,7 @@ pub(crate) fn variable_bounds(frame: &Frame) -> Result<Vec<Pair>, SetupError> {
     for declared in &structure.variables {
         for index in super::instances::family_members(declared.family) {
             let pair = declared_bounds(frame, &declared.bounds, &Vec::from_iter(index))?;
-            let words = || format!("variable `{}`", names::indexed(&declared.name, index));
+            let words = || format!("variable `{}`", names::member(&declared.name, declared.family, index));
             bounds.push(check(pair, words, &declared.unit, &declared.place)?);
         }
     }

@@ -9,7 +9,7 @@ use super::layout::Time;
 use super::rows::{RowInfo, RowKind, bound_size};
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
-use ntg_structure::Unit;
+use ntg_structure::{Family, Unit};
 use std::ops::Range;
 
 /// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
@@ -19,6 +19,7 @@ const TOO_LARGE: f64 = 1e-2;
 /// An output in all phases of an agent.
 struct WholeOutput<'a> {
     name: &'a str,
+    family: Option<Family>,
     index: Option<i64>,
     unit: &'a Unit,
     coefficients: Vec<u32>,
@@ -162,6 +163,7 @@ impl Transcription<'_> {
                     Some(known) => known.coefficients.extend(&output.coefficients),
                     None => found.push(WholeOutput {
                         name: &declared.name,
+                        family: declared.family,
                         index: output.index,
                         unit: &declared.unit,
                         coefficients: output.coefficients.clone(),
@@ -197,7 +199,7 @@ impl Transcription<'_> {
         for (agent, member) in layout.agents.iter().enumerate() {
             let path = names::agent(structure, layout, agent);
             for output in self.outputs_of(member.phases.clone()) {
-                if names::means(name, &path, output.name, output.index) {
+                if names::means_member(name, &path, (output.name, output.family), output.index) {
                     found = true;
                     output.coefficients.iter().for_each(|v| scale[*v as usize] = size * output.unit.factor);
                 }
@@ -219,7 +221,7 @@ impl Transcription<'_> {
         }
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
             for (member, index) in family_members(declared.family).into_iter().enumerate() {
-                if names::means(name, "", &declared.name, index) {
+                if names::means_member(name, "", (&declared.name, declared.family), index) {
                     found = true;
                     scale[*first as usize + member] = size * declared.unit.factor;
                 }

@@ -1,12 +1,16 @@
-//! Expressions that are singular at a guess: their value or the factor in their derivative is not
-//! finite there.
+//! Expressions that are singular at a guess or along a solution: their value or the factor in their derivative is not
+//! finite there, or has a pole.
 //!
 //! Takes the variables of the guess; evaluates the probes of all kernels at all points. A solve may
 //! still succeed, since the first step leaves the guess; so this is told and stops nothing.
 
 use super::Transcription;
+use super::batch::batches;
+use super::elements::sites;
+use super::error::SetupError;
 use super::names;
 use super::node::{Node, NodeWork};
+use super::points::fine_set;
 use ntg_structure::Place;
 use std::fmt;
 
@@ -47,21 +51,61 @@ pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
         batch.values(this.problem, &this.model.tables, x, &mut work);
         let point =
             |element: usize| names::point(&this.model.structure, &this.model.layout, &batch.sites[element].point, x);
-        in_node(this, &batch.node, &work.node, &point, &mut found);
+        in_node(this, (&batch.node, &work.node), &point, &not_finite, &mut found);
     }
     found
+}
+
+/// Every expression that has a pole or no value somewhere along these variables, looked for at `samples` places to a point
+/// and at both sides of every breakpoint.
+///
+/// # Errors
+/// [`SetupError`] for an index outside its family.
+pub(crate) fn poles(this: &Transcription, x: &[f64], samples: usize) -> Result<Vec<Singular>, SetupError> {
+    let (structure, frame) = (&this.model.structure, this.frame());
+    let mut found = vec![];
+    if structure.kernels.iter().all(|kernel| kernel.probes.is_empty()) {
+        return Ok(found);
+    }
+    for group in &structure.groups {
+        let sites = sites(&frame, group, |points, breakpoints, phase| fine_set(points, breakpoints, phase, samples))?;
+        for batch in batches(&frame, &group.call, sites)? {
+            let mut work = batch.work();
+            batch.values(this.problem, &this.model.tables, x, &mut work);
+            let point = |element: usize| names::point(structure, &this.model.layout, &batch.sites[element].point, x);
+            in_node(this, (&batch.node, &work.node), &point, &far_out, &mut found);
+        }
+    }
+    Ok(found)
+}
+
+/// Places at which a value is no number.
+fn not_finite(values: &[f64]) -> Vec<usize> {
+    (0..values.len()).filter(|lane| !values[*lane].is_finite()).collect()
+}
+
+/// Places at which a value is no number, or beyond all that it is elsewhere.
+fn far_out(values: &[f64]) -> Vec<usize> {
+    /// What a pole is above the middle of its values. A law: a solve to 1e-8 leaves an argument that is 0 at about that part
+    /// of its size, and that of a square root at the root of it.
+    const FAR: f64 = 1e4;
+    let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let middle = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let is_far = |value: f64| !value.is_finite() || (middle > 0.0 && value.abs() > FAR * middle);
+    (0..values.len()).filter(|lane| is_far(values[*lane])).collect()
 }
 
 /// Adds what is singular in a kernel and in the reductions below it.
 fn in_node(
     this: &Transcription,
-    node: &Node,
-    work: &NodeWork,
+    (node, work): (&Node, &NodeWork),
     point: &dyn Fn(usize) -> String,
+    which: &dyn Fn(&[f64]) -> Vec<usize>,
     found: &mut Vec<Singular>,
 ) {
     for (edge, below) in node.edges.iter().zip(&work.edges) {
-        in_node(this, &edge.child, &below.child, point, found);
+        in_node(this, (&edge.child, &below.child), point, which, found);
     }
     let places = &this.model.structure.kernels[node.kernel].probes;
     let lanes = node.lanes();
@@ -71,7 +115,7 @@ fn in_node(
     let mut probes = vec![0.0; places.len() * lanes];
     this.problem.probes(node.kernel, lanes, &work.inputs, &this.model.tables, &mut probes);
     for (place, values) in places.iter().zip(probes.chunks_exact(lanes)) {
-        let singular: Vec<usize> = (0..lanes).filter(|lane| !values[*lane].is_finite()).collect();
+        let singular = which(values);
         let Some(first) = singular.first() else { continue };
         match found.iter_mut().find(|known| known.place == *place) {
             // The value and the derivative of one expression have a probe each.

@@ -21,6 +21,9 @@ impl Here<'_> {
             (_, ":") if matches!(first, "param" | "const") && has(Rule::equals) => {
                 "a value is given with `=`, its unit stands behind it: `param m = 1 [kg];`"
             }
+            _ if is(TokenKind::Number, self.token) && matches!(first, "param" | "const") && has(Rule::equals) => {
+                "a value is given with `=`, its unit stands behind it: `param m = 1 [kg];`"
+            }
             (_, ":") if has(Rule::equals) => "a definition is written with one `=`",
             (_, ":") if has(Rule::dots) => "a range is written `1 .. 3`",
             (_, ":") if first == "table" || self.is_within("table") => "a row ends with `;`: `0: 1;  2: 3;`",
@@ -87,6 +90,9 @@ impl Here<'_> {
             }
             _ if first == "phase" && (opens || has(Rule::name)) && !self.expected.has_expression() => {
                 "a phase has a name and says which it follows: `phase coast after boost { ... }`".into()
+            }
+            "=" if matches!(first, "minimize" | "maximize") && before != first && has(Rule::semicolon) => {
+                format!("the name of a term stands before a colon: `{first} {before}: ...;`")
             }
             "{" if matches!(first, "minimize" | "maximize") => {
                 format!("write `{first} e;`; several terms are a sum, or statements of their own")

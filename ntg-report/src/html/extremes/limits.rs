@@ -94,7 +94,7 @@ pub(super) fn is_limit(constraint: &Constraint, member: &Member) -> bool {
 pub(super) fn of(run: &Run, path: &str, series: &Series) -> Vec<Limit> {
     let agent = path.rsplit_once('.').map_or("", |(agent, _)| agent);
     let own = path.rsplit_once('[').filter(|(head, _)| !head.is_empty() && path.ends_with(']'));
-    let own = own.and_then(|(_, index)| index.trim_end_matches(']').parse::<i64>().ok());
+    let own = own.map(|(_, index)| numbers(index)).filter(|own| !own.is_empty());
     let mut found = vec![];
     for (index, constraint) in run.constraints.iter().enumerate().filter(|(_, c)| c.unit == series.unit) {
         let Some(bracket) = side(&constraint.text, base(path)) else { continue };
@@ -103,7 +103,7 @@ pub(super) fn of(run: &Run, path: &str, series: &Series) -> Vec<Limit> {
             let rest =
                 phase.strip_prefix(agent).filter(|rest| agent.is_empty() || rest.is_empty() || rest.starts_with('.'));
             let Some(rest) = rest else { continue };
-            let named = is_member(own, bracket, (&indices, constraint.members.len()));
+            let named = is_member(own.as_deref(), bracket, (&indices, constraint.members.len()));
             if is_limit(constraint, member) && named && is_alike(series, member) {
                 let mut limit = Limit::new(run, (index, number), &during(run, phase, (series, member)));
                 limit.phase = rest.trim_start_matches('.').to_owned();
@@ -120,7 +120,12 @@ fn split(member: &str) -> (&str, Vec<i64>) {
         Some(indices) => ("", indices),
         None => member.split_once(" [").unwrap_or((member, "")),
     };
-    (phase, indices.trim_end_matches(']').split(',').filter_map(|index| index.trim().parse().ok()).collect())
+    (phase, numbers(indices))
+}
+
+/// The whole numbers of `1, 2]`.
+fn numbers(indices: &str) -> Vec<i64> {
+    indices.trim_end_matches(']').split(',').filter_map(|index| index.trim().parse().ok()).collect()
 }
 
 /// What stands in brackets after a quantity that is one side of a constraint: `i` of `lim: x[i] <= top[i]`, nothing of
@@ -137,8 +142,13 @@ fn side<'t>(text: &'t str, name: &str) -> Option<&'t str> {
 }
 
 /// Whether the member with these indices is about the element `own` of a quantity that stands with this bracket.
-fn is_member(own: Option<i64>, bracket: &str, (indices, members): (&[i64], usize)) -> bool {
-    let Some(own) = own else { return bracket.is_empty() };
+fn is_member(own: Option<&[i64]>, bracket: &str, (indices, members): (&[i64], usize)) -> bool {
+    let own = match own {
+        None => return bracket.is_empty(),
+        Some([own]) => *own,
+        // An element of a matrix; of other brackets the values decide.
+        Some(own) => return indices.ends_with(own) || numbers(bracket).len() < own.len() || numbers(bracket) == own,
+    };
     let last = indices.last().copied();
     match bracket.trim().parse::<i64>() {
         // The element by its number, or the size of a declaration, `input a[2] in -4 .. 4`, of which each has a member.

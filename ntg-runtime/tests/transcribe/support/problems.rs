@@ -78,7 +78,7 @@ pub fn add_ceiling(p: &mut Double, bound: f64) {
 pub fn family(members: i64) -> Double {
     let mut p = Double::default();
     let over = vec![Loop { first: Affine::constant(2), last: Affine::constant(1 + members) }];
-    p.structure.agents = vec![agent(Some("uav"), Some(Family { first: 2, last: 1 + members }))];
+    p.structure.agents = vec![agent(Some("uav"), Some(Family::of(2, 1 + members)))];
     let start = p.constants(&[0.5, 9.0]);
     p.structure.agents[0].start = Start::Free(Bounds { call: Some(start), lower: Some(0), upper: Some(1) });
     let fixed = Duration::Fixed(p.constants(&[2.0]));

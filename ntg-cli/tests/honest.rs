@@ -1,0 +1,114 @@
+//! What a person is told beside numbers: indices as the spec counts them, units as the spec has them, ends that are none
+//! between the points, poles, fits that their deviations do not bear out.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Rows of vectors and a matrix of variables.
+const MATRIX: &str = "problem Matrix {
+    duration T = 5 [s];
+    output p[0 .. 1, 1 .. 3] [m]: spline(order = 5, intervals = 3);
+    variable k[2, 2] in 0 .. 5;
+    minimize integral(sum(i in 0 .. 1, dot(der(p[i], 2), der(p[i], 2)))) + 1 [m^2/s^3] * (k[1, 2] - 1)^2;
+    initial { for i in 0 .. 1 { p[i] == ((i, 2 * i, 1) * 1 [m]);  der(p[i]) == 0; } }
+    final { for i in 0 .. 1 { p[i] == (0, 0, 0) [m]; } }
+}
+";
+
+/// A train from rest to rest as a function of its way: its time per metre is not finite at both ends.
+const POLE: &str = "problem Pole {
+    domain s [m];
+    duration S = 1000 [m];
+    state v [m/s];
+    input a in -1 .. 1 [m/s^2];
+    collocation gauss(points = 3, intervals = 20);
+    minimize time: integral(1 / v);
+    dynamics { v * der(v) == a; }
+    initial { v == 0; }
+    final { v == 0; }
+    guess { v = 10 [m/s]; }
+}
+";
+
+/// A line through three points that lie on a parabola, with a slope that may not be what it would have to be.
+const FIT: &str = "problem Fit {
+    const at_time[5] = (0, 1, 2, 3, 4) [s];
+    param seen[5] = (0, 1, 4, 9, 16) [m];
+    duration T = 4 [s];
+    state x [m];
+    collocation gauss(points = 2, intervals = 4);
+    variable slope in 0 .. 3 [m/s];
+    dynamics { der(x) == slope; }
+    measure { for i in 1 .. 5 { place: at(at_time[i], x) == seen[i] sigma 0.1 [m]; } }
+    guess { slope = 1 [m/s];  x = 1 [m]; }
+}
+";
+
+fn ntg(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_ntg")).current_dir(folder).args(arguments).output().expect("the command starts")
+}
+
+fn with(spec: &str) -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("spec.ntg"), spec).expect("the spec is written");
+    folder
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+#[test]
+fn elements_of_a_matrix_keep_both_of_their_indices() {
+    let folder = with(MATRIX);
+    let solve = |arguments: &[&str]| ntg(folder.path(), &[&["solve", "spec.ntg"], arguments].concat());
+    let text = said(&solve(&["--csv", "run.csv", "--save", "run.json"]));
+    for name in ["p[0, 1] [m]", "p[1, 3] [m]", "k[1, 2]", "k[2, 1]"] {
+        assert!(text.contains(name), "{name} in {text}");
+    }
+    let csv = fs::read_to_string(folder.path().join("run.csv")).expect("a table");
+    assert!(csv.starts_with("t [s],\"p[0, 1] [m]\",\"p[0, 2] [m]\""), "{csv}");
+    let json = solve(&["--format", "json"]);
+    let found: Value = serde_json::from_slice(&json.stdout).expect("a document");
+    let of = |name: &str| found["outputs"][name]["value"][0].as_f64();
+    assert!((of("p[1, 2]").expect("an element") - 2.0).abs() < 1e-9, "{:?}", found["outputs"]);
+    assert!((found["variables"]["k[1, 2]"]["value"].as_f64().expect("a number") - 1.0).abs() < 1e-6);
+    // The same names are understood: in routes, as guesses from saved runs, in plots.
+    for arguments in [&["--route", "p[1, 1], p[1, 2]: 1, 2; 0, 0 [m]"][..], &["--guess", "run.json"]] {
+        let again = solve(arguments);
+        assert_eq!(again.status.code(), Some(0), "{}", said(&again));
+    }
+    let plot = ["plot", "run.json", "--xy", "p[1, 1],p[1, 2]", "--show", "p[0, 3]", "-o", "p.svg"];
+    let plot = ntg(folder.path(), &plot);
+    assert_eq!(plot.status.code(), Some(0), "{}", said(&plot));
+}
+
+#[test]
+fn text_document_and_page_end_alike_and_a_pole_is_named() {
+    let folder = with(POLE);
+    let text = said(&ntg(folder.path(), &["solve", "spec.ntg", "--save", "run.json"]));
+    assert!(text.starts_with("Pole: solved at the points\n"), "{text}");
+    assert!(text.contains("`1 / v` (line 7, column 29) is singular in the motion that was found at s = 0 m"), "{text}");
+    let json = ntg(folder.path(), &["solve", "spec.ntg", "--format", "json"]);
+    let found: Value = serde_json::from_slice(&json.stdout).expect("a document");
+    assert_eq!((found["status"].as_str(), found["ending"].as_str()), (Some("solved"), Some("solved at the points")));
+    let page = ntg(folder.path(), &["report", "run.json", "-o", "page.html"]);
+    assert_eq!(page.status.code(), Some(0), "{}", said(&page));
+    let page = fs::read_to_string(folder.path().join("page.html")).expect("a page");
+    assert!(page.contains("<b>solved at the points</b>"), "the page's head");
+}
+
+#[test]
+fn a_bad_fit_and_a_parameter_at_its_bound_are_told() {
+    let folder = with(FIT);
+    let text = said(&ntg(folder.path(), &["solve", "spec.ntg"]));
+    assert!(text.contains("`slope` ends at its bound 3 m/s"), "{text}");
+    assert!(text.contains("where about 4 is expected: the model does not meet the measurements"), "{text}");
+    let good = FIT.replace("(0, 1, 4, 9, 16)", "(0, 2.1, 3.9, 6, 8.1)");
+    let text = said(&ntg(with(&good).path(), &["solve", "spec.ntg"]));
+    assert!(text.starts_with("Fit: solved\n") && !text.contains("warning"), "{text}");
+}
