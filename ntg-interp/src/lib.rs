@@ -89,7 +89,7 @@ impl Parametric for Interpreted {
     fn parametric(&self) -> Arc<dyn Problem + Send + Sync> {
         let made = self.formulas.parametric.get_or_init(|| {
             let (structure, kernels) = (self.structure.clone(), self.formulas.kernels.clone());
-            Interpreted::new(&parametric(&Program { structure, kernels, ..Program::default() }))
+            Interpreted::new(&parametric(&Program { structure, kernels }))
         });
         let mut form = made.clone();
         form.structure.parameters.clone_from(&self.structure.parameters);
