@@ -72,7 +72,7 @@ impl<const N: usize> Jet<N> {
 
     /// The mean over the box (docs/maths.md, equation 15.5). The last coefficient is one of an even order.
     pub fn mean(&self, centre: &Self) -> Interval {
-        if N % 2 == 0 {
+        if N.is_multiple_of(2) {
             return self.c[0];
         }
         let last = self.c[N - 1].over(Interval::point(N as f64));
@@ -492,7 +492,6 @@ impl<const N: usize> Sub for Jet<N> {
 
 impl<const N: usize> Mul for Jet<N> {
     type Output = Self;
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "coefficients of a product are sums of products")]
     fn mul(self, other: Self) -> Self {
         let total = self.total && other.total;
         // Most factors with one value are numbers; they scale every coefficient.

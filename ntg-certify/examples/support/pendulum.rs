@@ -1,6 +1,7 @@
 //! The tube of a driven pendulum, spoilt: claims that are false are rejected for what the tube says alone.
 
 use ntg_certify::certify::{Certificate, certify};
+use ntg_certify::jet::COUNT;
 use ntg_certify::prove::Options;
 use ntg_certify::spline::BSpline;
 use ntg_certify::statement::{Node, Statement};
@@ -65,7 +66,7 @@ pub(crate) fn differences(of: &Statement) -> Vec<[f64; 2]> {
     let piece = |name: &str, derivative: usize, cell: usize| -> Vec<f64> {
         let own = spline(name);
         let own = BSpline { order: own.order, knots: &own.knots, coefficients: &own.coefficients };
-        own.piece(derivative, cuts[cell], cuts[cell + 1]).jets().0.c.iter().map(|c| c.middle()).collect()
+        own.piece(derivative, cuts[cell], cuts[cell + 1]).jets::<COUNT>().0.c.iter().map(|c| c.middle()).collect()
     };
     let at = |piece: &[f64], part: f64| piece.iter().rev().fold(0.0, |sum, c| sum * (2.0 * part - 1.0) + c);
     let mut all = vec![];

@@ -72,14 +72,7 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        singular
-            .chain(told)
-            .chain(saddle)
-            .chain(coarse)
-            .chain(self.cost_is_off())
-            .chain(between)
-            .chain(unmet)
-            .collect()
+        singular.chain(told).chain(saddle).chain(coarse).chain(self.cost_is_off()).chain(between).chain(unmet).collect()
     }
 
     /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to

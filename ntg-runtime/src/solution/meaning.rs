@@ -71,8 +71,8 @@ impl Solution {
 
     /// A coefficient of one of [`Solution::splines`], as an index into [`Solution::coefficients`].
     pub fn coefficient(&self, spline: usize, number: usize) -> Option<usize> {
-        let outputs = self.inner.model.layout.phases.iter().flat_map(|phase| &phase.outputs);
-        outputs.skip(spline).next()?.coefficients.get(number).map(|variable| *variable as usize)
+        let mut outputs = self.inner.model.layout.phases.iter().flat_map(|phase| &phase.outputs);
+        outputs.nth(spline)?.coefficients.get(number).map(|variable| *variable as usize)
     }
 
     /// The same solution with other [`Solution::coefficients`], near those that it has; none where they are not as many.

@@ -35,7 +35,7 @@ pub(crate) fn one_kernel(body: KernelBody) -> Program {
     };
     let structure =
         Structure { name: "P".into(), source: "p.ntg".into(), kernels: vec![shape], ..Structure::default() };
-    Program { structure, kernels: vec![body], ..Program::default() }
+    Program { structure, kernels: vec![body] }
 }
 
 /// `problem Rest { duration T = 5; output x: spline(order = 4, intervals = 8);`
