@@ -30,6 +30,7 @@ mod given;
 mod growth;
 mod guess;
 mod helps;
+mod impulses;
 mod independent;
 mod kinds;
 mod known_shapes;
