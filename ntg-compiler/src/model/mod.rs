@@ -14,6 +14,7 @@ mod conditions;
 mod constants;
 mod constraints;
 mod continuity;
+mod corners;
 mod declarations;
 mod definitions;
 mod derivatives;
@@ -22,6 +23,7 @@ mod dynamics;
 mod elaborator;
 mod element;
 mod element_text;
+mod epigraph;
 mod expression;
 mod files;
 mod functions;
@@ -64,6 +66,7 @@ mod shape;
 mod shape_calls;
 mod shape_names;
 mod shared;
+mod signs;
 mod soft;
 mod steps;
 mod suggest;
@@ -200,5 +203,6 @@ impl<'a> Elaborator<'a> {
         self.orders_needed();
         self.jumps_noted();
         self.check();
+        self.corners();
     }
 }

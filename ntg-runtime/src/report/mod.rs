@@ -216,7 +216,7 @@ impl Report {
         const LOOSER: f64 = 100.0;
         if self.has_solution() && self.violation.points > LOOSER * tolerance {
             self.status = Status::StepTooSmall;
-            self.advice = self.status.advice().to_owned();
+            self.advice = status::advice(&self.status, self.solution.structure());
         }
     }
 
@@ -285,7 +285,7 @@ impl Report {
         let estimate = estimate::estimate(nlp, &solution, status.has_solution())?;
         Ok(Self {
             problem: structure.name.clone(),
-            advice: status.advice().to_owned(),
+            advice: status::advice(&status, structure),
             status,
             objective: user(nlp, outcome.objective),
             objective_fine: user(nlp, fine_terms.iter().sum()),
