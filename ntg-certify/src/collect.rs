@@ -11,7 +11,7 @@ use ntg_compiler::program::{KernelBody, Program};
 use ntg_runtime::solution::{Meaning, Solution};
 use ntg_runtime::transcribe::SetupError;
 use ntg_splines::Extrapolation;
-use ntg_structure::{At, Call, Domain, Group, Instant, ReduceOp, Row, Slot, Structure};
+use ntg_structure::{At, Block, Call, Domain, Group, Instant, ReduceOp, Row, Slot, Structure};
 
 use crate::statement::{
     Flat, Function, Graph, Input, Join, Kind, Node, Number, Over, Phase, Quantity, Spline, Statement, Subject, Summand,
@@ -140,7 +140,7 @@ impl<'a> Collector<'a> {
         mut add: impl FnMut(&mut Self, &Group, usize, (&[i64], Over)) -> Result<(), SetupError>,
     ) -> Result<(), SetupError> {
         let structure = self.structure;
-        for group in &structure.groups {
+        for group in structure.groups.iter().chain(&structure.shown) {
             for (indices, over) in self.sites(group)? {
                 for row in 0..group.rows.len() {
                     add(self, group, row, (&indices, over))?;
@@ -182,6 +182,9 @@ impl<'a> Collector<'a> {
         let mut known: BTreeSet<(usize, Vec<i64>, Option<usize>)> = BTreeSet::new(); // A constraint has one part.
         self.rows(|this, group, row, (indices, over)| {
             let Row::Constraint { constraint, lower, upper } = &group.rows[row] else { return Ok(()) };
+            if this.structure.constraints[*constraint].block == Block::Corner {
+                return Ok(()); // It holds at the points, and nothing is claimed between them.
+            }
             let along = if let Over::Phase(phase) = over { Some(phase) } else { None };
             if along.is_some() && !known.insert((*constraint, indices.to_vec(), along)) {
                 return Ok(());
@@ -222,8 +225,13 @@ impl<'a> Collector<'a> {
 
     fn terms(&mut self) -> Result<(), SetupError> {
         let mut terms: Vec<Vec<Summand>> = vec![vec![]; self.structure.terms.len()];
+        let shown = self.structure.terms_shown();
         self.rows(|this, group, row, (indices, over)| {
             let Row::Cost { term } = &group.rows[row] else { return Ok(()) };
+            let written = this.structure.shown.iter().any(|own| std::ptr::eq(own, group));
+            if shown[*term] != written {
+                return Ok(());
+            }
             let function = this.function(&group.call, row, indices)?;
             terms[*term].push(Summand { function, over });
             Ok(())
@@ -353,7 +361,8 @@ fn cell_from(cuts: &[f64], instant: Instant) -> usize {
 fn places(structure: &Structure) -> BTreeSet<Instant> {
     let mut found: BTreeSet<Instant> = structure.places.iter().flat_map(|places| &places.instants).copied().collect();
     let named = structure.named.iter().map(|named| (&named.domain, &named.call, None));
-    let groups = structure.groups.iter().map(|group| (&group.domain, &group.call, group.bounds.as_ref()));
+    let groups = structure.groups.iter().chain(&structure.shown);
+    let groups = groups.map(|group| (&group.domain, &group.call, group.bounds.as_ref()));
     for (domain, call, bounds) in named.chain(groups) {
         if let Domain::Path { part, .. } = domain {
             found.extend([part.from, part.to]);

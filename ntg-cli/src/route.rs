@@ -44,7 +44,7 @@ fn unit(structure: &Structure, name: &str) -> Result<Unit, String> {
     }
     let mut known: Vec<&str> = vec![];
     for output in structure.phases.iter().flat_map(|phase| &phase.outputs) {
-        if !known.contains(&output.name.as_str()) {
+        if !output.is_helper() && !known.contains(&output.name.as_str()) {
             known.push(&output.name);
         }
     }

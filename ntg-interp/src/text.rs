@@ -64,11 +64,59 @@ pub fn quantity(text: &str, unit: &Unit) -> Result<Vec<f64>, String> {
 /// `240 m/s` and `240m/s` as the language writes them: `240 [m/s]`.
 pub fn bracketed(text: &str) -> String {
     let trimmed = text.trim();
+    if let Some(number) = as_written(trimmed) {
+        return number;
+    }
     // The longest beginning that is a number: `1e3m` is a thousand metres.
     let cuts = trimmed.char_indices().map(|(at, _)| at).rev();
-    let number = cuts.map(|at| trimmed.split_at(at)).find(|(number, _)| number.trim_end().parse::<f64>().is_ok());
-    match number.map(|(number, unit)| (number.trim_end(), unit.trim_start())) {
+    let number = cuts.map(|at| trimmed.split_at(at)).find_map(|(number, unit)| Some((as_written(number)?, unit)));
+    match number.map(|(number, unit)| (number, unit.trim_start())) {
         Some((number, unit)) if unit.starts_with(char::is_alphabetic) => format!("{number} [{unit}]"),
+        Some((number, unit)) if unit.starts_with('[') => format!("{number} {unit}"),
         _ => text.to_owned(),
+    }
+}
+
+/// A number as the language writes it, which has no `+3`, `.5` or `2.`; none of what is no number.
+fn as_written(text: &str) -> Option<String> {
+    let text = text.trim();
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite())?;
+    let digits = text.strip_prefix('-').unwrap_or(text);
+    let bare = |(at, c): (usize, char)| c == '.' && !digits[at + 1..].starts_with(|c: char| c.is_ascii_digit());
+    let plain = digits.starts_with(|c: char| c.is_ascii_digit()) && !digits.char_indices().any(bare);
+    Some(if plain { text.to_owned() } else { format!("{number:?}") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bracketed;
+
+    /// Whatever Rust reads as a number is one, and the language reads what is made of it.
+    #[test]
+    fn numbers_in_all_forms_are_numbers() {
+        for text in ["1e8", "1E8", "1e+8", "2.5e8", "1e-3", "1e08", "-1e-3", "0", "-7", "100000000", "1e308"] {
+            assert_eq!(bracketed(text), text);
+        }
+        let unwritten = [("+3", "3.0"), (".5", "0.5"), ("2.", "2.0"), ("-.5e-3", "-0.0005"), ("+1e8", "100000000.0")];
+        for (text, written) in unwritten {
+            assert_eq!(bracketed(text), written);
+        }
+    }
+
+    #[test]
+    fn what_follows_a_number_is_its_unit() {
+        for (text, written) in [
+            ("240 m/s", "240 [m/s]"),
+            ("1e3m", "1e3 [m]"),
+            ("1e-3 m", "1e-3 [m]"),
+            ("1eV", "1 [eV]"),
+            ("2e3eV", "2e3 [eV]"),
+            (".5 [km]", "0.5 [km]"),
+            ("1, 2, 3", "1, 2, 3"),
+            ("inf", "inf"),
+            ("m", "m"),
+        ] {
+            assert_eq!(bracketed(text), written);
+        }
     }
 }

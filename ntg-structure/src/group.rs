@@ -88,6 +88,9 @@ pub enum Block {
     Temporal,
     /// Continuity where one phase follows another.
     Continuity,
+    /// In none: the compiler's own, which holds a helper above a corner of the objective at the points (docs/maths.md,
+    /// section 18). Such constraints come last, and reports leave them out.
+    Corner,
 }
 
 /// A constraint as the user wrote it.

@@ -67,6 +67,11 @@ pub struct Structure {
     pub kernels: Vec<Kernel>,
     /// Which kernel is called where, and what becomes of its rows.
     pub groups: Vec<Group>,
+    /// Costs as the spec writes them, for reports, of terms in which helpers stand for corners in `groups`. Their rows are
+    /// [`Row::Cost`] alone.
+    pub shown: Vec<Group>,
+    /// Where a gradient may jump in what is solved.
+    pub corners: Vec<Place>,
     /// Terms of the objective, for reports.
     pub terms: Vec<Term>,
     /// What was measured: parts of terms whose residuals are reported.
@@ -81,4 +86,29 @@ pub struct Structure {
     pub guesses: Vec<Guess>,
     /// Parameters that are solved for in turn.
     pub continuations: Vec<Continuation>,
+}
+
+impl Structure {
+    /// A group by its number: those of `groups`, then those of `shown`.
+    pub fn group(&self, number: usize) -> &Group {
+        self.groups.get(number).unwrap_or_else(|| &self.shown[number - self.groups.len()])
+    }
+
+    /// The terms that reports evaluate by `shown`.
+    pub fn terms_shown(&self) -> Vec<bool> {
+        let mut shown = vec![false; self.terms.len()];
+        for row in self.shown.iter().flat_map(|group| &group.rows) {
+            if let Row::Cost { term } = row
+                && let Some(shown) = shown.get_mut(*term)
+            {
+                *shown = true;
+            }
+        }
+        shown
+    }
+}
+
+/// Whether a name is that of a helper of the compiler: no name in a spec has a parenthesis.
+fn is_helper(name: &str) -> bool {
+    name.contains('(')
 }

@@ -121,6 +121,13 @@ pub struct Variable {
     pub place: Place,
 }
 
+impl Variable {
+    /// Whether the compiler made it, to stand for a corner of the objective (docs/maths.md, section 18).
+    pub fn is_helper(&self) -> bool {
+        crate::is_helper(&self.name)
+    }
+}
+
 /// When an agent starts.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
@@ -195,6 +202,13 @@ pub struct Output {
     pub vector: Option<usize>,
     /// Its spline.
     pub spline: Spline,
+}
+
+impl Output {
+    /// Whether the compiler made it, to stand for a corner of the objective (docs/maths.md, section 18).
+    pub fn is_helper(&self) -> bool {
+        crate::is_helper(&self.name)
+    }
 }
 
 /// A set of points in a phase's scaled time (docs/maths.md, section 4).

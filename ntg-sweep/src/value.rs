@@ -76,11 +76,13 @@ impl Wanted {
                 let named = structure.named.iter().map(|named| &named.name);
                 let durations = structure.phases.iter().flat_map(|phase| &phase.duration_name);
                 let whole = structure.agents.iter().flat_map(|agent| &agent.duration_name);
-                let variables = structure.variables.iter().map(|variable| &variable.name);
+                let variables =
+                    structure.variables.iter().filter(|variable| !variable.is_helper()).map(|variable| &variable.name);
                 named.chain(durations).chain(whole).chain(variables).cloned().collect()
             }
             _ => {
-                let outputs = structure.phases.iter().flat_map(|phase| &phase.outputs).map(|output| &output.name);
+                let outputs = structure.phases.iter().flat_map(|phase| &phase.outputs);
+                let outputs = outputs.filter(|output| !output.is_helper()).map(|output| &output.name);
                 outputs.chain(structure.named.iter().map(|named| &named.name)).cloned().collect()
             }
         };

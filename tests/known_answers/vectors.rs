@@ -35,9 +35,7 @@ fn a_swarm_in_rows_of_coordinates_is_as_far_apart_as_it_must_be() {
     let report = Shipped::spec("swarm").solve();
     // Everyone gives way as everyone else does: the middle is passed at one quarter of a turn each.
     let place = |i: usize, t: f64| {
-        [0, 1, 2].map(|k| {
-            report.solution.output(&format!("r[{}]", 3 * (i - 1) + k + 1)).expect("an element").derivative(t, 0)
-        })
+        [0, 1, 2].map(|k| report.solution.output(&format!("r[{i}, {}]", k + 1)).expect("an element").derivative(t, 0))
     };
     let end = report.phases()[0].end;
     for step in 0..=50 {

@@ -1,6 +1,7 @@
 //! The solution for people: the report, then a table of outputs and named expressions over time.
 
 use ntg_runtime::problem::Problem;
+use ntg_runtime::status::Status;
 use ntg_runtime::structure::Unit;
 
 use super::Solved;
@@ -12,7 +13,7 @@ const LEAST_WIDTH: usize = 11;
 
 pub(super) fn document(solved: &Solved<'_>) -> String {
     let mut lines: Vec<String> = solved.starts.map(|starts| format!("{starts}\n")).into_iter().collect();
-    lines.push(solved.report.to_string());
+    lines.push(led(solved));
     lines.extend(solved.explanation.map(ToString::to_string));
     lines.extend(
         solved.proved.map(|(summary, found)| format!("\n{summary}{}", crate::certify::words(found).trim_end())),
@@ -43,6 +44,19 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
         lines.push(format!("(all {} samples: --format json)", solved.samples));
     }
     lines.join("\n")
+}
+
+/// The report; where it says that a problem is infeasible, its first line names the culprit.
+fn led(solved: &Solved<'_>) -> String {
+    let text = solved.report.to_string();
+    let conflict = solved.explanation.and_then(|explanation| explanation.conflict());
+    let headline = conflict.filter(|conflict| conflict.settled).and_then(|conflict| conflict.headline());
+    match (headline, &solved.report.status, text.split_once('\n')) {
+        (Some(headline), Status::Infeasible { .. }, Some((_, rest))) => {
+            format!("{}: {headline}\n{rest}", solved.report.problem)
+        }
+        _ => text,
+    }
 }
 
 fn head(name: &str, unit: &Unit) -> String {

@@ -225,7 +225,7 @@ impl Writer<'_> {
         let in_root = scope.kind == Kind::Problem;
         if in_root {
             parts.methods.push(members::of_problem(&self.structure.objective_unit));
-            for variable in &self.structure.variables {
+            for variable in self.structure.variables.iter().filter(|variable| !variable.is_helper()) {
                 self.variable(variable, parts);
             }
         } else {

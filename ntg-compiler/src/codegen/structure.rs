@@ -24,6 +24,8 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
         ("places", quote! { Places }, entries(&structure.places)),
         ("kernels", quote! { Kernel }, entries(&structure.kernels)),
         ("groups", quote! { Group }, entries(&structure.groups)),
+        ("shown", quote! { Group }, entries(&structure.shown)),
+        ("corners", quote! { Place }, entries(&structure.corners)),
         ("terms", quote! { Term }, entries(&structure.terms)),
         ("measurements", quote! { Measurement }, entries(&structure.measurements)),
         ("constraints", quote! { Constraint }, entries(&structure.constraints)),

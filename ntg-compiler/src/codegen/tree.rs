@@ -70,7 +70,7 @@ fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
     // What the first phase has belongs to the agent if all the others have it too.
     if let Some((first, others)) = phases.split_first() {
         let has_output = |phase: usize, name: &str| structure.phases[phase].outputs.iter().any(|o| o.name == name);
-        let outputs = structure.phases[*first].outputs.iter();
+        let outputs = structure.phases[*first].outputs.iter().filter(|output| !output.is_helper());
         scope.outputs.extend(outputs.filter(|output| others.iter().all(|p| has_output(*p, &output.name))));
         let named =
             along(*first).filter(|named| others.iter().all(|p| along(*p).any(|other| other.name == named.name)));
@@ -86,7 +86,7 @@ fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
         let mut path = scope.path.clone();
         path.push((name, declared.family));
         let mut within = Scope::new(Kind::Phase, path);
-        within.outputs.extend(&declared.outputs);
+        within.outputs.extend(declared.outputs.iter().filter(|output| !output.is_helper()));
         within.named.extend(along(phase));
         within.durations.extend(declared.duration_name.as_deref());
         scope.children.push(within);

@@ -131,6 +131,7 @@ codes! {
     Delay "E094" "an expression at another time than that at which it stands";
     WrongMeasurement "E095" "something in `measure` that is no measurement";
     UnitInDoubt "E096" "a unit in a list that can be read two ways";
+    MissesJumps "E097" "a derivative that misses the jumps of what it is taken of";
 
     GradientJumps "N001" "a gradient that may jump";
     DerivativeJumps "N002" "a derivative that jumps at the knots";

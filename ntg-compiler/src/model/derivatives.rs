@@ -34,15 +34,15 @@ pub(super) struct Lacking {
 #[derive(Clone, PartialEq)]
 pub(super) struct Jump {
     /// The output and where it is declared.
-    name: String,
-    declared: Span,
+    pub(super) name: String,
+    pub(super) declared: Span,
     /// Where the derivative stands.
-    span: Span,
-    order: usize,
+    pub(super) span: Span,
+    pub(super) order: usize,
     /// The phase and the output in it.
-    place: (usize, usize),
+    pub(super) place: (usize, usize),
     /// The smoothness of the spline, and the order with which the derivative would be continuous.
-    smoothness: usize,
+    pub(super) smoothness: usize,
     needs: usize,
 }
 
@@ -265,6 +265,7 @@ impl<'a> Elaborator<'a> {
     /// Notes the derivatives that jump at the knots. Where several outputs jump alike, as the states of a collocation do,
     /// one note names them all, at the first place; one output is noted at each of its places.
     pub(super) fn jumps_noted(&mut self) {
+        self.impulses();
         let jumps = std::mem::take(&mut self.jumps);
         let mut left = self.seen_to_jump(jumps);
         while let Some(first) = left.first().cloned() {

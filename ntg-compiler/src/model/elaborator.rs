@@ -204,6 +204,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) derivatives_around: usize,
     /// The dimension of the objective, once there is one.
     pub(super) objective_dimension: Option<Dimension>,
+    /// The calls whose gradient may jump, where they stand.
+    pub(super) kinks: Vec<(NodeId, Span)>,
     /// By how much soft constraints are missed.
     pub(super) slacks: Vec<Slack>,
     /// How many equations `dynamics` has in each phase, where it has any.
@@ -288,6 +290,7 @@ impl<'a> Elaborator<'a> {
             time_rates: Default::default(),
             derivatives_around: 0,
             objective_dimension: None,
+            kinks: Vec::new(),
             slacks: Vec::new(),
             equations: HashMap::new(),
             units: Map::default(),

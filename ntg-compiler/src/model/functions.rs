@@ -329,6 +329,7 @@ impl<'a> Elaborator<'a> {
             Rule::Abs => {
                 self.kink(call, &[first.node]);
                 let node = self.problem.dag.abs(first.node);
+                self.kinks.push((node, call.span));
                 first.map(node, first.dimension, span).shown_in(first.unit.clone())
             }
             Rule::Sign => {
@@ -364,6 +365,9 @@ impl<'a> Elaborator<'a> {
             _ if nodes.len() == 2 => (dag.hypot(nodes[0], nodes[1]), joined.dimension),
             _ => (dag.norm(&nodes), joined.dimension),
         };
+        if matches!(builtin.rule, Rule::Min | Rule::Max) {
+            self.kinks.push((node, call.span));
+        }
         let unit = if builtin.rule == Rule::Angle { None } else { joined.unit.clone() };
         joined.map(node, dimension, call.span).shown_in(unit)
     }
@@ -399,7 +403,9 @@ impl<'a> Elaborator<'a> {
         if nodes.iter().any(|node| self.kinds(*node).meets(moving.and(Kind::SYMBOL))) {
             let name = &call.function.text;
             let help = match name.as_str() {
-                "abs" => "where that slows the solver down, write `smooth_abs(u, width)`",
+                "abs" => {
+                    "where that slows the solver down, write `smooth_abs(u, width)`, or price it: `soft(w): u == 0;`"
+                }
                 "max" => "where that slows the solver down, write `smooth_max(u, v, width)`",
                 "min" => "where that slows the solver down, write `-smooth_max(-u, -v, width)`",
                 "sign" => "where that slows the solver down, write `tanh(u / width)`",

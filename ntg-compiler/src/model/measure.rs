@@ -140,7 +140,7 @@ impl<'a> Elaborator<'a> {
         }
         let body = self.problem.dag.constant(0.0);
         let (span, unit) = (constraint.span, Unit::default());
-        self.problem.objective.push(Term { name, span, unit, loops: vec![], body });
+        self.problem.objective.push(Term { name, span, unit, loops: vec![], body, written: None });
         self.problem.objective.len() - 1
     }
 }

@@ -16,6 +16,7 @@ mod conditions;
 mod constants;
 mod constraints;
 mod continuity;
+mod corners;
 mod declarations;
 mod definitions;
 mod derivatives;
@@ -24,6 +25,7 @@ mod dynamics;
 mod elaborator;
 mod element;
 mod element_text;
+mod epigraph;
 mod expression;
 mod files;
 mod functions;
@@ -32,6 +34,7 @@ mod given;
 mod growth;
 mod guess;
 mod helps;
+mod impulses;
 mod independent;
 mod kinds;
 mod known_shapes;
@@ -66,6 +69,7 @@ mod shape_calls;
 mod shape_names;
 mod shared;
 mod shown_unit;
+mod signs;
 mod soft;
 mod steps;
 mod suggest;
@@ -214,5 +218,6 @@ impl<'a> Elaborator<'a> {
         self.orders_needed();
         self.jumps_noted();
         self.check();
+        self.corners();
     }
 }

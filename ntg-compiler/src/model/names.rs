@@ -339,12 +339,32 @@ impl<'a> Elaborator<'a> {
                 let unit = segment.indices.iter().map(|index| self.text(index.span)).collect::<Vec<_>>().join(", ");
                 format!("a quantity has its unit already; `let z [{unit}] = {name};` shows it in another")
             }
-            0 => format!("write `{name}` alone"),
+            0 => match self.size_read_as_unit(name) {
+                Some(size) => {
+                    format!("`{name}[{size}]` is read as a quantity in {size}; as a size write `{name}[1 .. {size}]`")
+                }
+                None => format!("write `{name}` alone"),
+            },
             1 => format!("write `{name}[1]` or `{name}[i]`"),
             _ => format!("write `{name}[1, 1]` or `{name}[i, j]`"),
         };
         let finding = Diagnostic::new(Code::WrongIndices, segment.span, message).help(help);
         self.refuse(finding, segment.span)
+    }
+
+    /// The constant whose name stands in brackets behind an output or variable where it is declared: what was meant as a
+    /// size was read as a unit.
+    fn size_read_as_unit(&self, name: &str) -> Option<String> {
+        let outputs = self.problem.phases.iter().flat_map(|phase| &phase.outputs);
+        let declared = outputs.map(|output| (&output.name, output.span));
+        let declared = declared.chain(self.problem.variables.iter().map(|variable| (&variable.name, variable.span)));
+        let (_, span) = declared.into_iter().find(|(own, _)| *own == name)?;
+        let rest = self.source.text.get(span.start as usize..)?.strip_prefix(name)?.trim_start();
+        let (size, _) = rest.strip_prefix('[')?.split_once(']')?;
+        let is_constant = |definition: &&super::elaborator::Definition<'_>| {
+            definition.is_const && definition.name.text == size.trim()
+        };
+        self.definitions.iter().find(is_constant).map(|definition| definition.name.text.clone())
     }
 
     /// Tells of a unit where an index stands.

@@ -100,7 +100,7 @@ impl<'a> Elaborator<'a> {
             Some(agent) => self.path_name(agent, phase, &name.text),
             None => name.text.clone(),
         });
-        self.problem.objective.push(Term { name, span, unit, loops: (*cx.loops).clone(), body });
+        self.problem.objective.push(Term { name, span, unit, loops: (*cx.loops).clone(), body, written: None });
         Some(value.at(objective.value.span))
     }
 }

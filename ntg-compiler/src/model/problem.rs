@@ -298,6 +298,8 @@ pub struct Term {
     pub loops: Vec<Loop>,
     /// An expression of the whole mission; its [`Leaf::Flat`]s say their phase and point.
     pub body: NodeId,
+    /// The expression as it was written, where helpers stand for its corners in `body`.
+    pub written: Option<NodeId>,
 }
 
 /// What was measured: a part of a term of the objective.
@@ -443,6 +445,8 @@ pub struct Problem {
     pub places: Vec<Places>,
     /// Constraints, continuity between phases included.
     pub constraints: Vec<Constraint>,
+    /// Where a gradient may jump in the objective or a constraint.
+    pub corners: Vec<Span>,
     /// Named expressions.
     pub named: Vec<Named>,
     /// Guesses, in the order of the spec.

@@ -58,6 +58,9 @@ impl<'a> Elaborator<'a> {
             self.reduction_kink(reduction, body.node);
         }
         let node = self.folded(fold, over, body.node);
+        if matches!(fold, Fold::Min | Fold::Max) {
+            self.kinks.push((node, reduction.over.span.to(reduction.body.span)));
+        }
         body.map(node, body.dimension, span).shown_in(body.unit.clone())
     }
 

@@ -23,6 +23,9 @@ use crate::expr::NodeId;
 use crate::source::Span;
 use crate::syntax::ast::{self, Expr, Softness};
 
+/// The order of what a constraint is missed by: a line that is not negative at both ends is nowhere negative.
+const LINE: usize = 2;
+
 /// By how much constraints of one statement are missed.
 pub(super) struct Slack {
     /// Where the statement stands, in which phase (none: a variable), and the members that are made one by one.
@@ -33,10 +36,10 @@ pub(super) struct Slack {
 }
 
 /// The loops around a constraint for which it is missed by an amount of its own.
-struct Members {
+pub(super) struct Members {
     loops: Vec<Loop>,
     /// How many there are, and which one is meant inside the loops; none without loops.
-    family: Option<(i64, Form)>,
+    pub(super) family: Option<(i64, Form)>,
 }
 
 /// The prices of missing a constraint: for the amount, and for its square.
@@ -123,7 +126,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// The members of loops, counted from 1; none where an index must be known first.
-    fn members_missed(&mut self, loops: &[Loop], span: Span) -> Option<Members> {
+    pub(super) fn members_missed(&mut self, loops: &[Loop], span: Span) -> Option<Members> {
         let mut count: i64 = 1;
         let mut member = Form::number(0);
         for over in loops {
@@ -172,7 +175,7 @@ impl<'a> Elaborator<'a> {
     ) -> usize {
         let family = members.family.as_ref().map(|(count, _)| (1, *count));
         let place = self.problem.phases[phase].outputs.len();
-        let spline = self.slack_spline(phase);
+        let spline = self.slack_spline(phase, LINE);
         let (doc, span) = (self.slack_doc(constraint), constraint.span);
         let output =
             Output { name: name.to_owned(), doc, unit: unit.clone(), family, grid: None, vector: None, spline, span };
@@ -251,7 +254,7 @@ impl<'a> Elaborator<'a> {
         let body = self.problem.dag.sum(&parts);
         self.origin(body, span);
         let unit = self.problem.objective_unit.clone();
-        self.problem.objective.push(Term { name, span, unit, loops, body });
+        self.problem.objective.push(Term { name, span, unit, loops, body, written: None });
     }
 
     fn slack_doc(&self, constraint: &ast::Constraint) -> String {
@@ -261,9 +264,8 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// A line in each interval, which may jump between them, or lines between equally spaced points: what is not negative
-    /// at both ends of a line is nowhere negative.
-    fn slack_spline(&self, phase: usize) -> Spline {
+    /// A polynomial of an order in each interval, which may jump between them, or lines between equally spaced points.
+    pub(super) fn slack_spline(&self, phase: usize, order: usize) -> Spline {
         match self.problem.phases[phase].collocation {
             Collocation::Gauss { .. } => {
                 let outputs = &self.problem.phases[phase].outputs;
@@ -275,7 +277,7 @@ impl<'a> Elaborator<'a> {
                 breakpoints.sort_by(f64::total_cmp);
                 const SAME: f64 = 1e-12;
                 breakpoints.dedup_by(|next, kept| (*next - *kept).abs() <= SAME);
-                Spline { order: 2, smoothness: 0, breakpoints }
+                Spline { order, smoothness: 0, breakpoints }
             }
             Collocation::Uniform { points } => {
                 let last = points.saturating_sub(1).max(1);

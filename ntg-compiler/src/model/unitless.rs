@@ -8,13 +8,19 @@ use crate::syntax::ast::*;
 
 /// See the module's header.
 pub(super) fn is_unitless(items: &[Item]) -> bool {
-    let mut look = Look { found: false };
+    let constant = |item: &Item| match &item.kind {
+        ItemKind::Const(constant) => Some(constant.name.text.clone()),
+        _ => None,
+    };
+    let mut look = Look { found: false, constants: items.iter().filter_map(constant).collect() };
     look.items(items);
     !look.found
 }
 
 struct Look {
     found: bool,
+    /// The names of constants: one of them in brackets was meant as a size.
+    constants: Vec<String>,
 }
 
 impl Look {
@@ -70,8 +76,15 @@ impl Look {
     }
 
     fn unit(&mut self, unit: &Option<Unit>) {
+        let is_size = |unit: &Unit| match unit.factors.as_slice() {
+            [UnitFactor { base: UnitBase::Symbol(name), power: 1, .. }] => self.constants.contains(&name.text),
+            _ => false,
+        };
         // A unit that is wrong was meant as one.
-        self.found |= unit.as_ref().is_some_and(|unit| !matches!(quantity(unit), Ok(q) if q.dimension.is_none()));
+        self.found |= unit
+            .as_ref()
+            .filter(|unit| !is_size(unit))
+            .is_some_and(|unit| !matches!(quantity(unit), Ok(q) if q.dimension.is_none()));
     }
 
     fn values(&mut self, values: &Values) {

@@ -38,6 +38,8 @@ pub fn lower(problem: Problem, source: &Source) -> Program {
     structure.measurements = mission::measurements(&mut lowering);
     let pieces = lowering.pieces();
     lowering.gather(pieces, &mut structure);
+    let written = lowering.written();
+    structure.shown = lowering.groups(written, &mut structure);
     while !lowering.pending.is_empty() {
         let pieces = std::mem::take(&mut lowering.pending);
         lowering.gather(pieces, &mut structure);
@@ -100,6 +102,11 @@ impl Lowering<'_> {
 
     /// Puts pieces that are evaluated at the same place under the same loops into one group.
     fn gather(&mut self, pieces: Vec<Piece>, structure: &mut Structure) {
+        let groups = self.groups(pieces, structure);
+        structure.groups.extend(groups);
+    }
+
+    fn groups(&mut self, pieces: Vec<Piece>, structure: &mut Structure) -> Vec<Group> {
         let mut gathered: Vec<Gathered> = Vec::new();
         for piece in pieces {
             let loops = positions(&piece.loops);
@@ -117,10 +124,25 @@ impl Lowering<'_> {
                 }
             }
         }
-        for group in gathered {
-            let group = self.group(group);
-            structure.groups.push(group);
+        gathered.into_iter().map(|group| self.group(group)).collect()
+    }
+
+    /// Costs as the spec writes them, of terms in which helpers stand for corners; not of those that would need integrals
+    /// of their own.
+    fn written(&mut self) -> Vec<Piece> {
+        let mut pieces = Vec::new();
+        for (term, t) in self.problem.objective.clone().into_iter().enumerate() {
+            let Some(written) = t.written else { continue };
+            let cost = || Role::Cost { term };
+            let own = split(&mut self.problem, &t.loops, written, t.span, cost(), &cost);
+            let is_integral =
+                |input: crate::expr::InputId| matches!(self.problem.leaves.leaf(input), model::Leaf::Integral { .. });
+            let bodies: Vec<NodeId> = own.iter().map(|piece| piece.body).collect();
+            if !self.problem.dag.inputs_of(&bodies).into_iter().any(is_integral) {
+                pieces.extend(own);
+            }
         }
+        pieces
     }
 
     /// Whether a constraint is about shared outputs alone: its rows are the same for several members.

@@ -26,6 +26,7 @@ pub(super) fn structure(lowering: &mut Lowering<'_>) -> Structure {
         ..Structure::default()
     };
     structure.terms = terms(lowering);
+    structure.corners = lowering.problem.corners.iter().map(|span| lowering.place(*span)).collect();
     structure.constraints = constraints(lowering);
     structure.variables = variables(lowering);
     structure.agents = agents(lowering);

@@ -95,7 +95,7 @@ impl Promotion<'_> {
             bounds: Bounds::default(),
             place: Place::default(),
         });
-        (out.guesses, out.continuations, out.measurements) = (vec![], vec![], vec![]);
+        (out.guesses, out.continuations, out.measurements, out.shown) = (vec![], vec![], vec![], vec![]);
         out
     }
 

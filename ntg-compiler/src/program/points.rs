@@ -1,6 +1,6 @@
 //! At which points of a phase a function is needed (docs/maths.md, section 4).
 
-use ntg_structure::Points;
+use ntg_structure::{Block, Points};
 
 use super::pieces::{Piece, Role};
 use crate::expr::Node;
@@ -11,12 +11,15 @@ use crate::model::problem::{Collocation, Domain, Leaf, PhaseAt, Problem};
 /// Integrands stand at quadrature points, equalities at the collocation points, inequalities at
 /// the quadrature points and at both ends of every interval: once where the function is
 /// continuous, from both sides where a derivative in it jumps; `inequalities = points` leaves the ends out.
+/// What holds a helper above a corner is needed where integrands stand, and nowhere else (section 18).
 pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> Vec<Points> {
     let (points, equalities, ends) = match problem.phases[phase.phase].collocation {
         Collocation::Uniform { points } => return vec![Points::Uniform { points }],
         Collocation::Gauss { points, equalities, ends } => (points, equalities, ends),
     };
+    let is_corner = |constraint: usize| problem.constraints[constraint].block == Block::Corner;
     match &piece.role {
+        Role::Constraint { constraint, .. } if is_corner(*constraint) => vec![Points::Gauss { points }],
         Role::Constraint { bounds, .. } if bounds.lower.is_some() && bounds.lower == bounds.upper => {
             vec![Points::Gauss { points: equalities }]
         }

@@ -13,6 +13,7 @@ mod libraries;
 mod mistakes;
 mod model_ambiguities;
 mod model_conditions;
+mod model_corners;
 mod model_limits;
 mod model_meaning;
 mod model_mission;

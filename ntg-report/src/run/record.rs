@@ -254,6 +254,7 @@ fn block(block: Block) -> &'static str {
         Block::Final => "final",
         Block::Temporal => "temporal",
         Block::Continuity => "continuity",
+        Block::Corner => "corner",
     }
 }
 
@@ -345,7 +346,7 @@ fn grid(structure: &Structure, phase: &ntg_runtime::structure::Phase) -> Grid {
         Points::Breakpoints => Some("both ends of each interval".to_owned()),
         Points::LeftLimits => None, // They belong to the breakpoints.
     });
-    let splines = phase.outputs.iter().map(|output| {
+    let splines = phase.outputs.iter().filter(|output| !output.is_helper()).map(|output| {
         let spline = &output.spline;
         let intervals = spline.breakpoints.len().saturating_sub(1);
         let family = output.family.map_or_else(String::new, |f| format!("[{} .. {}]", f.first, f.last));

@@ -48,6 +48,20 @@ impl fmt::Display for Conflict {
     }
 }
 
+impl Conflict {
+    /// The status of a solve that ends in it, led by the culprit: a point at which constraints give way together names
+    /// equations that only carry what the culprit asks for.
+    pub fn headline(&self) -> Option<String> {
+        let culprit = self.parts.first().filter(|part| part.amount > 0.0)?;
+        let others = match self.parts.len() {
+            1 => String::new(),
+            2 => ", beside one other".to_owned(),
+            count => format!(", beside {} others", count - 1),
+        };
+        Some(format!("infeasible: {culprit}{others}"))
+    }
+}
+
 impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.words())?;

@@ -22,8 +22,15 @@ impl Marks {
 pub(super) fn split(structure: &mut Structure, marks: &[Marks]) {
     for (phase, marks) in structure.phases.iter_mut().zip(marks) {
         for output in &mut phase.outputs {
+            let is_helper = output.is_helper();
             let breakpoints = &mut output.spline.breakpoints;
             breakpoints.extend(&marks.at);
+            // A helper has a value of its own at each of equally spaced points.
+            for _ in 0..if is_helper { marks.doublings } else { 0 } {
+                let between: Vec<f64> = breakpoints.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+                breakpoints.extend(between);
+                breakpoints.sort_by(f64::total_cmp);
+            }
             breakpoints.sort_by(f64::total_cmp);
             breakpoints.dedup();
         }

@@ -7,6 +7,7 @@ use super::{ConstraintReport, Report, constraints::keep, cost, fine::Plan, fine:
 use crate::error::Error;
 use crate::problem::Problem;
 use crate::transcribe::Transcription;
+use ntg_structure::Block;
 use std::sync::Arc;
 
 impl Report {
@@ -18,16 +19,15 @@ impl Report {
     pub fn measure_between(&mut self, problem: &dyn Problem, samples: usize) -> Result<(), Error> {
         let inner = Arc::clone(&self.solution.inner);
         let nlp = Transcription::new(problem)?;
-        if nlp.model.layout.variables != inner.x.len()
-            || self.constraints.len() != nlp.model.structure.constraints.len()
-        {
+        if nlp.model.layout.variables != inner.x.len() || self.constraints.len() != own_constraints(&nlp) {
             return Ok(());
         }
         let all_sizes = &self.sizes;
         let own: &mut Vec<ConstraintReport> = &mut self.constraints;
         own.iter_mut().for_each(|own| own.between = None);
         let terms = Plan::new(&nlp, samples)?.evaluate(&nlp, (&inner.x, Wanted::Violated), |checked| {
-            let own = &mut own[checked.constraint];
+            // Those of helpers come last, and have no report.
+            let Some(own) = own.get_mut(checked.constraint) else { return };
             let sizes = (|| all_sizes.of(&nlp, checked.constraint, checked.indices), own.unit.factor);
             let value = (checked.value, checked.bounds, sizes);
             keep(&nlp, &inner.x, &mut own.between, value, (&checked.point, checked.indices));
@@ -41,4 +41,9 @@ impl Report {
         self.violation.between = relative.fold(0.0, crate::math::max);
         Ok(())
     }
+}
+
+/// How many constraints are the spec's own and not those of helpers.
+fn own_constraints(nlp: &Transcription) -> usize {
+    nlp.model.structure.constraints.iter().filter(|constraint| constraint.block != Block::Corner).count()
 }

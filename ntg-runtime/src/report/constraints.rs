@@ -7,10 +7,10 @@ use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
 use crate::transcribe::{SetupError, Transcription, names};
 use ntg_nlp::{Evaluation, Outcome, Target};
-use ntg_structure::Domain;
+use ntg_structure::{Block, Domain};
 use std::collections::BTreeMap;
 
-/// One entry for each constraint of the spec, and the terms on the finer grid.
+/// One entry for each constraint of the spec, none for those of helpers, which come last, and the terms on the finer grid.
 /// `at` holds the program's values and first derivatives at the last point.
 pub(super) fn constraints(
     nlp: &Transcription,
@@ -51,6 +51,8 @@ pub(super) fn constraints(
             (&checked.point, checked.indices),
         );
     })?;
+    let own = structure.constraints.iter().position(|constraint| constraint.block == Block::Corner);
+    reports.truncate(own.unwrap_or(reports.len()));
     Ok((reports, all_sizes, terms))
 }
 

@@ -11,7 +11,7 @@ use crate::transcribe::node::Site;
 use crate::transcribe::points::{Point, fine_quadrature, fine_set};
 use crate::transcribe::rows::{Pair, group_bounds};
 use crate::transcribe::{SetupError, Transcription};
-use ntg_structure::{Domain, Row};
+use ntg_structure::{Block, Domain, Row};
 use std::collections::BTreeMap;
 
 /// Which values of constraints are wanted.
@@ -62,7 +62,8 @@ impl Plan {
     pub(crate) fn new(nlp: &Transcription, samples: usize) -> Result<Self, SetupError> {
         let frame = nlp.frame();
         let mut plan = Self { parts: vec![] };
-        for (index, group) in nlp.model.structure.groups.iter().enumerate() {
+        let structure = &nlp.model.structure;
+        for (index, group) in structure.groups.iter().chain(&structure.shown).enumerate() {
             let checked = |row: &Row| matches!(row, Row::Constraint { .. });
             let (adds, checks) = (!group.rows.iter().all(checked), group.rows.iter().any(checked));
             let finer = if checks { fine_set } else { fine_quadrature };
@@ -80,7 +81,7 @@ impl Plan {
     pub(crate) fn take_data(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
         let frame = nlp.frame();
         for part in &mut self.parts {
-            let call = &nlp.model.structure.groups[part.group].call;
+            let call = &nlp.model.structure.group(part.group).call;
             part.batch.take_data_into(&frame, call, &mut part.work)?;
         }
         self.set_bounds(nlp)
@@ -89,7 +90,7 @@ impl Plan {
     fn set_bounds(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
         let frame = nlp.frame();
         for Part { group, batch, bounds, .. } in self.parts.iter_mut().filter(|part| part.checks) {
-            let group = &nlp.model.structure.groups[*group];
+            let group = nlp.model.structure.group(*group);
             bounds.clear();
             for (element, site) in batch.sites.iter().enumerate() {
                 if element == 0 || !batch.sites[element - 1].is_of_member(site) {
@@ -109,12 +110,16 @@ impl Plan {
     ) -> Result<Vec<f64>, SetupError> {
         let x = self.integrals(nlp, x)?;
         self.parts.iter_mut().for_each(|part| part.values(nlp, &x));
-        let mut terms = vec![0.0; nlp.model.structure.terms.len()];
+        let structure = &nlp.model.structure;
+        let (mut terms, shown) = (vec![0.0; structure.terms.len()], structure.terms_shown());
         let mut parts: BTreeMap<Member, f64> = BTreeMap::new();
         for part in self.parts.iter().filter(|part| part.adds) {
+            let written = part.group >= structure.groups.len();
             part.integrands(nlp, |row, site, value| match row {
                 Row::Cost { term } => {
-                    if let Some(sum) = terms.get_mut(*term) {
+                    // Between the points a helper says nothing of the corner that it stands for.
+                    let counts = shown.get(*term).is_some_and(|shown| *shown == written);
+                    if let Some(sum) = terms.get_mut(*term).filter(|_| counts) {
                         *sum += value;
                     }
                 }
@@ -168,7 +173,7 @@ impl Part {
 
     /// Calls `add` with every row that adds to a sum, its value times its weight. Before: [`Part::values`].
     fn integrands(&self, nlp: &Transcription, mut add: impl FnMut(&Row, &Site, f64)) {
-        let group = &nlp.model.structure.groups[self.group];
+        let group = nlp.model.structure.group(self.group);
         let sites = &self.batch.sites;
         for (row, meaning) in group.rows.iter().enumerate() {
             if matches!(meaning, Row::Constraint { .. }) {
@@ -192,12 +197,15 @@ impl Part {
         (parts, wanted): (&BTreeMap<Member, f64>, Wanted),
         visit: &mut impl FnMut(&Checked<'_>),
     ) {
-        let group = &nlp.model.structure.groups[self.group];
+        let group = nlp.model.structure.group(self.group);
         let sites = &self.batch.sites;
         let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
         for ((first, bounds), end) in self.bounds.iter().zip(ends) {
             for (row, meaning) in group.rows.iter().enumerate() {
                 let Row::Constraint { constraint, .. } = meaning else { continue };
+                if nlp.model.structure.constraints[*constraint].block == Block::Corner {
+                    continue;
+                }
                 let (constraint, bounds) = (*constraint, bounds[row]);
                 let values = &self.work.node.values[row * sites.len()..][*first..end];
                 // Nearly all constraints hold nearly everywhere.

@@ -222,7 +222,7 @@ impl Report {
         const LOOSER: f64 = 100.0;
         if self.has_solution() && self.violation.points > LOOSER * tolerance {
             self.status = Status::StepTooSmall;
-            self.advice = self.status.advice().to_owned();
+            self.advice = status::advice(&self.status, self.solution.structure());
         }
     }
 
@@ -302,7 +302,7 @@ impl Report {
         }
         Ok(Self {
             problem: structure.name.clone(),
-            advice: status.advice().to_owned(),
+            advice: status::advice(&status, structure),
             status,
             objective,
             objective_fine,

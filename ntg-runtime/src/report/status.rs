@@ -3,7 +3,26 @@
 use crate::status::{Crossing, Status, Violation};
 use crate::transcribe::Transcription;
 use ntg_nlp::status::Bounded;
-use ntg_structure::Unit;
+use ntg_structure::{Structure, Unit};
+
+/// What a person may try next; where a solve came to no end, the places at which gradients jump.
+pub(super) fn advice(status: &Status, structure: &Structure) -> String {
+    /// More of them are counted only.
+    const NAMED: usize = 3;
+    let advice = status.advice().to_owned();
+    let no_end =
+        matches!(status, Status::IterationLimit | Status::TimeLimit | Status::StepTooSmall | Status::Acceptable);
+    let corners = &structure.corners;
+    if !no_end || corners.is_empty() {
+        return advice;
+    }
+    let named = corners.iter().take(NAMED).map(|place| format!("`{}` (line {})", place.text, place.line));
+    let mut named: Vec<String> = named.collect();
+    if let Some(more) = corners.len().checked_sub(NAMED).filter(|more| *more > 0) {
+        named.push(format!("{more} more"));
+    }
+    format!("{advice} Gradients jump at {}: a smooth form may be needed there.", named.join(", "))
+}
 
 /// The status of a solve of this transcription.
 pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {

@@ -219,10 +219,11 @@ impl Solution {
         phases.all(|phase| structure.phases[layout.phases[phase].phase].duration_name.is_none())
     }
 
-    /// All declared variables, members of arrays one by one.
+    /// All variables that the spec declares, members of arrays one by one.
     pub fn variables(&self) -> Vec<Value> {
         let model = &self.inner.model;
         let declared = model.structure.variables.iter().zip(&model.layout.variable_first);
+        let declared = declared.filter(|(declared, _)| !declared.is_helper());
         let members = declared.flat_map(|(declared, first)| {
             family_members(declared.family).into_iter().enumerate().map(move |(i, index)| Value {
                 name: names::member(&declared.name, declared.family, index),

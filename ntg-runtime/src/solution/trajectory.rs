@@ -192,7 +192,11 @@ impl Solution {
         for phase in phases.clone() {
             let member = &layout.phases[phase];
             for output in &member.outputs {
-                let name = &structure.phases[member.phase].outputs[output.output].name;
+                let declared = &structure.phases[member.phase].outputs[output.output];
+                if declared.is_helper() {
+                    continue;
+                }
+                let name = &declared.name;
                 let Some(one) = self.one((path, phases.clone()), name, output.index) else { continue };
                 if found.iter().all(|known| known.name != one.name) {
                     found.push(one);

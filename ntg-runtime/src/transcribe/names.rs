@@ -108,11 +108,12 @@ pub(crate) fn means_duration(structure: &Structure, layout: &Layout, given: &str
 
 /// A name that a program gives and nothing bears.
 pub(crate) fn unknown(what: &str, name: &str, structure: &Structure) -> SetupError {
-    let outputs = structure.phases.iter().flat_map(|p| p.outputs.iter().map(|o| o.name.as_str()));
+    let outputs =
+        structure.phases.iter().flat_map(|p| p.outputs.iter().filter(|o| !o.is_helper()).map(|o| o.name.as_str()));
     let durations =
         structure.phases.iter().flat_map(|p| p.name.as_deref().into_iter().chain(p.duration_name.as_deref()));
     let whole = structure.agents.iter().filter_map(|agent| agent.duration_name.as_deref());
-    let variables = structure.variables.iter().map(|v| v.name.as_str());
+    let variables = structure.variables.iter().filter(|v| !v.is_helper()).map(|v| v.name.as_str());
     let mut known: Vec<&str> = vec![];
     for candidate in outputs.chain(durations).chain(whole).chain(variables) {
         if !known.contains(&candidate) {

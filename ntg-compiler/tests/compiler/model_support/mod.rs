@@ -49,6 +49,7 @@ pub(crate) fn program(text: &str) -> Program {
     structure.phases.iter_mut().for_each(|phase| phase.place = Place::default());
     structure.integrals.iter_mut().for_each(|integral| integral.place = Place::default());
     structure.kernels.iter_mut().for_each(|kernel| kernel.probes.fill(Place::default()));
+    structure.corners.clear();
     program.kernels.iter_mut().for_each(|kernel| kernel.labels.clear());
     program
 }

@@ -1,0 +1,328 @@
+//! Corners of the objective: `abs`, `max`, `min`, `norm` where they are minimised (docs/maths.md, section 18).
+//!
+//! Takes the terms of the objective. Where a corner enters with a weight that is not negative, and the objective pushes
+//! it against its corner, a helper stands for it (`epigraph.rs`) and the gradient jumps no more: this is exact, at the
+//! points. The term keeps what was written, for reports.
+//! Afterwards: notes of corners that are gone are gone; `Problem::corners` holds the places of all others.
+
+use ntg_structure::Block;
+
+use super::elaborator::Elaborator;
+use super::problem::{Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt, Problem};
+use super::signs::Signs;
+use crate::diagnostic::Code;
+use crate::expr::{self, Binary, Dag, Degree, Fold, Map, Node, NodeId, Set, Unary};
+use crate::source::Span;
+
+/// Where an expression stands: the loops around it, and the phase along which it is integrated.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(super) struct Site {
+    pub(super) loops: Vec<Loop>,
+    pub(super) along: Option<PhaseAt>,
+}
+
+/// The pass's state.
+pub(super) struct Corners {
+    pub(super) signs: Signs,
+    /// The nodes in which there are corners.
+    within: Set<NodeId>, // Asked, never iterated.
+    done: Map<(NodeId, bool, Site), NodeId>, // Looked up, never iterated.
+    /// The corners for which helpers stand.
+    pub(super) treated: Set<NodeId>, // Asked, never iterated.
+    pub(super) helpers: usize,
+    /// The term in hand.
+    pub(super) span: Span,
+}
+
+impl Corners {
+    /// Whether there are corners in a node.
+    pub(super) fn has_corners(&self, node: NodeId) -> bool {
+        self.within.contains(&node)
+    }
+}
+
+/// How deep expressions are looked into; deeper corners stay.
+const MAX_DEPTH: usize = 500;
+
+impl Elaborator<'_> {
+    /// The pass.
+    pub(super) fn corners(&mut self) {
+        if self.has_failed() {
+            return;
+        }
+        let bodies: Vec<NodeId> = self.problem.objective.iter().map(|term| term.body).collect();
+        let mut pass = Corners {
+            signs: Signs::of(&self.problem),
+            within: self.with_corners(&bodies),
+            done: Map::default(),
+            treated: Set::default(),
+            helpers: 0,
+            span: Span::default(),
+        };
+        for term in 0..self.problem.objective.len() {
+            let own = &self.problem.objective[term];
+            let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None });
+            pass.span = own.span;
+            let smooth = self.smooth(&mut pass, body, (&site, true), 0);
+            if smooth != body {
+                self.origin(smooth, self.problem.objective[term].span);
+                let own = &mut self.problem.objective[term];
+                (own.body, own.written) = (smooth, Some(body));
+            }
+        }
+        self.weights_held(&pass);
+        let left = self.corners_left();
+        self.unnoted(&pass, &left);
+        let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();
+        spans.sort_by_key(|span| (span.start, span.end));
+        spans.dedup();
+        self.problem.corners = spans;
+    }
+
+    /// All nodes below some, those of integrands too, operands first.
+    fn below(&self, bodies: &[NodeId]) -> Vec<NodeId> {
+        let mut roots = bodies.to_vec();
+        let mut known: Set<NodeId> = Set::default();
+        let mut next = 0;
+        while next < roots.len() {
+            for input in self.problem.dag.inputs_of(&[roots[next]]) {
+                if let Leaf::Integral { integrand, .. } = self.problem.leaves.leaf(input)
+                    && known.insert(*integrand)
+                {
+                    roots.push(*integrand);
+                }
+            }
+            next += 1;
+        }
+        let mut all = self.problem.dag.schedule(&roots);
+        all.sort();
+        all
+    }
+
+    fn with_corners(&mut self, bodies: &[NodeId]) -> Set<NodeId> {
+        let mut within = Set::default();
+        for node in self.below(bodies) {
+            let mut has = self.is_corner(node);
+            match self.problem.dag.node(node) {
+                Node::Input(input) => {
+                    if let Leaf::Integral { integrand, .. } = self.problem.leaves.leaf(*input) {
+                        has |= within.contains(integrand);
+                    }
+                }
+                other => other.for_each_operand(|operand| has |= within.contains(&operand)),
+            }
+            if has {
+                within.insert(node);
+            }
+        }
+        within
+    }
+
+    /// Whether the gradient of a node itself may jump where its value is pushed to.
+    pub(super) fn is_corner(&mut self, node: NodeId) -> bool {
+        let has = match *self.problem.dag.node(node) {
+            Node::Unary(Unary::Abs, _) | Node::Binary(Binary::Min | Binary::Max, ..) => true,
+            Node::Reduce { fold: Fold::Min | Fold::Max, .. } => true,
+            Node::Unary(Unary::Sqrt, sum) => may_vanish(&self.problem, sum),
+            Node::Binary(Binary::Hypot, a, b) => is_affine(&self.problem, a) && is_affine(&self.problem, b),
+            _ => false,
+        };
+        has && !self.kinds(node).is_fixed()
+    }
+
+    /// What stands for a node; `growing` says whether the objective grows with it, or falls.
+    pub(super) fn smooth(
+        &mut self,
+        pass: &mut Corners,
+        node: NodeId,
+        (site, growing): (&Site, bool),
+        depth: usize,
+    ) -> NodeId {
+        if depth > MAX_DEPTH || !pass.within.contains(&node) {
+            return node;
+        }
+        let key = (node, growing, site.clone());
+        if let Some(known) = pass.done.get(&key) {
+            return *known;
+        }
+        let helper = self.helper(pass, node, (site, growing), depth);
+        let smooth = match helper {
+            Some(helper) => {
+                pass.treated.insert(node);
+                helper
+            }
+            None => self.below_smooth(pass, node, (site, growing), depth + 1),
+        };
+        pass.done.insert(key, smooth);
+        smooth
+    }
+
+    /// A node with smooth operands, as far as it is known to grow or to fall with each.
+    fn below_smooth(
+        &mut self,
+        pass: &mut Corners,
+        node: NodeId,
+        (site, growing): (&Site, bool),
+        depth: usize,
+    ) -> NodeId {
+        let own = self.problem.dag.node(node).clone();
+        if let Node::Input(input) = own {
+            let Leaf::Integral { phase, integrand } = self.problem.leaves.leaf(input).clone() else { return node };
+            if site.along.is_some() {
+                return node;
+            }
+            let along = Site { loops: site.loops.clone(), along: Some(phase.clone()) };
+            let integrand = self.smooth(pass, integrand, (&along, growing), depth);
+            return self.leaf(Leaf::Integral { phase, integrand });
+        }
+        let mut inner = site.clone();
+        if let Node::Reduce { range, .. } = own {
+            inner.loops.push(self.problem.ranges[range as usize].clone());
+        }
+        // An even power of a root has none.
+        if let Node::Powi(x, n) = own
+            && n % 2 == 0
+            && matches!(self.problem.dag.node(x), Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..))
+        {
+            return node;
+        }
+        let mut images: Map<NodeId, NodeId> = Map::default();
+        for (at, operand) in own.operands().into_iter().enumerate() {
+            let rises = if pass.has_corners(operand) { self.slope(pass, &own, at) } else { None };
+            let image = match rises {
+                Some(rises) => self.smooth(pass, operand, (&inner, growing == rises), depth),
+                None => operand,
+            };
+            // One operand that the node both grows and falls with stays.
+            if images.insert(operand, image).is_some_and(|before| before != image) {
+                return node;
+            }
+        }
+        self.problem.dag.rebuild(&own, |operand| images[&operand])
+    }
+
+    /// Whether a node grows with an operand, or falls; none where that is not known.
+    fn slope(&self, pass: &mut Corners, node: &Node, at: usize) -> Option<bool> {
+        let mut positive = |x: NodeId| pass.signs.is_positive(&self.problem, x);
+        match *node {
+            Node::Unary(Unary::Neg, _) => Some(false),
+            Node::Unary(
+                Unary::Sqrt
+                | Unary::Exp
+                | Unary::Log
+                | Unary::Atan
+                | Unary::Sinh
+                | Unary::Tanh
+                | Unary::Logistic
+                | Unary::Softplus,
+                _,
+            ) => Some(true),
+            Node::Unary(Unary::Cosh | Unary::Abs, x) => positive(x).then_some(true),
+            Node::Binary(Binary::Add | Binary::Min | Binary::Max, ..) => Some(true),
+            Node::Binary(Binary::Sub, ..) => Some(at == 0),
+            Node::Binary(Binary::Mul, a, b) => self.sign(pass, if at == 0 { b } else { a }),
+            Node::Binary(Binary::Div, _, b) if at == 0 => self.sign(pass, b),
+            Node::Binary(Binary::Div, a, b) => (positive(b)).then(|| self.sign(pass, a)).flatten().map(|up| !up),
+            Node::Binary(Binary::Hypot, a, b) => positive(if at == 0 { a } else { b }).then_some(true),
+            Node::Binary(Binary::Pow, a, b) if at == 0 => {
+                let power = self.problem.dag.is_constant(b)?;
+                positive(a).then_some(power > 0.0)
+            }
+            Node::Powi(_, n) if n > 0 && n % 2 != 0 => Some(true),
+            Node::Powi(x, n) => positive(x).then_some(n > 0),
+            Node::Select { .. } => (at > 0).then_some(true),
+            Node::Reduce { fold: Fold::Product, body, .. } => positive(body).then_some(true),
+            Node::Reduce { .. } => Some(true),
+            _ => None,
+        }
+    }
+
+    /// Whether a factor is not negative, or not positive; none where neither is known.
+    fn sign(&self, pass: &mut Corners, factor: NodeId) -> Option<bool> {
+        if pass.signs.is_positive(&self.problem, factor) {
+            return Some(true);
+        }
+        match *self.problem.dag.node(factor) {
+            Node::Const(number) if number.value() <= 0.0 => Some(false),
+            Node::Unary(Unary::Neg, x) => pass.signs.is_positive(&self.problem, x).then_some(false),
+            Node::Binary(Binary::Mul, a, b) => Some(self.sign(pass, a)? == self.sign(pass, b)?),
+            Node::Binary(Binary::Div, a, b) => Some(self.sign(pass, a)? == self.sign(pass, b)?),
+            _ => None,
+        }
+    }
+
+    /// Parameters on whose sign it rests that a helper may stand for a corner: they must not be set to less than 0.
+    fn weights_held(&mut self, pass: &Corners) {
+        if pass.treated.is_empty() {
+            return;
+        }
+        let zero = self.problem.dag.constant(0.0);
+        for parameter in &pass.signs.relied {
+            let declared = &self.problem.parameters[*parameter];
+            let (name, unit, count) = (declared.name.clone(), declared.unit.clone(), declared.value.len());
+            let over = declared.array.then(|| self.new_index(Form::number(1), Form::number(count as i64)));
+            let index = over.as_ref().map(|over| Form::index(over.index));
+            let body = self.leaf(Leaf::Parameter { parameter: *parameter, index });
+            self.problem.constraints.push(Constraint {
+                name: Some(format!("{name} >= 0, the weight of a corner")),
+                span: self.parameters[*parameter].0.span,
+                block: Block::Corner,
+                unit,
+                loops: over.into_iter().collect(),
+                domain: Domain::Mission,
+                body,
+                bounds: Bounds { lower: Some(zero), upper: None },
+            });
+        }
+    }
+
+    /// The corners in what is solved.
+    fn corners_left(&mut self) -> Vec<NodeId> {
+        let bodies = self.problem.constraints.iter().map(|constraint| constraint.body);
+        let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();
+        let all = self.below(&bodies);
+        let kinks: Set<NodeId> = expr::kinks(&self.problem.dag, &all).into_iter().collect();
+        all.into_iter().filter(|node| kinks.contains(node) && !self.kinds(*node).is_fixed()).collect()
+    }
+
+    /// Takes back the notes of corners that are gone.
+    fn unnoted(&mut self, pass: &Corners, left: &[NodeId]) {
+        let left: Set<NodeId> = left.iter().copied().collect();
+        let kinks = &self.kinks;
+        self.found.retain(|finding| {
+            let own = || kinks.iter().filter(|(_, span)| *span == finding.span).map(|(node, _)| node);
+            let is_gone = own().any(|node| pass.treated.contains(node)) && !own().any(|node| left.contains(node));
+            finding.code != Code::GradientJumps || !is_gone
+        });
+    }
+}
+
+/// Whether a sum is one of squares of affine expressions alone, so that its root is the tip of a cone where all are 0.
+fn may_vanish(problem: &Problem, sum: NodeId) -> bool {
+    let dag = &problem.dag;
+    let mut open = vec![sum];
+    let mut depth = 0;
+    while let Some(node) = open.pop() {
+        depth += 1;
+        match *dag.node(node) {
+            Node::Binary(Binary::Add, a, b) if depth < MAX_DEPTH => open.extend([a, b]),
+            Node::Reduce { fold: Fold::Sum, body, .. } => open.push(body),
+            Node::Binary(Binary::Mul, a, b) if is_number(dag, a) => open.push(b),
+            Node::Binary(Binary::Mul | Binary::Div, a, b) if is_number(dag, b) => open.push(a),
+            Node::Binary(Binary::Mul, a, b) if a == b && is_affine(problem, a) => {}
+            Node::Powi(x, 2) if is_affine(problem, x) => {}
+            _ => return false,
+        }
+    }
+    true
+}
+
+/// Whether a node is affine in what is solved for, and no constant.
+pub(super) fn is_affine(problem: &Problem, node: NodeId) -> bool {
+    let varies = |input| !matches!(problem.leaves.leaf(input), Leaf::Parameter { .. } | Leaf::Index(_));
+    expr::degree(&problem.dag, node, varies) == Degree::Linear
+}
+
+fn is_number(dag: &Dag, node: NodeId) -> bool {
+    dag.is_constant(node).is_some_and(|number| number > 0.0)
+}

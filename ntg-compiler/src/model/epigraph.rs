@@ -1,0 +1,185 @@
+//! Helpers that stand for corners of the objective (docs/maths.md, section 18).
+//!
+//! Takes a corner that is pushed down, gives a number `s` held above it: `s >= e` and `s >= -e` for `abs(e)`, `s >= a`
+//! and `s >= b` for `max(a, b)`, `s^2 >= v . v` and `s >= 0` for `norm(v)`; `s <= a` and `s <= b` for `min(a, b)` that is
+//! pushed up. Inside an integral it has a value at each point of the quadrature, and the rows stand at these points
+//! alone, so that the discretised problem keeps its minimum; elsewhere it is a variable.
+
+use ntg_structure::{Block, Unit};
+
+use super::corners::{Corners, Site, is_affine};
+use super::elaborator::Elaborator;
+use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Leaf, Loop, Output, Part, Variable};
+use crate::expr::{Binary, Fold, Node, NodeId, Unary};
+use crate::source::Span;
+
+/// What a helper is held against.
+enum Against {
+    /// All of these, each for the members of loops of its own.
+    Members(Vec<(NodeId, Vec<Loop>)>),
+    /// The root of a sum of squares.
+    Root(NodeId),
+}
+
+impl Elaborator<'_> {
+    /// What stands for a corner; none where the node is none, or is pushed away from its corner.
+    pub(super) fn helper(
+        &mut self,
+        pass: &mut Corners,
+        corner: NodeId,
+        (site, growing): (&Site, bool),
+        depth: usize,
+    ) -> Option<NodeId> {
+        let against = self.against(pass, corner, (site, growing), depth)?;
+        let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
+        let helper = self.helper_leaf(pass, site, span)?;
+        let zero = self.problem.dag.constant(0.0);
+        let above = |node| (node, Bounds { lower: Some(zero), upper: None });
+        match against {
+            Against::Members(members) => {
+                for (member, loops) in members {
+                    let body = match growing {
+                        true => self.problem.dag.sub(helper, member),
+                        false => self.problem.dag.sub(member, helper),
+                    };
+                    self.hold(site, loops, above(body), span);
+                }
+            }
+            Against::Root(sum) => {
+                let square = self.problem.dag.powi(helper, 2);
+                let body = self.problem.dag.sub(square, sum);
+                self.hold(site, vec![], above(body), span);
+                self.hold(site, vec![], above(helper), span);
+            }
+        }
+        Some(helper)
+    }
+
+    /// Whether the sides of a corner are affine in what is solved for, but for corners in them: the rows of a helper are
+    /// convex then. Beside curved sides a helper is as exact, and often worse to solve than the corner: the clamp of a
+    /// smooth step is a corner whose gradient does not jump in what is made of it.
+    fn has_affine_sides(&mut self, pass: &Corners, corner: NodeId) -> bool {
+        let sides = match *self.problem.dag.node(corner) {
+            Node::Unary(Unary::Abs, x) => vec![x],
+            Node::Binary(Binary::Max | Binary::Min, a, b) => vec![a, b],
+            Node::Reduce { fold: Fold::Max | Fold::Min, body, .. } => vec![body],
+            _ => vec![],
+        };
+        sides
+            .into_iter()
+            .all(|side| pass.has_corners(side) || is_affine(&self.problem, side) || self.kinds(side).is_fixed())
+    }
+
+    fn against(
+        &mut self,
+        pass: &mut Corners,
+        corner: NodeId,
+        (site, growing): (&Site, bool),
+        depth: usize,
+    ) -> Option<Against> {
+        if !self.has_helper(site) || self.kinds(corner).is_fixed() {
+            return None;
+        }
+        let fold = if growing { (Binary::Max, Fold::Max) } else { (Binary::Min, Fold::Min) };
+        if !self.has_affine_sides(pass, corner) {
+            return None;
+        }
+        let is_root = growing && self.is_corner(corner);
+        match *self.problem.dag.node(corner) {
+            // A corner inside is pushed both ways, unless what is inside is never negative.
+            Node::Unary(Unary::Abs, x) if growing && pass.has_corners(x) => {
+                let positive = pass.signs.is_positive(&self.problem, x);
+                positive.then(|| Against::Members(vec![(self.smooth(pass, x, (site, true), depth + 1), vec![])]))
+            }
+            Node::Unary(Unary::Abs, x) if growing => {
+                let minus = self.problem.dag.neg(x);
+                Some(Against::Members(vec![(x, vec![]), (minus, vec![])]))
+            }
+            Node::Binary(op, ..) if op == fold.0 => {
+                let mut members = vec![];
+                let mut open = vec![corner];
+                while let Some(node) = open.pop() {
+                    match *self.problem.dag.node(node) {
+                        Node::Binary(own, a, b) if own == op => open.extend([b, a]),
+                        _ => members.push((self.smooth(pass, node, (site, growing), depth + 1), vec![])),
+                    }
+                }
+                Some(Against::Members(members))
+            }
+            Node::Reduce { fold: own, range, body, .. } if own == fold.1 => {
+                let over = self.problem.ranges[range as usize].clone();
+                let mut inner = site.clone();
+                inner.loops.push(over.clone());
+                let body = self.smooth(pass, body, (&inner, growing), depth + 1);
+                Some(Against::Members(vec![(body, vec![over])]))
+            }
+            Node::Unary(Unary::Sqrt, sum) if is_root => {
+                Some(Against::Root(self.smooth(pass, sum, (site, true), depth + 1)))
+            }
+            Node::Binary(Binary::Hypot, a, b) if is_root => {
+                let [a, b] = [a, b].map(|x| self.problem.dag.powi(x, 2));
+                Some(Against::Root(self.problem.dag.add(a, b)))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a helper can be made for each member of the loops at a place.
+    fn has_helper(&self, site: &Site) -> bool {
+        own_loops(site).iter().all(|over| match (over.first.as_number(), over.last.as_number()) {
+            (Some(first), Some(last)) => first <= last,
+            _ => false,
+        })
+    }
+
+    /// A number for each point and for each member of the loops at a place.
+    fn helper_leaf(&mut self, pass: &mut Corners, site: &Site, span: Span) -> Option<NodeId> {
+        let members = self.members_missed(&own_loops(site), span)?;
+        pass.helpers += 1;
+        let (name, doc) = (format!("corner({})", pass.helpers), format!("Stands for `{}`.", self.text(span)));
+        let count = members.family.as_ref().map(|(count, _)| *count);
+        let index = members.family.map(|(_, member)| member);
+        let unit = Unit::default();
+        let Some(at) = &site.along else {
+            let place = self.problem.variables.len();
+            let family = count.map(|count| self.new_index(Form::number(1), Form::number(count)));
+            let bounds = Bounds::default();
+            self.problem.variables.push(Variable { name, doc, unit, family, grid: None, bounds, span });
+            return Some(self.leaf(Leaf::Variable { variable: place, index }));
+        };
+        let order = match self.problem.phases[at.phase].collocation {
+            Collocation::Gauss { points, .. } => points,
+            Collocation::Uniform { .. } => 2,
+        };
+        let spline = self.slack_spline(at.phase, order);
+        let outputs = &mut self.problem.phases[at.phase].outputs;
+        let place = outputs.len();
+        let family = count.map(|count| (1, count));
+        outputs.push(Output { name, doc, unit, family, grid: None, vector: None, spline, span });
+        Some(self.leaf(Leaf::Flat { phase: at.clone(), at: At::Here, output: place, index, order: 0 }))
+    }
+
+    fn hold(&mut self, site: &Site, loops: Vec<Loop>, (body, bounds): (NodeId, Bounds), span: Span) {
+        self.origin(body, span);
+        let domain = site.along.as_ref().map_or(Domain::Mission, |at| Domain::Path(at.clone(), Part::WHOLE));
+        self.problem.constraints.push(Constraint {
+            name: None,
+            span,
+            block: Block::Corner,
+            unit: Unit::default(),
+            loops: site.loops.iter().cloned().chain(loops).collect(),
+            domain,
+            body,
+            bounds,
+        });
+    }
+}
+
+/// The loops at a place that do not say which phase it is.
+fn own_loops(site: &Site) -> Vec<Loop> {
+    let of_phase = |over: &&Loop| {
+        let forms = site.along.iter().flat_map(|at| [&at.agent, &at.index]).flatten();
+        forms.flat_map(|form| &form.terms).all(|(index, _)| *index != over.index)
+    };
+    site.loops.iter().filter(of_phase).cloned().collect()
+}

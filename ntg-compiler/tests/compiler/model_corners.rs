@@ -1,0 +1,73 @@
+//! Corners of the objective are not noted where helpers stand for them; derivatives that miss the jumps of what they are
+//! taken of are refused.
+
+use crate::model_support::findings;
+
+const BLOCK: &str = "duration T = 3; state x, v; collocation gauss(points = 3, intervals = 5); \
+    dynamics { der(x) == v; der(v) == u; } initial { x == 1; }";
+
+#[track_caller]
+fn said(rest: &str) -> Vec<String> {
+    let text = format!("problem P {{ {BLOCK} {rest} }}");
+    let found = findings(&text);
+    let heads = found.lines().filter_map(|line| {
+        let (code, message) = line.strip_prefix("error[").or_else(|| line.strip_prefix("note["))?.split_once("]: ")?;
+        Some(format!("{code}: {message}"))
+    });
+    heads.collect()
+}
+
+/// The first help.
+#[track_caller]
+fn help(text: &str) -> String {
+    let found = findings(text);
+    let help = found.lines().find_map(|line| line.trim().strip_prefix("= help: "));
+    help.unwrap_or_default().to_owned()
+}
+
+#[test]
+fn a_corner_that_is_gone_is_not_noted() {
+    const NOTE: &str = "N001: the gradient of `abs` may jump here";
+    assert_eq!(said("input u; minimize integral(abs(u));"), [""; 0]);
+    assert_eq!(said("input u; let f = abs(u); minimize integral(f) + max(final(x), 0);"), [""; 0]);
+    assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) <= 1; }"), [NOTE]);
+    assert_eq!(said("input u; let f = abs(u); minimize integral(f); trajectory { f <= 1; }"), [NOTE]);
+    assert_eq!(said("input u in -1 .. 1; maximize integral(abs(u));"), [NOTE]);
+}
+
+#[test]
+fn a_derivative_that_misses_jumps_is_refused() {
+    const LOST: &str = "E097: `u` may jump between intervals, and this derivative misses the jumps";
+    assert_eq!(said("input u; minimize integral(der(u)^2);"), [LOST]);
+    assert_eq!(said("input u; minimize integral(u^2); trajectory { der(u) in -1 .. 1; }"), [LOST]);
+    assert_eq!(said("input u; let f = 2 * u; minimize integral(u^2); trajectory { der(f) <= 1; }"), [LOST]);
+    assert_eq!(said("input u: continuous; minimize integral(der(u)^2);"), [""; 0]);
+    // At an end there is one side alone, and one interval has no knots inside.
+    assert_eq!(said("input u; minimize integral(u^2); final { der(u) == 0; }"), [""; 0]);
+    assert_eq!(said("input u: spline(order = 4, intervals = 1); minimize integral(der(u)^2);"), [""; 0]);
+    // The highest derivative of a state jumps, as it may.
+    assert_eq!(said("input u; minimize integral(u^2 + der(v)^2);"), [""; 0]);
+    assert_eq!(
+        said("input u; minimize integral(der(x, 2)^2);"),
+        ["E097: the derivative of `x` may jump between intervals, and this derivative misses the jumps"]
+    );
+}
+
+#[test]
+fn the_least_change_is_said() {
+    let help = |rest: &str| help(&format!("problem P {{ {BLOCK} {rest} }}"));
+    assert_eq!(help("input u; minimize integral(der(u)^2);"), "declare it `input u: continuous`, which does not jump");
+    assert_eq!(
+        help("input u: spline(order = 4, intervals = 5, smoothness = 1); minimize integral(der(u, 2)^2);"),
+        "declare `u: spline(order = 4, smoothness = 2, ...)`, whose derivative of order 1 does not jump"
+    );
+}
+
+#[test]
+fn a_size_that_is_read_as_a_unit() {
+    let text = "problem P { const N = 3; duration T = 1; state y[N]; collocation gauss(points = 3, intervals = 5); \
+        minimize sum(i in 1 .. N, integral(y[i]^2)); dynamics { for i in 1 .. N { der(y[i]) == -y[i]; } } }";
+    let found = findings(text);
+    assert!(found.contains("error[E026]") && !found.contains("error[E044]"), "{found}");
+    assert_eq!(help(text), "`y[N]` is read as a quantity in N; as a size write `y[1 .. N]`");
+}

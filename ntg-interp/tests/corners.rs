@@ -1,0 +1,198 @@
+//! Corners of the objective for which helpers stand (docs/maths.md, section 18): known answers, the same by hand bit for
+//! bit, and what nobody is to see of a helper.
+
+use ntg_compiler::model::Loader;
+use ntg_compiler::source::Source;
+use ntg_interp::Interpreted;
+use ntg_runtime::prelude::*;
+
+struct NoFiles;
+
+impl Loader for NoFiles {
+    fn load(&self, path: &str) -> Result<String, String> {
+        Err(format!("{path} is not there"))
+    }
+}
+
+#[track_caller]
+fn compiled(text: &str) -> Interpreted {
+    let source = Source::new("test.ntg", text);
+    match ntg_compiler::compile(&source, &NoFiles) {
+        Ok(compiled) => Interpreted::new(&compiled.program),
+        Err(found) => panic!("{}", found.iter().map(|d| d.render(&source)).collect::<Vec<_>>().join("\n")),
+    }
+}
+
+#[track_caller]
+fn report(text: &str) -> Report {
+    solve(&compiled(text), &Settings::default()).expect("a problem that can be set up")
+}
+
+#[track_caller]
+fn reaches(text: &str, objective: f64, tolerance: f64) {
+    let report = report(text);
+    assert!(report.is_solved(), "{report}");
+    let missed = (report.objective - objective).abs();
+    assert!(missed <= tolerance, "{} instead of {objective}, {missed:e} off", report.objective);
+}
+
+/// From 1 to 0, from rest to rest, in a given time.
+const BLOCK: &str = "duration T = 3; state x, v; input u in -1 .. 1; dynamics { der(x) == v; der(v) == u; } \
+    initial { x == 1; v == 0; } final { x == 0; v == 0; }";
+
+/// Between full thrusts of `(3 - sqrt(5)) / 2` each nothing is burnt (M. Athans, P. Falb, *Optimal Control*, 1966); the
+/// breakpoints lie at the switches.
+#[test]
+fn the_least_fuel_of_a_double_integrator() {
+    let switch = (3.0 - 5.0_f64.sqrt()) / 6.0;
+    let knots = format!("knots = (0, {switch}, {}, 1)", 1.0 - switch);
+    reaches(
+        &format!("problem P {{ {BLOCK} collocation gauss(points = 3, {knots}); minimize integral(abs(u)); }}"),
+        3.0 - 5.0_f64.sqrt(),
+        1e-6,
+    );
+    reaches(
+        "problem P { duration T in 0.1 .. 20; state x, v; input u in -1 .. 1; \
+         collocation gauss(points = 3, intervals = 20); minimize T + integral(abs(u)); \
+         dynamics { der(x) == v; der(v) == u; } initial { x == 1; v == 0; } final { x == 0; v == 0; } \
+         guess { x = 1 - tau; } }",
+        12.0_f64.sqrt(),
+        1e-4,
+    );
+}
+
+/// Heat is worth less than comfort: the room is kept at its limit, against losses of 72 kWh.
+#[test]
+fn what_is_missed_by_more_than_0() {
+    reaches(
+        "problem P { domain t [h]; duration T = 24 [h]; state th [K]; input q in 0 .. 6 [kW]; \
+         collocation gauss(points = 2, intervals = 48); \
+         let out [K] = 5 [K] + 5 [K] * sin(2 * pi * (t - 9 [h]) / 24 [h]); \
+         minimize energy: integral(q) / 1 [kWh]; \
+         minimize discomfort: 2 * integral(max(0, 20 [K] - th)) / 1 [K*h]; \
+         dynamics { 3 [kWh/K] * der(th) == q - 0.2 [kW/K] * (th - out); } initial { th == 20 [K]; } \
+         final { th >= 20 [K]; } }",
+        72.0,
+        1e-6,
+    );
+}
+
+/// A landing in the plane, 40 intervals: 186.721 m/s by IPOPT with `sqrt(a^2 + 1e-8)` on this mesh.
+#[test]
+fn the_least_velocity_that_a_landing_takes() {
+    reaches(
+        "problem P { duration T = 100 [s]; state r[2] [m], v[2] [m/s]; input a[2] [m/s^2]; \
+         collocation gauss(points = 3, intervals = 40); minimize dv [m/s]: integral(norm(a)); \
+         dynamics { der(r) == v; der(v) == a + (0, -1.62) [m/s^2]; } \
+         initial { r == (-2000, 3000) [m]; v == (40, -20) [m/s]; } \
+         trajectory { norm(a) <= 4 [m/s^2]; r[2] >= 0; } final { r == 0; v == 0; } }",
+        186.721,
+        1e-3,
+    );
+}
+
+/// The sum of distances to numbers is least at their median.
+#[test]
+fn a_fit_by_least_absolute_deviations_is_the_median() {
+    let text = "problem P { duration T = 1; output x: spline(order = 2, intervals = 1); variable c; \
+        const data[5] = (1, 2, 3, 10, 50); minimize sum(i in 1 .. 5, abs(c - data[i])); initial { x == 0; } final { x == 0; } }";
+    let report = report(text);
+    assert!(report.is_solved(), "{report}");
+    let c = report.solution.variable("c").expect("a variable");
+    assert!((c - 3.0).abs() < 1e-5 && (report.objective - 57.0).abs() < 1e-6, "{c}, {}", report.objective);
+}
+
+const RACE: &str = "duration T = 1; state x, y; variable a in 0 .. 1; collocation gauss(points = 2, intervals = 2); \
+    dynamics { der(x) == a; der(y) == 1 - 3 * a; } initial { x == 0; y == 0; }";
+
+/// `a` and `1 - 3 a` are equal at a quarter.
+#[test]
+fn the_worst_of_several_ends() {
+    reaches(&format!("problem P {{ {RACE} minimize max(final(x), final(y)); }}"), 0.25, 1e-7);
+    reaches(&format!("problem P {{ {RACE} maximize min(final(x), final(y)); }}"), 0.25, 1e-7);
+    reaches(&format!("problem P {{ {RACE} minimize abs(final(x) - final(y)) + final(x); }}"), 0.25, 1e-7);
+}
+
+#[test]
+fn members_have_helpers_of_their_own() {
+    let two = "duration T = 3; state x[2], v[2]; input u[2] in -1 .. 1; collocation gauss(points = 3, intervals = 20); \
+        dynamics { der(x) == v; der(v) == u; } initial { x == (1, 0.5); v == 0; } final { x == 0; v == 0; }";
+    let one = |x: f64| {
+        let text = format!(
+            "problem P {{ {BLOCK} collocation gauss(points = 3, intervals = 20); minimize integral(abs(u)); }}"
+        );
+        report(&text.replace("x == 1", &format!("x == {x}"))).objective
+    };
+    let sum = one(1.0) + one(0.5);
+    reaches(&format!("problem P {{ {two} minimize sum(i in 1 .. 2, integral(abs(u[i]))); }}"), sum, 1e-6);
+    reaches(&format!("problem P {{ {two} minimize integral(sum(i in 1 .. 2, abs(u[i]))); }}"), sum, 1e-6);
+}
+
+/// What the manual says that it becomes, written out: the same solution, bit for bit.
+#[test]
+fn by_hand_it_is_the_same() {
+    // Limits of a declaration come behind all blocks: as a block they come before, as before the rows of a helper.
+    let block = BLOCK.replace("input u in -1 .. 1;", "input u; trajectory { u in -1 .. 1; }");
+    let common = format!("{block} collocation gauss(points = 3, intervals = 12, inequalities = points);");
+    let short = report(&format!("problem P {{ {common} minimize integral(abs(u)); }}"));
+    let long = report(&format!(
+        "problem P {{ {common} output s: spline(order = 3, intervals = 12, smoothness = 0); minimize integral(s); \
+         trajectory {{ s - u >= 0; s + u >= 0; }} }}"
+    ));
+    assert_eq!(short.objective.to_bits(), long.objective.to_bits());
+    assert_eq!(short.solution.coefficients(), long.solution.coefficients());
+}
+
+#[test]
+fn nobody_sees_a_helper() {
+    let text = format!(
+        "problem P {{ {BLOCK} collocation gauss(points = 3, intervals = 12); \
+        minimize fuel: integral(abs(u)) + abs(final(x)); }}"
+    );
+    let report = report(&text);
+    let names: Vec<String> = report.solution.trajectories().iter().map(|one| one.name().to_owned()).collect();
+    assert_eq!(names, ["x", "v", "u"]);
+    assert!(report.solution.variables().is_empty());
+    assert!(report.constraints.iter().all(|constraint| !constraint.place.text.contains("abs")), "{report}");
+    assert!(!report.to_string().contains("corner"), "{report}");
+    // Between the points the cost is that of what was written: more than the sum at the points has, and not it.
+    assert!((report.objective_fine - report.objective).abs() > 1e-6, "{report}");
+}
+
+/// Where a corner is pushed away from its tip, or its weight has no known sign, it stays, and a solve that comes to no end
+/// names it.
+#[test]
+fn other_corners_stay_and_are_named() {
+    let corners = |objective: &str| {
+        let text =
+            format!("problem P {{ {BLOCK} param w = 1; collocation gauss(points = 3, intervals = 12); {objective} }}");
+        let structure = compiled(&text).structure().clone();
+        structure.corners.iter().map(|place| place.text.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(corners("minimize w * integral(abs(u));"), Vec::<String>::new());
+    assert_eq!(corners("maximize integral(abs(u));"), ["abs(u)"]);
+    assert_eq!(corners("minimize integral(x * abs(u));"), ["abs(u)"]);
+    assert_eq!(corners("minimize integral(u^2); trajectory { abs(u) <= 2; }"), ["abs(u)"]);
+    assert_eq!(corners("minimize integral(abs(u)); trajectory { abs(u) <= 2; }"), ["abs(u)"]);
+    assert_eq!(corners("minimize integral((1 + x^2) * abs(u) + exp(-t) * max(x, v, 0));"), Vec::<String>::new());
+
+    let text = format!(
+        "problem P {{ {BLOCK} collocation gauss(points = 3, intervals = 60); \
+        minimize integral(u^2 + 5 * abs(u) * sin(7 * x)); }}"
+    );
+    let few = Settings { max_iterations: 3, ..Settings::default() };
+    let report = solve(&compiled(&text), &few).expect("a problem that can be set up");
+    assert!(!report.has_solution() && report.advice.contains("`abs(u)` (line 1)"), "{}", report.advice);
+}
+
+#[test]
+fn a_weight_below_0_is_refused() {
+    let text = format!(
+        "problem P {{ {BLOCK} param w = 1; collocation gauss(points = 3, intervals = 12); \
+        minimize w * integral(abs(u)); }}"
+    );
+    let mut problem = compiled(&text);
+    problem.assign("w", "-1").expect("a parameter");
+    let Err(error) = solve(&problem, &Settings::default()) else { panic!("it was solved") };
+    assert!(error.to_string().contains("w >= 0, the weight of a corner"), "{error}");
+}
