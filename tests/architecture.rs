@@ -145,7 +145,7 @@ fn no_floor_of_the_solver_knows_a_floor_above_it() {
         &["check", "scaling", "sizes"],
         &["kkt", "residuals"],
         &["outcome"],
-        &["remeasure", "sensitivity", "stopping"],
+        &["remeasure", "sensitivity", "squares", "stopping"],
         &["ipm", "sqp"],
         &["method"],
     ];

@@ -30,12 +30,12 @@ pub(crate) fn run(arguments: &arguments::Check) -> Exit {
     let specs = match files::specs(&arguments.specs) {
         Ok(specs) => specs,
         Err(message) => {
-            eprintln!("error: {message}");
+            tell!("error: {message}");
             return Exit::Bad;
         }
     };
     if let Some(wrong) = arguments.set.iter().find(|set| !set.contains('=')) {
-        eprintln!("error: --set {wrong}: write NAME=VALUE, such as `n=50`");
+        tell!("error: --set {wrong}: write NAME=VALUE, such as `n=50`");
         return Exit::Bad;
     }
     let checked: Vec<Checked> = specs.iter().map(|spec| check(files::read(spec), &arguments.set)).collect();
@@ -87,7 +87,7 @@ fn check(read: Result<(Source, BesideSpec), Failure>, set: &[String]) -> Checked
 
 fn text(checked: &Checked) {
     if let Some(message) = &checked.unread {
-        eprintln!("error: {message}");
+        tell!("error: {message}");
         return;
     }
     if let Some((source, found)) = &checked.found {
@@ -102,7 +102,7 @@ fn text(checked: &Checked) {
             let codes = checked.found.iter().flat_map(|(_, found)| found).find(|f| f.severity == Severity::Error);
             let words = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
             let more = codes.map_or(String::new(), |f| format!("; `ntg explain {}` says more", f.code));
-            eprintln!("{}: {words}{more}", checked.name);
+            tell!("{}: {words}{more}", checked.name);
         }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) fn run(arguments: &arguments::Expand) -> Exit {
         return Exit::Bad;
     };
     if let Some(other) = set.parameters.first() {
-        eprintln!("error: --set {other}: only constants change what a spec becomes");
+        tell!("error: --set {other}: only constants change what a spec becomes");
         return Exit::Bad;
     }
     let program = &compiled.program;
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &arguments::Expand) -> Exit {
             Exit::Done
         }
         Err(message) => {
-            eprintln!("error: {message}");
+            tell!("error: {message}");
             Exit::Bad
         }
     }

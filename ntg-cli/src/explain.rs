@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &arguments::Explain) -> Exit {
             Exit::Done
         }
         None => {
-            eprintln!("error: there is no code `{wanted}`; `ntg explain` lists all of them");
+            tell!("error: there is no code `{wanted}`; `ntg explain` lists all of them");
             Exit::Bad
         }
     }

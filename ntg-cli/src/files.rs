@@ -38,7 +38,7 @@ impl Failure {
     /// Says it on standard error.
     pub(crate) fn show(&self) {
         match self {
-            Self::Unread { message, .. } => eprintln!("error: {message}"),
+            Self::Unread { message, .. } => tell!("error: {message}"),
             Self::NotText(source, finding) => show(source, std::iter::once(&**finding)),
         }
     }

@@ -12,7 +12,7 @@ pub(crate) fn run(arguments: &arguments::Fmt) -> Exit {
     let specs = match files::specs(&arguments.specs) {
         Ok(specs) => specs,
         Err(message) => {
-            eprintln!("error: {message}");
+            tell!("error: {message}");
             return Exit::Bad;
         }
     };
@@ -41,7 +41,7 @@ fn format(path: &Path, only_check: bool) -> Result<bool, ()> {
     if files::is_standard_input(path) {
         files::print_raw(&formatted);
     } else if !is_same {
-        replace(path, &formatted).map_err(|message| eprintln!("error: {message}"))?;
+        replace(path, &formatted).map_err(|message| tell!("error: {message}"))?;
         files::print(&format!("{}: formatted", path.display()));
     }
     Ok(true)

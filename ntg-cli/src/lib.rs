@@ -1,7 +1,11 @@
 //! The `ntg` command: one file a verb, no mathematics. A library, so that other programs may offer the same command.
 //!
 //! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, 3 a solution
-//! that is less than what was asked for (acceptable, or not as exact as `--refine` asks), 130 stopped by Ctrl-C.
+//! that is less than what was asked for (acceptable, not as exact as `--refine` asks, or none between the points), 130
+//! stopped by Ctrl-C.
+
+#[macro_use]
+mod tell;
 
 mod arguments;
 mod certify;
@@ -100,7 +104,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
 fn said(ended: Result<Exit, String>) -> Exit {
     ended.unwrap_or_else(|message| {
         if !message.is_empty() {
-            eprintln!("error: {message}");
+            tell!("error: {message}");
         }
         Exit::Bad
     })

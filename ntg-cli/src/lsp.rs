@@ -6,7 +6,7 @@ pub(crate) fn run() -> Exit {
     match ntg_lsp::run() {
         Ok(()) => Exit::Done,
         Err(error) => {
-            eprintln!("error: {error}");
+            tell!("error: {error}");
             Exit::Bad
         }
     }

@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &arguments::New) -> Exit {
             Exit::Done
         }
         Err(message) => {
-            eprintln!("error: {message}");
+            tell!("error: {message}");
             Exit::Bad
         }
     }

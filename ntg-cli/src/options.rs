@@ -8,7 +8,7 @@ use ntg_runtime::report::Report;
 use ntg_runtime::settings::InvalidSetting;
 
 /// Settings and their options.
-const OPTIONS: [(&str, &str); 8] = [
+const OPTIONS: [(&str, &str); 9] = [
     ("max_iterations", "--max-iterations"),
     ("time_limit", "--time-limit"),
     ("tolerance", "--tolerance"),
@@ -17,6 +17,7 @@ const OPTIONS: [(&str, &str); 8] = [
     ("between", "--between refine"),
     ("between_tolerance", "--between-tolerance"),
     ("method", "--method"),
+    ("starts", "--starts"),
 ];
 
 /// The text with options in the place of settings.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use ntg_report::{Run, html};
+use ntg_runtime::report::Resolution;
 
 use crate::runs::{self, Inputs};
 use crate::{Exit, write};
@@ -42,7 +43,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     let page = html::page(&runs, &html::Page { tracks: arguments.xy.clone(), all: arguments.all })?;
     write::whole(&arguments.output, arguments.force, page.as_bytes())?;
     let all = |is: fn(&Run) -> bool| loaded.iter().all(|(_, run)| is(run));
-    Ok(match (all(Run::is_solved), all(Run::has_solution)) {
+    let is_solved: fn(&Run) -> bool = |run| run.is_solved() && html::resolution(run) < Resolution::Unresolved;
+    Ok(match (all(is_solved), all(Run::has_solution)) {
         (true, _) => Exit::Done,
         (_, true) => Exit::Acceptable,
         _ => Exit::NotSolved,

@@ -121,7 +121,7 @@ impl Spec<'_> {
         };
         if found.minima.len() > SHOWN {
             let path = self.path.display();
-            eprintln!("note: {path}: {} local minima; the best {SHOWN} are shown", found.minima.len());
+            tell!("note: {path}: {} local minima; the best {SHOWN} are shown", found.minima.len());
         }
         let runs = std::iter::once(first).chain(others).enumerate();
         Ok(runs.map(|(index, run)| (name(index, &run), run)).collect())
@@ -134,9 +134,9 @@ impl Spec<'_> {
         iterations: &[Progress],
     ) -> Run {
         if report.status.is_acceptable() {
-            eprintln!("warning: {}: {}", self.path.display(), report.status);
+            tell!("warning: {}: {}", self.path.display(), report.status);
         } else if !report.is_solved() {
-            eprintln!("warning: {}: {}; what follows is the last point", self.path.display(), report.status);
+            tell!("warning: {}: {}; what follows is the last point", self.path.display(), report.status);
         }
         let explanation = explained(report, &self.problem, &Settings::default(), interrupt);
         let (problem, explanation, source, notes) =

@@ -16,7 +16,7 @@ use ntg_runtime::guess::Guess;
 use ntg_runtime::multistart::MultiReport;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::refine::{Refined, Refinement};
-use ntg_runtime::report::Report;
+use ntg_runtime::report::{Report, Resolution};
 use ntg_runtime::sensitivity::{Sensitivity, SensitivityError};
 use ntg_runtime::settings::{Between, InertiaCorrection, Method, Settings, Violations};
 use ntg_runtime::{Error, solve_from, status::Status};
@@ -121,7 +121,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     }
     arguments.sampled.write((problem, report), (every, samples), arguments.force)?;
     let proved = summary.as_ref().is_none_or(Summary::is_proved);
-    Ok(match proved && report.is_solved() && report.refined.as_ref().is_none_or(Refined::is_met) {
+    let is_met = report.refined.as_ref().is_none_or(Refined::is_met) && report.resolution() < Resolution::Unresolved;
+    Ok(match proved && report.is_solved() && is_met {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,
         false if report.has_solution() => Exit::Acceptable,

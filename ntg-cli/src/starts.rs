@@ -40,7 +40,7 @@ pub(crate) fn solve(
     let found = multistart_from(problem, guess, &starts, &settings);
     line.finish_and_clear();
     if let (true, Ok(found)) = (interrupt.is_pressed(), &found) {
-        eprintln!("stopped by Ctrl-C after {} of {count} starts", found.tried());
+        tell!("stopped by Ctrl-C after {} of {count} starts", found.tried());
     }
     Some(found)
 }

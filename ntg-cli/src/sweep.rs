@@ -118,7 +118,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
             Ok(finished(&results, &arguments.output))
         }
         Ended::Stopped(there) => {
-            eprintln!("stopped by Ctrl-C after {there} of {count} rows; the same command goes on from there");
+            tell!("stopped by Ctrl-C after {there} of {count} rows; the same command goes on from there");
             Ok(Exit::Interrupted)
         }
     }
@@ -134,7 +134,7 @@ fn put(problem: &mut Interpreted, places: &[Place], set: &[f64]) -> Result<(), S
 /// Says that a shard is solved; its journal is what `ntg merge` takes.
 fn shard_done(results: &Results, arguments: &Arguments, journal: &Path) -> Exit {
     let output = arguments.output.display();
-    eprintln!("{}: {} rows; when all shards are there: ntg merge {output}", journal.display(), results.rows.len());
+    tell!("{}: {} rows; when all shards are there: ntg merge {output}", journal.display(), results.rows.len());
     Exit::Done
 }
 
@@ -142,7 +142,7 @@ fn shard_done(results: &Results, arguments: &Arguments, journal: &Path) -> Exit 
 pub(crate) fn remove(journals: &[PathBuf]) {
     for journal in journals {
         if let Err(error) = std::fs::remove_file(journal) {
-            eprintln!("warning: the journal `{}` could not be removed: {error}", journal.display());
+            tell!("warning: the journal `{}` could not be removed: {error}", journal.display());
         }
     }
 }
@@ -153,9 +153,9 @@ pub(crate) fn finished(results: &Results, output: &Path) -> Exit {
     let solved = rows.iter().filter(|row| row.is_solved()).count();
     let acceptable = rows.iter().filter(|row| row.status == "acceptable").count();
     let also = if acceptable > 0 { format!(", {acceptable} acceptable") } else { String::new() };
-    eprintln!("{}: {} rows, {solved} solved{also}", output.display(), rows.len());
+    tell!("{}: {} rows, {solved} solved{also}", output.display(), rows.len());
     if let Some(row) = rows.iter().find(|row| !row.is_solved()) {
-        eprintln!("the first that is not: row {}, {}", row.row, row.status);
+        tell!("the first that is not: row {}, {}", row.row, row.status);
     }
     match rows.len() - solved {
         0 => Exit::Done,

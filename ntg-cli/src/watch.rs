@@ -84,7 +84,7 @@ impl Watch {
         self.line.finish_and_clear();
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner).clone();
         if let (true, Some(last)) = (cancelled && self.interrupt.is_pressed(), seen.last()) {
-            eprintln!("stopped by Ctrl-C after {}", words(last));
+            tell!("stopped by Ctrl-C after {}", words(last));
         }
         seen
     }

@@ -112,3 +112,42 @@ fn a_bad_fit_and_a_parameter_at_its_bound_are_told() {
     let text = said(&ntg(with(&good).path(), &["solve", "spec.ntg"]));
     assert!(text.starts_with("Fit: solved\n") && !text.contains("warning"), "{text}");
 }
+
+/// A speed that turns 159 times between few points, beside a controlled one.
+const SPIN: &str = "problem Spin {
+    duration T = 10;
+    state th, y;
+    input u;
+    collocation gauss(points = 3, intervals = 80);
+    minimize integral(u^2);
+    dynamics { der(th) == 100;  der(y) == 10 * sin(th) + u; }
+    initial { th == 0;  y == 0; }
+    final { y == 1; }
+}
+";
+
+#[test]
+fn a_solution_of_the_points_alone_is_less_than_was_asked_for() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("spin.ntg");
+    fs::write(&path, SPIN).expect("a spec");
+    let run = |words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ntg"));
+        command.arg(words[0]).arg(&path).args(&words[1..]).output().expect("ntg runs")
+    };
+    let found = run(&["solve"]);
+    let said = String::from_utf8_lossy(&found.stdout);
+    assert_eq!(found.status.code(), Some(3), "{said}");
+    assert!(said.starts_with("Spin: solved at the points, and not between them\n  try: Use more points"), "{said}");
+    assert!(said.contains("(`--refine`, `--between refine`)") && said.contains("(`--starts`)"), "{said}");
+    let found = run(&["solve", "--format", "json"]);
+    let said: Value = serde_json::from_slice(&found.stdout).expect("JSON");
+    assert_eq!((found.status.code(), &said["resolution"]), (Some(3), &Value::from("unresolved")));
+    // Fine enough a mesh is what was asked for.
+    let found = run(&["solve", "--refine", "1e-4"]);
+    assert_eq!(found.status.code(), Some(0), "{}", String::from_utf8_lossy(&found.stdout));
+    let page = folder.path().join("spin.html");
+    let found = run(&["report", "-o", page.to_str().expect("a path")]);
+    assert_eq!(found.status.code(), Some(3));
+    assert!(fs::read_to_string(page).expect("a page").contains("solved at the points, and not between them"));
+}

@@ -116,6 +116,9 @@ pub struct Limits {
     pub row_lower: Vec<f64>,
     /// Upper bounds of the rows.
     pub row_upper: Vec<f64>,
+    /// The rows that are norms: roots of sums of squares, times or over smooth factors. Their squares are posed in their
+    /// place (docs/maths.md, section 11.14). Empty where there are none.
+    pub norms: Vec<bool>,
     /// A positive typical size of each row, from units and bounds; 1 where nothing is known.
     pub row_scale: Vec<f64>,
     /// How much the scaled violation of each row counts beside that of a row of weight 1; empty where all weigh alike.

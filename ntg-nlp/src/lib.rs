@@ -62,6 +62,7 @@ mod sizes;
 pub mod sparse;
 #[cfg(feature = "sqp")]
 pub mod sqp;
+mod squares;
 pub mod status;
 mod stopping;
 

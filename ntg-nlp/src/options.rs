@@ -38,9 +38,12 @@ pub type OnIteration = Arc<dyn Fn(&Progress) -> Control + Send + Sync>;
 /// Whether variables and rows are brought to comparable size (docs/maths.md, section 5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Scaling {
-    /// By the sizes that the program gives ([`crate::Limits`]) and the first derivatives at the start.
+    /// By the sizes that the program gives ([`crate::Limits`]) and the first derivatives at the start; inequalities also by
+    /// their bounds, where some are far steeper than these.
     #[default]
     Automatic,
+    /// As [`Self::Automatic`], all rows by their derivatives alone.
+    BySlopes,
     /// By the sizes of the variables alone.
     Off,
 }

@@ -395,7 +395,7 @@ mod tests {
             row_upper: vec![row_upper],
             ..Limits::default()
         };
-        let scales = Scales { variables: vec![1.0], rows: vec![1.0], objective: 1.0 };
+        let scales = Scales { variables: vec![1.0], rows: vec![1.0], objective: 1.0, by_bounds: false };
         let point = Point {
             x: &[0.0],
             rows: &[-1e-13],
@@ -427,7 +427,7 @@ mod tests {
             row_upper: vec![-none],
             ..Limits::default()
         };
-        let scales = Scales { variables: vec![1.0, 1.0], rows: vec![1.0], objective: 1.0 };
+        let scales = Scales { variables: vec![1.0, 1.0], rows: vec![1.0], objective: 1.0, by_bounds: false };
         let point = Point {
             x: &[0.0, 0.0],
             rows: &[0.0],

@@ -28,6 +28,17 @@ const CONSTANT: f64 = 1e-14;
 /// between itself and a bound is some ten sizes in the gallery, and a saturated function is 1e10 of them away.
 const REACH: f64 = 1e3;
 
+/// The steepest slope of a scaled inequality that is measured by its bound. Reference: WB's program, whose largest gradient
+/// of a scaled row is 100.
+const STEEPEST: f64 = 100.0;
+
+/// Where one size of a variable leads some inequality past its larger finite bound by more than this many times, and moves
+/// it by more than so many times what a slot of that size does, inequalities are measured by their bounds. A fit: minimum
+/// times of flat outputs with limits on second to fourth derivatives are above both; the specs of the gallery, whose
+/// limits are on outputs and first derivatives or are steep by themselves, are below one.
+const STEEP: f64 = 1e4;
+const AMPLIFIED: f64 = 500.0;
+
 /// Scaled variables, rows and objective are `x / variables`, `rows * c` and `objective * f`, entry by entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scales {
@@ -37,6 +48,8 @@ pub struct Scales {
     pub rows: Vec<f64>,
     /// The factor of the objective.
     pub objective: f64,
+    /// Whether inequalities are measured by their bounds where these are smaller than their slopes.
+    pub by_bounds: bool,
 }
 
 /// How steep a program is at a point, in scaled variables and the program's own rows and objective.
@@ -44,6 +57,10 @@ pub struct Scales {
 pub struct Slopes {
     /// The largest derivative of each row by a scaled variable.
     pub rows: Vec<f64>,
+    /// By how much more a variable of its size moves each row than a slot of that size would: a coefficient of a spline
+    /// moves derivatives by far more than a motion of the same size has, the finer the knots and the higher the
+    /// derivative, the more. Empty where nobody asks.
+    pub amplification: Vec<f64>,
     /// The total variation of the objective ([`variation`]).
     pub variation: f64,
 }
@@ -95,15 +112,21 @@ impl Scales {
         let variables = Self::sizes(limits);
         let weights = limits.row_weight.iter().copied().chain(std::iter::repeat(1.0));
         if scaling == Scaling::Off {
-            return Self { variables, rows: weights.take(limits.row_lower.len()).collect(), objective: 1.0 };
+            let rows = weights.take(limits.row_lower.len()).collect();
+            return Self { variables, rows, objective: 1.0, by_bounds: false };
         }
         let by_size = limits.row_scale.iter().map(|&size| 1.0 / positive(size));
         let is_slope = |slope: &f64| slope.is_finite() && *slope > f64::MIN_POSITIVE;
-        let by_slope = slopes.rows.iter().map(|slope| is_slope(slope).then(|| 1.0 / slope));
+        let by_bounds = scaling == Scaling::Automatic && slopes.are_amplified(limits);
+        let slopes_of_rows = slopes.rows.iter().enumerate().map(|(row, &slope)| match by_bounds {
+            true => within_bound(slope, (limits.row_lower[row], limits.row_upper[row])),
+            false => slope,
+        });
+        let by_slope = slopes_of_rows.map(|slope| is_slope(&slope).then(|| 1.0 / slope));
         let factors = by_size.zip(by_slope).map(|(size, slope)| slope.unwrap_or(size));
         let rows = factors.zip(weights).map(|(factor, weight)| factor * weight).collect();
         let objective = if is_slope(&slopes.variation) { VARIATION / slopes.variation } else { 1.0 };
-        Self { variables, rows, objective }
+        Self { variables, rows, objective, by_bounds }
     }
 }
 
@@ -116,7 +139,25 @@ impl Slopes {
                 rows[i] = rows[i].max((slope * size).abs());
             }
         }
-        Self { rows, variation: variation(nlp.blocks(), at, sizes) }
+        Self::of_rows(rows, nlp.blocks(), at, sizes)
+    }
+
+    /// The slopes of an evaluation, of which those of the rows are known.
+    pub(crate) fn of_rows(rows: Vec<f64>, blocks: &[Block], at: &Evaluation, sizes: &[f64]) -> Self {
+        let mut by_slots = vec![0.0; rows.len()];
+        add_slopes_by_slots(blocks, at, sizes, &mut by_slots);
+        let ratio = |(slope, by_slot): (&f64, f64)| if by_slot > 0.0 { slope / by_slot } else { 1.0 };
+        let amplification = rows.iter().zip(by_slots).map(ratio).collect();
+        Self { rows, amplification, variation: variation(blocks, at, sizes) }
+    }
+
+    /// Whether variables lead some inequality far past its bound only because they are coefficients.
+    fn are_amplified(&self, limits: &Limits) -> bool {
+        self.rows.iter().zip(&self.amplification).enumerate().any(|(row, (slope, amplification))| {
+            let bound = bound_of_inequality((limits.row_lower[row], limits.row_upper[row]));
+            let is_steep = bound.is_some_and(|bound| *slope > STEEP * bound);
+            is_steep && slope.is_finite() && amplification.is_finite() && *amplification > AMPLIFIED
+        })
     }
 
     /// The slopes that scale a program, from those at the start, whose values are given, and at a point beside it (none
@@ -159,6 +200,9 @@ impl Slopes {
                 *slope = if most > rounding { most } else { 0.0 };
             }
         }
+        for (own, beside) in self.amplification.iter_mut().zip(&beside.amplification) {
+            *own = own.max(*beside);
+        }
         if is_stationary(self.variation, beside.variation) {
             self.variation = beside.variation;
         } else if beside.variation.is_finite() {
@@ -200,23 +244,34 @@ impl Slopes {
 /// The factors of the rows by their slopes at a point and at one [`beside`] it, whichever are larger: a row may be flat
 /// at one point by chance. Weights do not count. A point without finite derivatives has no slopes.
 pub fn row_factors<N: Nlp>(nlp: &N, x: &[f64]) -> Vec<f64> {
+    let plain = Limits { row_weight: vec![], ..nlp.limits().clone() };
+    Scales::from_slopes(&plain, Scaling::BySlopes, &steepest_near(nlp, x)).rows
+}
+
+/// Whether [`Scaling::Automatic`] measures inequalities by their bounds from a start.
+pub fn is_by_bounds<N: Nlp>(nlp: &N, x: &[f64]) -> bool {
+    steepest_near(nlp, x).are_amplified(nlp.limits())
+}
+
+/// The largest slopes and amplification of each row at a point and at one [`beside`] it.
+fn steepest_near<N: Nlp>(nlp: &N, x: &[f64]) -> Slopes {
     let (limits, sizes) = (nlp.limits(), Scales::sizes(nlp.limits()));
     let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
     let (mut work, mut at) = nlp.workspace();
     let weights = vec![0.0; nlp.rows()];
     let mut near = x.to_vec();
     beside(x, limits, &sizes, &mut near);
-    let mut rows = vec![0.0_f64; nlp.rows()];
+    let mut largest = Slopes { rows: vec![0.0; nlp.rows()], amplification: vec![0.0; nlp.rows()], variation: 0.0 };
+    let raise = |all: &mut [f64], by: &[f64]| all.iter_mut().zip(by).for_each(|(most, own)| *most = most.max(*own));
     for point in [x, &near] {
         if nlp.derivatives(point, 1.0, &weights, &mut work, &mut at).is_ok() {
             assembly.first(nlp.blocks(), &at);
-            for (j, size) in sizes.iter().enumerate() {
-                assembly.jacobian.column(j).for_each(|(i, a)| rows[i] = rows[i].max((a * size).abs()));
-            }
+            let slopes = Slopes::of(nlp, &at, &assembly.jacobian, &sizes);
+            raise(&mut largest.rows, &slopes.rows);
+            raise(&mut largest.amplification, &slopes.amplification);
         }
     }
-    let plain = Limits { row_weight: vec![], ..limits.clone() };
-    Scales::from_slopes(&plain, Scaling::Automatic, &Slopes { rows, variation: 0.0 }).rows
+    largest
 }
 
 /// The steepest finite slope among the rows of each row's relation, which is the same function at other points.
@@ -239,9 +294,44 @@ pub(crate) fn steepest_of_relations(blocks: &[Block], limits: &Limits, slopes: &
     all
 }
 
+/// What measures a row of some slope: of an inequality that one size of a variable leads past its larger finite bound, that
+/// bound, unless the scaled slope is then steeper than [`STEEPEST`].
+fn within_bound(slope: f64, bounds: (f64, f64)) -> f64 {
+    bound_of_inequality(bounds).map_or(slope, |bound| slope.min(bound.max(slope / STEEPEST)))
+}
+
+/// The larger finite bound of an inequality; none of an equality, and where it is 0.
+fn bound_of_inequality((lower, upper): (f64, f64)) -> Option<f64> {
+    let finite = [lower, upper].into_iter().filter(|bound| bound.is_finite());
+    let bound = finite.fold(0.0_f64, |most, bound| most.max(bound.abs()));
+    (bound > 0.0 && lower < upper).then_some(bound)
+}
+
 /// A size that may divide.
 fn positive(size: f64) -> f64 {
     if size.is_finite() && size > 0.0 { size } else { 1.0 }
+}
+
+/// Adds to each row, by element, the largest derivative by a slot times the slot's size.
+fn add_slopes_by_slots(blocks: &[Block], at: &Evaluation, sizes: &[f64], rows: &mut [f64]) {
+    for (block, values) in blocks.iter().zip(&at.blocks) {
+        let mut largest = vec![0.0_f64; block.target.len()];
+        for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+            for e in 0..block.elements {
+                let lane = row * block.elements + e;
+                if block.target[lane] == Target::Objective {
+                    continue;
+                }
+                let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
+                largest[lane] = largest[lane].max(slope.abs() * slot_size(block, e, slot, sizes));
+            }
+        }
+        for (largest, target) in largest.iter().zip(&block.target) {
+            if let Some(row) = target.row() {
+                rows[row] += largest;
+            }
+        }
+    }
 }
 
 /// The total variation of the objective, (5.3): the sum over elements and slots of the size of the first derivative

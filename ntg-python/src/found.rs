@@ -93,6 +93,11 @@ impl Found {
     }
 
     #[getter]
+    fn resolution(&self) -> &'static str {
+        self.report.resolution().word()
+    }
+
+    #[getter]
     fn is_solved(&self) -> bool {
         self.report.is_solved()
     }

@@ -65,5 +65,5 @@ pub(crate) fn refined(problem: &dyn Problem, report: Report, settings: &Settings
         Some(wanted) => refine(problem, report, &wanted, settings)?,
         None => report,
     };
-    Ok(if settings.between == Between::Refuse { report.refused() } else { report })
+    Ok(if settings.between == Between::Refuse { report.refused() } else { report.advised() })
 }

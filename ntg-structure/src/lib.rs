@@ -78,6 +78,9 @@ pub struct Structure {
     pub measurements: Vec<Measurement>,
     /// Constraints as the user wrote them, for reports.
     pub constraints: Vec<Constraint>,
+    /// The constraints, by number, that bound the norm of a vector, times or over smooth factors: a solver poses their
+    /// squares (docs/maths.md, section 11.14).
+    pub norms: Vec<usize>,
     /// Integrals that enter a function nonlinearly: each is a variable with a defining row.
     pub integrals: Vec<Integral>,
     /// Named expressions.

@@ -16,6 +16,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "problem": report.problem,
         "status": report.status.label(),
         "ending": report.ending(),
+        "resolution": report.resolution().word(),
         "advice": report.advice,
         "independent": { "name": independent.name, "unit": independent.unit.symbol },
         "objective": report.objective,

@@ -29,6 +29,7 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
         ("terms", quote! { Term }, entries(&structure.terms)),
         ("measurements", quote! { Measurement }, entries(&structure.measurements)),
         ("constraints", quote! { Constraint }, entries(&structure.constraints)),
+        ("norms", quote! { usize }, entries(&structure.norms)),
         ("integrals", quote! { Integral }, entries(&structure.integrals)),
         ("named", quote! { Named }, entries(&structure.named)),
         ("guesses", quote! { Guess }, entries(&structure.guesses)),

@@ -45,6 +45,7 @@ mod mention;
 mod mission;
 mod named;
 mod names;
+pub(crate) mod norms;
 mod objective;
 mod order;
 mod outputs;

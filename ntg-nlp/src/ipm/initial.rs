@@ -6,7 +6,7 @@ use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
 use super::inertia::Corrections;
 use super::mode::Mode;
-use super::slacks::Slacks;
+use super::slacks::{BoundSizes, Slacks};
 use super::stagnation::Stagnation;
 use super::state::{Analysis, State, Trial};
 use super::step::{LARGEST_PROXIMAL, Step};
@@ -24,7 +24,9 @@ use std::time::Instant;
 /// The first barrier parameter, relative to its unit. WB, section 4: 0.1. A fit to the gallery and to the fleets of
 /// `multi_vehicle_separated`: with a larger one the barrier leads away from the minimum that the guess means, with a
 /// smaller one the first steps hit the bounds.
-pub(super) const FIRST_BARRIER: f64 = 0.03;
+const FIRST_BARRIER: f64 = 0.03;
+/// That of a program whose inequalities are measured by their bounds. WB, section 4.
+const FIRST_BARRIER_BY_BOUNDS: f64 = 0.1;
 /// Where there are more inequalities than this, barrier parameters and first multipliers are smaller in proportion: more
 /// points of collocation must not weigh more beside an integral, whose weights become smaller. The number itself is a
 /// fit to the flights of `examples/robustness.rs`.
@@ -115,7 +117,7 @@ impl<'a, N: Nlp> State<'a, N> {
         self.slacks.update_distances(&self.values);
         match (from, from.multipliers(self.nlp)) {
             (_, Some(from)) => self.start_warm(from),
-            (Start::Cold, None) => self.start_without_multipliers(FIRST_BARRIER),
+            (Start::Cold, None) => self.start_without_multipliers(self.first_barrier()),
             (Start::Near | Start::Warm(_), None) => self.start_without_multipliers(self.near_barrier()),
         }
         self.evaluate()?;
@@ -129,13 +131,29 @@ impl<'a, N: Nlp> State<'a, N> {
     /// Slacks and multipliers of a point whose multipliers are not known. `barrier` is relative to its unit.
     fn start_without_multipliers(&mut self, barrier: f64) {
         self.mu = barrier * self.barrier_unit;
-        self.slacks.initialise(INSIDE * barrier / FIRST_BARRIER);
+        let first = self.first_barrier();
+        self.slacks.initialise(INSIDE * barrier / first, self.bound_sizes());
         let (mu, most) = (self.mu, self.barrier_unit); // WB, section 3.6: 1.
-        let is_near = barrier < FIRST_BARRIER;
+        let is_near = barrier < first;
+        let by_bounds = self.system.scales.by_bounds;
         for (z, s) in self.slacks.z.iter_mut().zip(&self.slacks.s) {
-            *z = if is_near { mu / s } else { most };
+            *z = match is_near {
+                true => mu / s,
+                false if by_bounds => most.max(mu / s),
+                false => most,
+            };
         }
         self.estimate_equality_multipliers();
+    }
+
+    /// The first barrier parameter of a guess, relative to its unit.
+    pub(super) fn first_barrier(&self) -> f64 {
+        if self.system.scales.by_bounds { FIRST_BARRIER_BY_BOUNDS } else { FIRST_BARRIER }
+    }
+
+    /// What first slacks are relative to.
+    pub(super) fn bound_sizes(&self) -> BoundSizes {
+        if self.system.scales.by_bounds { BoundSizes::Own } else { BoundSizes::AtLeastOne }
     }
 
     /// Starts a filter at the present point.

@@ -45,6 +45,7 @@ use crate::contract::Nlp;
 use crate::options::Options;
 use crate::outcome::{Outcome, Start};
 use crate::remeasure::{Measure, until_measured};
+use crate::squares::Squares;
 use crate::status::Status;
 use line_search::SearchOutcome;
 pub use state::Analysis;
@@ -70,6 +71,20 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Start<'_>, options: &Opt
 /// patterns have changed. After the first solve an unchanged program costs no analysis at all
 /// ([`Analysis::program_changed`]).
 pub fn solve_again<N: Nlp>(
+    analysis: &mut Analysis<N::Workspace>,
+    nlp: &N,
+    start: &[f64],
+    from: Start<'_>,
+    options: &Options,
+) -> Outcome {
+    match Squares::of(nlp, start) {
+        Some(posed) => posed.solve(start, from, |from| solve_posed(analysis, &posed, start, from, options)),
+        None => solve_posed(analysis, nlp, start, from, options),
+    }
+}
+
+/// As [`solve_again`]; norms are as they are.
+fn solve_posed<N: Nlp>(
     analysis: &mut Analysis<N::Workspace>,
     nlp: &N,
     start: &[f64],

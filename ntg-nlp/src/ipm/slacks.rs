@@ -14,6 +14,15 @@ const KAPPA_SIGMA: f64 = 1e10;
 /// Slacks whose product is taken before a logarithm: ten numbers above 1e-30 do not underflow.
 const FACTORS: usize = 8;
 
+/// What first slacks are relative to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BoundSizes {
+    /// The bound or the distance to it, whichever is larger; 1 for a bound of 0.
+    Own,
+    /// The bound, or 1 where that is larger. WB, section 3.6.
+    AtLeastOne,
+}
+
 /// One finite bound of a function.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inequality {
@@ -99,10 +108,14 @@ impl Slacks {
         Self::distances(&self.inequalities, values, &mut self.distance);
     }
 
-    /// First slacks: the distances where these are inside by `inside`, relative to the bound, else that much.
-    pub(super) fn initialise(&mut self, inside: f64) {
+    /// First slacks: the distances where these are inside by `inside`, relative to the size of the bound, else that much.
+    pub(super) fn initialise(&mut self, inside: f64, sizes: BoundSizes) {
         for ((s, of), d) in self.s.iter_mut().zip(&self.inequalities).zip(&self.distance) {
-            *s = d.max(inside * of.bound.abs().max(1.0));
+            let size = match sizes {
+                BoundSizes::Own if of.bound != 0.0 => of.bound.abs().max(d.abs()),
+                BoundSizes::Own | BoundSizes::AtLeastOne => of.bound.abs().max(1.0),
+            };
+            *s = d.max(inside * size);
         }
     }
 

@@ -1,7 +1,7 @@
 //! A start near a solution: multipliers are known, the barrier parameter begins low
 //! (docs/maths.md, section 11.8).
 
-use super::initial::FIRST_BARRIER;
+use super::slacks::BoundSizes;
 use super::state::State;
 use crate::contract::Nlp;
 use crate::outcome::Multipliers;
@@ -18,13 +18,13 @@ impl<N: Nlp> State<'_, N> {
     /// of the largest violation. After a Newton step residuals are of the order of their squares, so that a lower
     /// barrier parameter gains nothing; and a point whose violation is large is not near.
     pub(super) fn near_barrier(&self) -> f64 {
-        self.slacks.violation(&self.values).powi(2).clamp(LEAST_BARRIER, FIRST_BARRIER)
+        self.slacks.violation(&self.values).powi(2).clamp(LEAST_BARRIER, self.first_barrier())
     }
 
     /// Slacks and multipliers from the multipliers of a solution nearby.
     pub(super) fn start_warm(&mut self, from: Multipliers<'_>) {
         let w = self.system.scales.objective;
-        self.slacks.initialise(INSIDE);
+        self.slacks.initialise(INSIDE, BoundSizes::AtLeastOne);
         self.mu = self.near_barrier() * self.barrier_unit;
         let first = self.system.first_variable();
         let scales = &self.system.scales;

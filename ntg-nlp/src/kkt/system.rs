@@ -80,7 +80,7 @@ impl<W> System<W> {
         Self {
             patterns: nlp.blocks().iter().map(Pattern::of).collect(),
             elements,
-            scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0 },
+            scales: Scales { variables: sizes, rows: vec![1.0; m], objective: 1.0, by_bounds: false },
             matrix: vec![0.0; storage.len],
             convexification: vec![0.0; storage.len],
             factor: Factor::new(&storage),
@@ -124,7 +124,8 @@ impl<W> System<W> {
     fn refit<N: Nlp<Workspace = W>>(mut self, nlp: &N, is_unchanged: bool) -> Self {
         let sizes = Scales::sizes(nlp.limits());
         self.elements.refill(nlp.blocks(), &sizes);
-        self.scales = Scales { variables: sizes, rows: vec![1.0; self.weights.len()], objective: 1.0 };
+        self.scales =
+            Scales { variables: sizes, rows: vec![1.0; self.weights.len()], objective: 1.0, by_bounds: false };
         if !is_unchanged {
             (self.workspace, _) = nlp.workspace();
         }
@@ -196,7 +197,7 @@ impl<W> System<W> {
         rows.truncate(self.weights.len());
         let sizes = &self.scales.variables;
         let variation = variation(nlp.blocks(), &self.latest, sizes);
-        let slopes = Slopes { rows, variation }.at_solution(nlp, &self.latest, sizes);
+        let slopes = Slopes { rows, amplification: vec![], variation }.at_solution(nlp, &self.latest, sizes);
         let scales = Scales::from_slopes(limits, Scaling::Automatic, &slopes);
         let second = self.latest.blocks.iter_mut().flat_map(|block| &mut block.hessian);
         second.for_each(|entry| *entry *= scales.objective);
@@ -237,7 +238,7 @@ impl<W> System<W> {
             self.elements.border_slopes(&self.unknowns, &self.matrix, &mut rows);
         }
         rows.truncate(m);
-        Slopes { rows, variation: variation(nlp.blocks(), &self.latest, &self.scales.variables) }
+        Slopes::of_rows(rows, nlp.blocks(), &self.latest, &self.scales.variables)
     }
 
     /// Raises entries of `out`, one a function, to the largest slopes of the scaled functions at the latest point by a

@@ -149,7 +149,7 @@ impl<W> Sensitivity<W> {
     /// The gradient of the objective without that of the rows times these multipliers: the multiplier of every variable
     /// that its bounds hold.
     pub fn lagrangian(&mut self, row_multipliers: &[f64]) -> Vec<f64> {
-        let Scales { variables, rows, objective } = &self.system.scales;
+        let Scales { variables, rows, objective, .. } = &self.system.scales;
         let mut weights = vec![0.0; self.system.functions()];
         for ((to, y), factor) in weights.iter_mut().zip(row_multipliers).zip(rows) {
             *to = -y / factor;

@@ -164,7 +164,7 @@ impl<W> Sensitivity<W> {
     }
 
     pub(super) fn unscaled(&self, k: usize) -> Response {
-        let Scales { variables, rows, objective } = &self.system.scales;
+        let Scales { variables, rows, objective, .. } = &self.system.scales;
         let Work { x, y, .. } = &self.work;
         let bounds = y[self.system.first_variable()..].iter().zip(variables);
         Response {

@@ -26,8 +26,9 @@ mod subproblem;
 use crate::check::refusal;
 use crate::contract::Nlp;
 use crate::options::Options;
-use crate::outcome::{Multipliers, Outcome};
+use crate::outcome::{Multipliers, Outcome, Start};
 use crate::remeasure::{measure_at_end, until_measured};
+use crate::squares::Squares;
 use crate::status::Status;
 use run::Run;
 use std::time::Instant;
@@ -42,6 +43,17 @@ pub fn solve<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
 
 /// As [`solve`], with multipliers to start from, as after a small change of the program.
 pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
+    match Squares::of(nlp, start) {
+        Some(posed) => {
+            let from = from.map_or(Start::Cold, Start::Warm);
+            posed.solve(start, from, |from| solve_posed(&posed, start, from.multipliers(&posed), options))
+        }
+        None => solve_posed(nlp, start, from, options),
+    }
+}
+
+/// As [`solve_from`]; norms are as they are.
+fn solve_posed<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
     until_measured(nlp, options, |nlp, round, options| {
         let (start, from) = round.start.map_or((start, from), |start| (start, None));
         let outcome = solve_with_first_scales(nlp, start, from, options);

@@ -6,6 +6,7 @@ mod support;
 
 mod hs;
 mod laws;
+mod norms;
 mod saddles;
 mod sensitivity;
 

@@ -51,6 +51,7 @@ class Found:
     message: str
     advice: str
     is_solved: bool
+    resolution: str
     objective: float
     objective_fine: float
     objective_unit: str

@@ -134,6 +134,13 @@ class Solution:
         return self._core.is_solved
 
     @property
+    def resolution(self) -> str:
+        """Whether what holds at the points of the mesh holds between them: `fine`; `coarse`, where something is missed by
+        more than is worth a warning; `unresolved`, where an equation is missed by more than its largest term, a limit by
+        more than half, or more than half of the objective is not seen."""
+        return self._core.resolution
+
+    @property
     def message(self) -> str:
         """Why the solve ended, in words."""
         return self._core.message

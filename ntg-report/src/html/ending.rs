@@ -6,6 +6,7 @@ use maud::{Markup, html};
 use super::spec::{State, state};
 use super::tables::{number, place_words, prose, with_unit};
 use crate::run::{Constraint, Run};
+use ntg_runtime::report::{Missed, Resolution};
 
 /// Violation of a constraint between the points, and difference of the objective and its finer integral relative to the
 /// larger of both, that are worth a warning: `Settings::between_tolerance` without a word. A fit: the specs beside the
@@ -36,11 +37,22 @@ pub fn ending(run: &Run) -> String {
     if !run.has_solution() {
         return run.status.clone();
     }
-    let is_missed = |constraint: &Constraint| {
-        constraint.between.as_ref().is_some_and(|worst| worst.relative > OFF || worst.relative.is_nan())
+    let shown = if holds_between(run) { Resolution::Fine } else { Resolution::Coarse };
+    resolution(run).max(shown).ending(&run.status)
+}
+
+/// Whether a solution of the points is one of the problem: what the file says, or, where it is older, what it says of
+/// constraints and objective.
+pub fn resolution(run: &Run) -> Resolution {
+    if !run.has_solution() {
+        return Resolution::Fine;
+    }
+    let of_file = || {
+        let most = run.constraints.iter().filter_map(|constraint| Some(constraint.between.as_ref()?.relative));
+        let missed = most.map(Missed::Limit).chain([Missed::Objective(off(run).unwrap_or(0.0))]);
+        Resolution::of(missed, OFF)
     };
-    let missed = run.constraints.iter().any(is_missed) || !holds_between(run);
-    ntg_runtime::report::ending(&run.status, run.violation.between, missed)
+    Resolution::from_word(&run.resolution).unwrap_or_else(of_file)
 }
 
 /// How the solve ended. What is missed between the points is no good end.
@@ -123,7 +135,7 @@ mod tests {
         assert_eq!(ending(&little), "solved at the points");
         assert!(status(&little).into_string().contains("status warned"));
         let mut nowhere = solved(1.0, 1.0);
-        nowhere.violation.between = 1.4;
+        nowhere.resolution = Resolution::Unresolved.word().to_owned();
         assert_eq!(ending(&nowhere), "solved at the points, and not between them");
         assert!(status(&run).into_string().contains("status warned"));
         let words = cost(&run).into_string();

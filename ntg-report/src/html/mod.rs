@@ -11,7 +11,7 @@ mod spec;
 mod study;
 mod tables;
 
-pub use ending::ending;
+pub use ending::{ending, resolution};
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 

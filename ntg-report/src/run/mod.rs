@@ -40,6 +40,8 @@ pub struct Run {
     pub doc: String,
     /// `solved`, or why the solve ended.
     pub status: String,
+    /// Whether a solution of the points is one of the problem: `fine`, `coarse` or `unresolved`; empty in older files.
+    pub resolution: String,
     /// What everything is a function of; every time is in its unit.
     pub independent: Independent,
     /// What to try next; empty when solved.

@@ -65,6 +65,7 @@ impl Recording<'_> {
                 factor: independent.unit.factor,
             },
             status: report.status.label(),
+            resolution: report.resolution().word().to_owned(),
             advice: report.advice.clone(),
             warnings: report.warnings().into_iter().map(|warning| warning.message).collect(),
             objective: report.objective,

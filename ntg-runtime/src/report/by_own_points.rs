@@ -28,7 +28,7 @@ impl Report {
         let terms = Plan::new(&nlp, samples)?.evaluate(&nlp, (&inner.x, Wanted::Violated), |checked| {
             // Those of helpers come last, and have no report.
             let Some(own) = own.get_mut(checked.constraint) else { return };
-            let sizes = (|| all_sizes.of(&nlp, checked.constraint, checked.indices), own.unit.factor);
+            let sizes = (|| all_sizes.between(&nlp, checked.constraint, checked.indices), own.unit.factor);
             let value = (checked.value, checked.bounds, sizes);
             keep(&nlp, &inner.x, &mut own.between, value, (&checked.point, checked.indices));
         })?;

@@ -1,12 +1,13 @@
 //! Every constraint's largest violation, at the points and between them, and its multipliers.
 
-use super::fine::{Plan, Wanted};
+use super::ending::Missed;
+use super::fine::{Checked, Plan, Wanted};
+use super::sizes::Sizes;
 use super::{ConstraintReport, Worst, multipliers};
-use crate::transcribe::elements::GroupBatch;
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
 use crate::transcribe::{SetupError, Transcription, names};
-use ntg_nlp::{Evaluation, Outcome, Target};
+use ntg_nlp::{Evaluation, Outcome};
 use ntg_structure::{Block, Domain};
 use std::collections::BTreeMap;
 
@@ -25,8 +26,10 @@ pub(super) fn constraints(
             place: constraint.place.clone(),
             block: constraint.block,
             unit: constraint.unit.clone(),
+            is_equation: true,
             points: None,
             between: None,
+            mean_between: 0.0,
             multiplier: None,
             sensitivity: 0.0,
         })
@@ -36,13 +39,17 @@ pub(super) fn constraints(
         let RowKind::Constraint(constraint) = info.kind else { continue };
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
         let report = &mut reports[constraint];
-        let sizes = (|| all_sizes.of(nlp, constraint, &info.indices), report.unit.factor);
+        report.is_equation &= bounds.0 == bounds.1;
+        let sizes = (|| all_sizes.at_points(nlp, constraint, &info.indices), report.unit.factor);
         keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), (&info.point, &info.indices));
         multipliers::add(nlp, outcome, row, report);
     }
+    let mut means = Means::new(reports.len());
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
-        let sizes = (|| all_sizes.of(nlp, checked.constraint, checked.indices), report.unit.factor);
+        means.add(nlp, checked, || all_sizes.between(nlp, checked.constraint, checked.indices));
+        report.is_equation &= checked.bounds.0 == checked.bounds.1;
+        let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         keep(
             nlp,
             &outcome.x,
@@ -51,9 +58,60 @@ pub(super) fn constraints(
             (&checked.point, checked.indices),
         );
     })?;
+    means.write(nlp, &mut reports);
     let own = structure.constraints.iter().position(|constraint| constraint.block == Block::Corner);
     reports.truncate(own.unwrap_or(reports.len()));
     Ok((reports, all_sizes, terms))
+}
+
+/// The mean violation of equations between the points.
+struct Means {
+    /// At how many places each constraint was evaluated.
+    places: Vec<usize>,
+    /// The sum of gross violations, by constraint and the indices of its member.
+    sums: BTreeMap<(usize, Vec<i64>), f64>,
+}
+
+impl Means {
+    fn new(constraints: usize) -> Self {
+        Self { places: vec![0; constraints], sums: BTreeMap::new() }
+    }
+
+    fn add(&mut self, nlp: &Transcription, checked: &Checked<'_>, size: impl Fn() -> f64) {
+        let (lower, upper) = checked.bounds;
+        // A constraint at no time, or at one, has no mean.
+        let is_along = checked.point.phase.is_some() && is_path(nlp, checked.group);
+        if lower != upper || !is_along {
+            return;
+        }
+        self.places[checked.constraint] += 1;
+        let missed = (checked.value - lower).abs();
+        if missed == 0.0 {
+            return;
+        }
+        let relative = missed / scale(lower, upper, size());
+        if relative > Missed::GROSS || relative.is_nan() {
+            *self.sums.entry((checked.constraint, checked.indices.to_vec())).or_insert(0.0) += relative;
+        }
+    }
+
+    fn write(self, nlp: &Transcription, reports: &mut [ConstraintReport]) {
+        if self.sums.is_empty() {
+            return;
+        }
+        let mut members = vec![0_usize; reports.len()];
+        nlp.elements.relations.of_constraints().for_each(|(constraint, ..)| members[constraint] += 1);
+        for ((constraint, _), sum) in self.sums {
+            let mean = sum * members[constraint].max(1) as f64 / self.places[constraint].max(1) as f64;
+            let report = &mut reports[constraint];
+            report.mean_between = crate::math::max(report.mean_between, mean);
+        }
+    }
+}
+
+/// Whether a group stands along a phase.
+fn is_path(nlp: &Transcription, group: usize) -> bool {
+    matches!(nlp.model.structure.group(group).domain, Domain::Path { .. })
 }
 
 /// Replaces the worst place so far by this one, if this one is worse.
@@ -91,65 +149,6 @@ pub(super) fn have_zero_bounds(nlp: &Transcription) -> bool {
     let is_zero = |(lower, upper): (&f64, &f64)| bound_size((*lower, *upper)) == 0.0;
     limits.row_lower.iter().zip(&limits.row_upper).any(is_zero)
 }
-
-/// What violations of bounds of 0 are relative to, SI, by constraint and the indices of its member.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Sizes(BTreeMap<(usize, Vec<i64>), f64>);
-
-impl Sizes {
-    /// The largest term of each member of a trajectory constraint along the solution, equation (9.3a); where all terms are
-    /// 0, and elsewhere than along a trajectory, the largest slope of the member's rows. `at` holds first derivatives where
-    /// they are finite, and zeros elsewhere.
-    fn at(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation)) -> Self {
-        let relations = &nlp.elements.relations;
-        let (mut terms, mut slopes) = (vec![0.0_f64; relations.count()], vec![0.0_f64; relations.count()]);
-        let mut slots = vec![];
-        let of_paths =
-            |batch: &GroupBatch| matches!(nlp.model.structure.groups[batch.group].domain, Domain::Path { .. });
-        let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
-        for (_, (block, values)) in blocks.filter(|(batch, _)| of_paths(batch)) {
-            for e in 0..block.elements {
-                let variables = block.variables(e);
-                slots.clear();
-                slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
-                    let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
-                    let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
-                    value.abs().max(typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
-                }));
-                for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
-                    let lane = row * block.elements + e;
-                    let Target::Row(target) = block.target[lane] else { continue };
-                    let relation = relations.of_row[target as usize] as usize;
-                    let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
-                    let term = (slope * slots[slot]).abs();
-                    if term.is_finite() {
-                        terms[relation] = terms[relation].max(term);
-                    }
-                }
-            }
-        }
-        for (relation, factor) in relations.of_row.iter().zip(&outcome.row_factors) {
-            if factor.is_finite() && *factor > 0.0 {
-                slopes[*relation as usize] = slopes[*relation as usize].max(1.0 / factor);
-            }
-        }
-        let known = relations.of_constraints().filter_map(|(constraint, indices, relation)| {
-            let size = [terms[relation], slopes[relation]].into_iter().find(|size| *size > 0.0)?;
-            Some(((constraint, indices.to_vec()), size))
-        });
-        Self(known.collect())
-    }
-
-    /// The size of a member of a constraint; the constraint's unit where none is known.
-    pub(super) fn of(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> f64 {
-        let size = self.0.get(&(constraint, indices.to_vec())).copied();
-        size.unwrap_or(nlp.model.structure.constraints[constraint].unit.factor)
-    }
-}
-
-/// What is below this part of its typical size all along the solution is noise, and no size. A law: what the tolerance of
-/// 1e-8 leaves of it is then at most a thousandth.
-const SMALL: f64 = 1e-5;
 
 /// A bound that is smaller than this part of the size of its terms is what rounding left of 0: `sin(pi)` is 1.2e-16.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;

@@ -9,8 +9,11 @@ use ntg_structure::{Row, Structure, Term};
 const ZERO: f64 = 1e-9;
 
 /// The difference of an objective and its finer integral, relative to the larger of both; 0 where both are next to nothing
-/// or no numbers.
+/// or the objective is no number, 1 where only the finer integral is none.
 pub fn cost_apart(objective: f64, fine: f64) -> f64 {
+    if objective.is_finite() && !fine.is_finite() {
+        return 1.0;
+    }
     let size = objective.abs().max(fine.abs());
     let apart = (fine - objective).abs() / size;
     if size > ZERO && apart.is_finite() { apart } else { 0.0 }

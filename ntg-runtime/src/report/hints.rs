@@ -33,7 +33,9 @@ pub(super) fn of_estimate(nlp: &Transcription, x: &[f64], estimate: Option<&Esti
                 continue;
             }
             free += 1;
-            let near = |bound: &f64| (value - bound).abs() <= AT_BOUND * limits.scale[at].max(bound.abs());
+            let near = |bound: &f64| {
+                bound.is_finite() && (value - bound).abs() <= AT_BOUND * limits.scale[at].max(bound.abs())
+            };
             if let Some(bound) = [lower, upper].into_iter().find(near) {
                 let name = names::member(&declared.name, declared.family, index);
                 let bound = brief_in(bound, &declared.unit);

@@ -14,13 +14,14 @@ mod hints;
 mod means;
 mod multipliers;
 mod refined;
+mod sizes;
 pub(crate) mod status;
 mod traces;
 mod warnings;
 
 pub use crate::transcribe::rows::member_words;
 pub use cost::cost_apart;
-pub use ending::ending;
+pub use ending::{Missed, Resolution};
 pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
 pub use refined::{RefineStatus, Refined, Round};
 pub use traces::Trace;
@@ -96,7 +97,7 @@ pub struct Report {
     /// Whether the solution fails the second-order conditions ([`Outcome::is_saddle`]).
     pub(crate) is_saddle: bool,
     /// What violations of bounds of 0 are relative to.
-    pub(crate) sizes: constraints::Sizes,
+    pub(crate) sizes: sizes::Sizes,
     /// What is to be looked at beside constraints and residuals, in words, each with its place in the spec: durations without
     /// a lower bound that are as short as they may be, variables of an estimate at their bounds, outputs that ran off.
     pub(crate) told: Vec<(String, Place)>,
@@ -149,10 +150,15 @@ pub struct ConstraintReport {
     pub block: Block,
     /// The unit of values, bounds and violations.
     pub unit: Unit,
+    /// Whether all of its values are fixed: lower and upper bounds are equal.
+    pub is_equation: bool,
     /// Where it is violated most at the points; none where it has no row.
     pub points: Option<Worst>,
     /// Where it is violated most on the finer grid; none where it is not checked there.
     pub between: Option<Worst>,
+    /// By how much an equation is missed between the points in the mean over all times, relative to its size; only where
+    /// that is more than half it counts. Of several members the largest mean; 0 for a limit.
+    pub mean_between: f64,
     /// The largest multiplier by size; none where it has no row.
     pub multiplier: Option<Multiplier>,
     /// `dJ*/d(bound)` when the bound is moved everywhere at once, in units of the objective per
@@ -345,7 +351,7 @@ pub(crate) fn violations(
     let x = report.solution.coefficients();
     Plan::new(nlp, samples)?.evaluate(nlp, (x, Wanted::Violated), |checked| {
         let (lower, upper) = checked.bounds;
-        let size = report.sizes.of(nlp, checked.constraint, checked.indices);
+        let size = report.sizes.between(nlp, checked.constraint, checked.indices);
         let missed = ntg_nlp::residuals::violation(checked.value, lower, upper);
         let relative = missed / constraints::scale(lower, upper, size);
         if let Some(phase) = checked.point.phase.filter(|_| relative > 0.0) {

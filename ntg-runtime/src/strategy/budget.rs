@@ -1,7 +1,7 @@
 //! One budget of time and iterations for everything that a call does: coarse starts, steps of a continuation and all
 //! attempts (docs/maths.md, section 11.9).
 
-use crate::settings::{Method, Settings};
+use crate::settings::{Method, Scaling, Settings};
 use ntg_nlp::{Outcome, Status};
 use std::time::Instant;
 
@@ -59,7 +59,7 @@ impl<'a> Budget<'a> {
 
     /// Settings of an attempt after a failed one; none where nothing is left.
     pub(super) fn further(&self) -> Option<Settings> {
-        self.at_most(self.share(FURTHER))
+        self.at_most(self.share(FURTHER)).map(by_slopes)
     }
 
     /// Settings of an attempt that takes all that is left; none where nothing is.
@@ -82,6 +82,14 @@ impl<'a> Budget<'a> {
         let left = self.settings.max_iterations.saturating_sub(self.spent);
         let in_time = self.settings.time_limit.is_none_or(|limit| elapsed < limit);
         (left > 0 && in_time).then(|| Settings { max_iterations: left.min(iterations), ..self.settings.after(elapsed) })
+    }
+}
+
+/// Settings by slopes, where the user has not chosen the scales.
+fn by_slopes(settings: Settings) -> Settings {
+    match settings.scaling {
+        Scaling::Automatic => Settings { scaling: Scaling::BySlopes, ..settings },
+        Scaling::BySlopes | Scaling::Off => settings,
     }
 }
 

@@ -11,13 +11,14 @@ use super::budget::{Budget, QUADRATIC, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, solution};
 use crate::guess::{Guess, simulated, start};
-use crate::settings::{InertiaCorrection, Method, Settings, Violations};
+use crate::settings::{InertiaCorrection, Method, Scaling, Settings, Violations};
 use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::residuals::violation;
 use ntg_nlp::{Nlp, Outcome, Start, Status, method};
 
 /// All of them, in their order.
-const ATTEMPTS: [Attempt; 8] = [
+const ATTEMPTS: [Attempt; 9] = [
+    Attempt::BySlopes,
     Attempt::SizesAnew,
     Attempt::Beside,
     Attempt::Simulated,
@@ -31,6 +32,8 @@ const ATTEMPTS: [Attempt; 8] = [
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Attempt {
+    /// From the first point, where the attempts before have measured inequalities by their bounds, by slopes alone.
+    BySlopes,
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
     /// what it guesses.
     SizesAnew,
@@ -158,6 +161,12 @@ impl Session {
         // The attempt before may have had others.
         nlp.set_scales(x, &settings)?;
         let next = match attempt {
+            Attempt::BySlopes => {
+                if settings.scaling != Scaling::BySlopes || !ntg_nlp::scaling::is_by_bounds(nlp, x) {
+                    return Ok(None);
+                }
+                self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &settings)
+            }
             Attempt::Simulated => {
                 let Some(simulated) = simulated(nlp, x) else { return Ok(None) };
                 nlp.set_scales(&simulated, &settings)?;

@@ -71,6 +71,7 @@ impl Nlp for Transcription<'_> {
                     };
             }
             group.batch.derivatives(self.problem, kernels, tables, x, work, out);
+            self.tips(block, out);
         }
         self.identities(x, &mut out.blocks);
         self.finite_values(out)?;
@@ -89,6 +90,25 @@ impl Transcription<'_> {
                 *value = x[*variable as usize];
             }
             out.jacobian.fill(1.0);
+        }
+    }
+
+    /// Where a norm that is bounded is 0, its gradient is 0, one of its subgradients, and what its infinite curvature spoils
+    /// is 0: its square, which is solved for, has no slope there (docs/maths.md, section 11.14).
+    fn tips(&self, block: &Block, out: &mut BlockValues) {
+        if self.limits.norms.is_empty() {
+            return;
+        }
+        for (lane, target) in block.target.iter().enumerate() {
+            let is_norm = matches!(target, Target::Row(row) if self.limits.norms[*row as usize]);
+            if !is_norm || out.values[lane] != 0.0 {
+                continue;
+            }
+            let (function, element) = (lane / block.elements, lane % block.elements);
+            let own = block.jacobian.iter().enumerate().filter(|(_, (row, _))| *row == function);
+            own.for_each(|(entry, _)| out.jacobian[entry * block.elements + element] = 0.0);
+            let curvatures = out.hessian.iter_mut().skip(element).step_by(block.elements);
+            curvatures.filter(|entry| !entry.is_finite()).for_each(|entry| *entry = 0.0);
         }
     }
 

@@ -57,7 +57,7 @@ use linear::LinearSystem;
 use ntg_nlp::Limits;
 use ntg_splines::Table;
 use ntg_structure::{Degree, Place, Row, Structure, Unit};
-use rows::RowKind;
+use rows::{RowInfo, RowKind};
 use std::sync::Arc;
 use times::Clock;
 
@@ -127,7 +127,7 @@ impl<'p> Transcription<'p> {
         let bounds = rows::variable_bounds(&frame)?;
         let elements = elements::elements(&frame)?;
         let linear = contradictions::linear_system(&frame, &elements, &bounds)?;
-        let limits = limits(&elements, &bounds);
+        let limits = limits(&model.structure, &elements, &bounds);
         let mut transcription =
             Self { problem, model: Arc::new(model), elements, limits, has_named_size: vec![], linear };
         transcription.limits.alike = transcription.alike();
@@ -161,7 +161,7 @@ impl<'p> Transcription<'p> {
         self.elements.take_data(&frame)?;
         self.linear = contradictions::linear_system(&frame, &self.elements, &bounds)?;
         let alike = std::mem::take(&mut self.limits.alike);
-        self.limits = Limits { alike, ..limits(&self.elements, &bounds) };
+        self.limits = Limits { alike, ..limits(&self.model.structure, &self.elements, &bounds) };
         self.model = Arc::new(model);
         Ok(Change::Data)
     }
@@ -284,13 +284,14 @@ fn differs_in_data_only(a: &Structure, b: &Structure) -> bool {
     let sizes = |structure: &Structure| structure.parameters.iter().map(|p| p.value.len()).collect::<Vec<_>>();
     (&a.name, a.maximize, &a.variables, &a.agents, &a.phases)
         == (&b.name, b.maximize, &b.variables, &b.agents, &b.phases)
-        && (&a.kernels, &a.groups, &a.constraints) == (&b.kernels, &b.groups, &b.constraints)
+        && (&a.kernels, &a.groups, &a.constraints, &a.norms) == (&b.kernels, &b.groups, &b.constraints, &b.norms)
         && (&a.terms, &a.integrals) == (&b.terms, &b.integrals)
         && sizes(a) == sizes(b)
 }
 
 /// Bounds without sizes.
-fn limits(elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
+fn limits(structure: &Structure, elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
+    let is_norm = |row: &RowInfo| matches!(row.kind, RowKind::Constraint(c) if structure.norms.contains(&c));
     Limits {
         lower: bounds.iter().map(|b| b.0).collect(),
         upper: bounds.iter().map(|b| b.1).collect(),
@@ -299,6 +300,7 @@ fn limits(elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
         relation: elements.relations.of_row.clone(),
         row_lower: elements.lower.clone(),
         row_upper: elements.upper.clone(),
+        norms: if structure.norms.is_empty() { vec![] } else { elements.rows.iter().map(is_norm).collect() },
         row_scale: vec![1.0; elements.rows.len()],
         row_weight: vec![],
     }

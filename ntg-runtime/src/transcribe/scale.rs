@@ -31,7 +31,7 @@ impl Transcription<'_> {
     /// # Errors
     /// A name in `Settings::scales` that is nothing's.
     pub fn set_scales(&mut self, guess: &[f64], settings: &Settings) -> Result<(), SetupError> {
-        let automatic = settings.scaling == Scaling::Automatic;
+        let automatic = settings.scaling != Scaling::Off;
         let mut scale = vec![1.0; self.limits.lower.len()];
         if automatic {
             self.automatic(guess, &mut scale);

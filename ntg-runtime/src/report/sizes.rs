@@ -1,0 +1,130 @@
+//! What violations of bounds of 0 are relative to (docs/maths.md, equations 9.3a and 9.3b).
+
+use crate::transcribe::Transcription;
+use ntg_nlp::{Evaluation, Outcome, Target};
+use ntg_structure::{Domain, Slot};
+use std::collections::BTreeMap;
+
+/// What is below this part of its typical size all along the solution is noise, and no size. A law: what the tolerance of
+/// 1e-8 leaves of it is then at most a thousandth.
+const SMALL: f64 = 1e-5;
+/// A size between the points is at least this part of the size at the points. A choice: what varies by less, beside terms
+/// that cancel, is at rest, and what is missed of it is no motion that the points do not see.
+const LEAST_BETWEEN: f64 = 1e-4;
+
+/// The sizes of one member of a constraint, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Size {
+    at_points: f64,
+    between: f64,
+}
+
+/// What violations are relative to, SI, by constraint and the indices of its member.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Sizes(BTreeMap<(usize, Vec<i64>), Size>);
+
+/// The terms of one relation along the solution.
+#[derive(Clone, Debug, Default)]
+struct Terms {
+    /// The largest derivative by a slot times the size of the slot's value.
+    largest: f64,
+    /// The largest term of a derivative by time.
+    rate: f64,
+    /// The largest variation of a term in which a slot stands linearly.
+    variation: f64,
+    /// The steepest slope of a row by a variable of its size.
+    slope: f64,
+}
+
+impl Terms {
+    fn size(&self) -> Option<Size> {
+        let at_points = [self.largest, self.slope].into_iter().find(|size| *size > 0.0)?;
+        // Of a sine of a thousand turns the slope times the angle says nothing, nor an offset of a temperature.
+        let seen = self.rate.max(self.variation);
+        let between = if self.rate > 0.0 { seen.clamp(LEAST_BETWEEN * at_points, at_points) } else { at_points };
+        Some(Size { at_points, between })
+    }
+}
+
+impl Sizes {
+    /// The sizes of the members of all trajectory constraints along the solution; where all terms are 0, and elsewhere than
+    /// along a trajectory, the largest slope of the member's rows. `at` holds first derivatives where they are finite, and
+    /// zeros elsewhere.
+    pub(super) fn at(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation)) -> Self {
+        let relations = &nlp.elements.relations;
+        let mut terms = vec![Terms::default(); relations.count()];
+        let groups = &nlp.model.structure.groups;
+        let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
+        for (batch, (block, values)) in blocks {
+            let group = &groups[batch.group];
+            if !matches!(group.domain, Domain::Path { .. }) {
+                continue;
+            }
+            let is_rate = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Flat { derivative: 1.., .. }));
+            let is_linear = |slot: usize| block.hessian.iter().all(|(i, j)| *i != slot && *j != slot);
+            let kinds: Vec<(bool, bool)> = (0..block.slots).map(|slot| (is_rate(slot), is_linear(slot))).collect();
+            // Least and largest value of each term of each relation.
+            let mut ranges: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
+            let mut slots = vec![];
+            for e in 0..block.elements {
+                let variables = block.variables(e);
+                slots.clear();
+                slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
+                    let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
+                    let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
+                    (value, typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
+                }));
+                for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
+                    let lane = row * block.elements + e;
+                    let Target::Row(target) = block.target[lane] else { continue };
+                    let relation = relations.of_row[target as usize] as usize;
+                    let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
+                    let (value, least) = slots[slot];
+                    let term = (slope * value.abs().max(least)).abs();
+                    if !term.is_finite() {
+                        continue;
+                    }
+                    let own = &mut terms[relation];
+                    own.largest = own.largest.max(term);
+                    match kinds[slot] {
+                        (true, _) => own.rate = own.rate.max(term),
+                        (false, true) => {
+                            let value = slope * value;
+                            let range = ranges.entry((relation, entry)).or_insert((value, value));
+                            *range = (range.0.min(value), range.1.max(value));
+                        }
+                        (false, false) => {}
+                    }
+                }
+            }
+            for ((relation, _), (least, most)) in ranges {
+                terms[relation].variation = terms[relation].variation.max(most - least);
+            }
+        }
+        for (relation, factor) in relations.of_row.iter().zip(&outcome.row_factors) {
+            if factor.is_finite() && *factor > 0.0 {
+                let own = &mut terms[*relation as usize];
+                own.slope = own.slope.max(1.0 / factor);
+            }
+        }
+        let known = relations.of_constraints();
+        Self(
+            known.filter_map(|(c, indices, relation)| Some(((c, indices.to_vec()), terms[relation].size()?))).collect(),
+        )
+    }
+
+    /// The size of a member of a constraint at the points; the constraint's unit where none is known.
+    pub(super) fn at_points(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> f64 {
+        self.of(nlp, constraint, indices, |size| size.at_points)
+    }
+
+    /// The size between the points.
+    pub(super) fn between(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> f64 {
+        self.of(nlp, constraint, indices, |size| size.between)
+    }
+
+    fn of(&self, nlp: &Transcription, constraint: usize, indices: &[i64], which: impl Fn(&Size) -> f64) -> f64 {
+        let size = self.0.get(&(constraint, indices.to_vec())).map(which);
+        size.unwrap_or(nlp.model.structure.constraints[constraint].unit.factor)
+    }
+}
