@@ -144,7 +144,7 @@ fn a_solution_of_the_points_alone_is_less_than_was_asked_for() {
     let said: Value = serde_json::from_slice(&found.stdout).expect("JSON");
     assert_eq!((found.status.code(), &said["resolution"]), (Some(3), &Value::from("unresolved")));
     // Fine enough a mesh is what was asked for.
-    let found = run(&["solve", "--refine", "1e-4"]);
+    let found = run(&["solve", "--refine", "1e-2"]);
     assert_eq!(found.status.code(), Some(0), "{}", String::from_utf8_lossy(&found.stdout));
     let page = folder.path().join("spin.html");
     let found = run(&["report", "-o", page.to_str().expect("a path")]);

@@ -11,6 +11,9 @@ const SMALL: f64 = 1e-5;
 /// A size between the points is at least this part of the size at the points. A choice: what varies by less, beside terms
 /// that cancel, is at rest, and what is missed of it is no motion that the points do not see.
 const LEAST_BETWEEN: f64 = 1e-4;
+/// A rate counts as at least this part of what the typical size of its output is over the whole phase. A choice: where an
+/// output moves by less, as in a phase whose length is all but 0, nothing is missed.
+const LEAST_RATE: f64 = 1e-3;
 
 /// The sizes of one member of a constraint, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +33,8 @@ struct Terms {
     largest: f64,
     /// The largest term of a derivative by time.
     rate: f64,
+    /// What a rate is at least.
+    least: f64,
     /// The largest variation of a term in which a slot stands linearly.
     variation: f64,
     /// The steepest slope of a row by a variable of its size.
@@ -41,7 +46,11 @@ impl Terms {
         let at_points = [self.largest, self.slope].into_iter().find(|size| *size > 0.0)?;
         // Of a sine of a thousand turns the slope times the angle says nothing, nor an offset of a temperature.
         let seen = self.rate.max(self.variation);
-        let between = if self.rate > 0.0 { seen.clamp(LEAST_BETWEEN * at_points, at_points) } else { at_points };
+        let between = if self.rate > 0.0 {
+            seen.min(at_points).max(LEAST_BETWEEN * at_points).max(self.least)
+        } else {
+            at_points
+        };
         Some(Size { at_points, between })
     }
 }
@@ -72,22 +81,25 @@ impl Sizes {
                 slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
                     let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
                     let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
-                    (value, typical.map_or(0.0, |(j, _)| SMALL * nlp.limits.scale[*j as usize]))
+                    (value, typical.map_or(0.0, |(j, _)| nlp.limits.scale[*j as usize]))
                 }));
                 for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                     let lane = row * block.elements + e;
                     let Target::Row(target) = block.target[lane] else { continue };
                     let relation = relations.of_row[target as usize] as usize;
                     let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
-                    let (value, least) = slots[slot];
-                    let term = (slope * value.abs().max(least)).abs();
+                    let (value, typical) = slots[slot];
+                    let term = (slope * value.abs().max(SMALL * typical)).abs();
                     if !term.is_finite() {
                         continue;
                     }
                     let own = &mut terms[relation];
                     own.largest = own.largest.max(term);
                     match kinds[slot] {
-                        (true, _) => own.rate = own.rate.max(term),
+                        (true, _) => {
+                            own.rate = own.rate.max(term);
+                            own.least = own.least.max((slope * LEAST_RATE * typical).abs());
+                        }
                         (false, true) => {
                             let value = slope * value;
                             let range = ranges.entry((relation, entry)).or_insert((value, value));

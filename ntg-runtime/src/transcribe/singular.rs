@@ -39,7 +39,8 @@ impl fmt::Display for Singular {
     }
 }
 
-/// Every expression that is singular for these variables, in the order in which they are evaluated.
+/// Every expression that is singular for these variables, in the order in which they are evaluated, but for norms that are
+/// bounded: their squares are solved for (docs/maths.md, section 11.14).
 pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
     let mut found: Vec<Singular> = vec![];
     if this.model.structure.kernels.iter().all(|kernel| kernel.probes.is_empty()) {
@@ -53,6 +54,12 @@ pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
             |element: usize| names::point(&this.model.structure, &this.model.layout, &batch.sites[element].point, x);
         in_node(this, (&batch.node, &work.node), &point, &not_finite, &mut found);
     }
+    let structure = &this.model.structure;
+    let norms: Vec<&Place> = structure.norms.iter().map(|norm| &structure.constraints[*norm].place).collect();
+    let is_norm = |found: &Singular| {
+        norms.iter().any(|norm| norm.line == found.place.line && norm.text.contains(&found.place.text))
+    };
+    found.retain(|found| !is_norm(found));
     found
 }
 
