@@ -9,7 +9,7 @@ use ntg_certify::tube::{Ending, Tube};
 use ntg_certify::{Certificate, Guarantee, write as file};
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::Guess;
-use ntg_runtime::report::Report;
+use ntg_runtime::report::{Report, Resolution};
 use ntg_runtime::settings::Settings;
 use serde_json::{Value, json};
 
@@ -76,9 +76,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         .then(|| ntg_certify::tube(&found.certificate, &found.report.solution));
     match arguments.format {
         Format::Text => {
-            let mut text = format!("{}: {}\n{summary}", found.report.problem, found.report.status);
+            let status = found.report.status.to_string();
+            let words = status.strip_prefix(&found.report.status.label()).unwrap_or_default();
+            let mut text = format!("{}: {}{words}\n{summary}", found.report.problem, found.report.ending());
             if arguments.guarantee {
-                text.push_str(&words(&found));
+                text.push_str(&of_guarantee(&found));
             }
             text.extend(tube.as_ref().map(ToString::to_string));
             files::print_raw(&text);
@@ -86,6 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         Format::Json => {
             let mut document = document(&summary);
             document["status"] = json!(found.report.status.to_string());
+            document["resolution"] = json!(found.report.resolution().word());
             document["objective"] = json!(found.report.objective);
             if arguments.guarantee {
                 document["guarantee"] = cost(&found);
@@ -104,7 +107,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         }
         save(path, arguments.force, &found.certificate)?;
     }
-    Ok(match found.report.is_solved() && summary.is_proved() && is_followed {
+    let is_resolved = found.report.resolution() < Resolution::Unresolved;
+    Ok(match found.report.is_solved() && is_resolved && summary.is_proved() && is_followed {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,
         false => Exit::NotSolved,
@@ -163,7 +167,7 @@ pub(crate) fn mend<'p>(
 }
 
 /// What a guarantee did and cost, in words.
-pub(crate) fn words(found: &Guaranteed<'_>) -> String {
+pub(crate) fn of_guarantee(found: &Guaranteed<'_>) -> String {
     let rounds = found.rounds.len().saturating_sub(1);
     let more = format!("{rounds} more solve{}", if rounds == 1 { "" } else { "s" });
     let ending = match &found.ending {

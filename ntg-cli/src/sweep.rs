@@ -151,15 +151,15 @@ pub(crate) fn remove(journals: &[PathBuf]) {
 pub(crate) fn finished(results: &Results, output: &Path) -> Exit {
     let rows = &results.rows;
     let solved = rows.iter().filter(|row| row.is_solved()).count();
-    let acceptable = rows.iter().filter(|row| row.status == "acceptable").count();
-    let also = if acceptable > 0 { format!(", {acceptable} acceptable") } else { String::new() };
+    let less = rows.iter().filter(|row| row.is_less_than_solved()).count();
+    let also = if less > 0 { format!(", {less} acceptable or at the points alone") } else { String::new() };
     tell!("{}: {} rows, {solved} solved{also}", output.display(), rows.len());
     if let Some(row) = rows.iter().find(|row| !row.is_solved()) {
         tell!("the first that is not: row {}, {}", row.row, row.status);
     }
     match rows.len() - solved {
         0 => Exit::Done,
-        others if others == acceptable => Exit::Acceptable,
+        others if others == less => Exit::Acceptable,
         _ => Exit::NotSolved,
     }
 }

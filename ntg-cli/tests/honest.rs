@@ -116,11 +116,12 @@ fn a_bad_fit_and_a_parameter_at_its_bound_are_told() {
 /// A speed that turns 159 times between few points, beside a controlled one.
 const SPIN: &str = "problem Spin {
     duration T = 10;
+    param rate = 100;
     state th, y;
     input u;
     collocation gauss(points = 3, intervals = 80);
     minimize integral(u^2);
-    dynamics { der(th) == 100;  der(y) == 10 * sin(th) + u; }
+    dynamics { der(th) == rate;  der(y) == 10 * sin(th) + u; }
     initial { th == 0;  y == 0; }
     final { y == 1; }
 }
@@ -146,6 +147,16 @@ fn a_solution_of_the_points_alone_is_less_than_was_asked_for() {
     // Fine enough a mesh is what was asked for.
     let found = run(&["solve", "--refine", "1e-2"]);
     assert_eq!(found.status.code(), Some(0), "{}", String::from_utf8_lossy(&found.stdout));
+    // Neither does a table count it as solved, nor a certificate: that its equations hold to within 19 is proved.
+    let table = folder.path().join("spin.csv");
+    let path = |file: &Path| file.to_str().expect("a path").to_owned();
+    let found = run(&["sweep", "--set", "rate=100:101:2", "-o", &path(&table)]);
+    assert_eq!(found.status.code(), Some(3), "{}", String::from_utf8_lossy(&found.stderr));
+    let rows = fs::read_to_string(&table).expect("a table");
+    assert_eq!(rows.matches("solved at the points, and not between them").count(), 2, "{rows}");
+    let found = run(&["certify"]);
+    assert_eq!(found.status.code(), Some(1), "{}", String::from_utf8_lossy(&found.stdout));
+    assert!(String::from_utf8_lossy(&found.stdout).starts_with("Spin: solved at the points, and not between them"));
     let page = folder.path().join("spin.html");
     let found = run(&["report", "-o", page.to_str().expect("a path")]);
     assert_eq!(found.status.code(), Some(3));

@@ -271,7 +271,7 @@ impl<N: Nlp> Nlp for Squares<'_, N> {
             let block = &self.nlp.blocks()[pattern.block];
             let values = &mut out.blocks[pattern.block];
             let is_own = |norm: &&Norm| norm.block == pattern.block && norm.function == pattern.function;
-            while let Some(Norm { row, element, .. }) = norms.next_if(|norm| is_own(&norm)) {
+            while let Some(Norm { row, element, .. }) = norms.next_if(is_own) {
                 let lane = pattern.function * block.elements + element;
                 let (weight, value) = (block.weight[lane], values.values[lane]);
                 let factor = multipliers[*row] * 2.0 * square(weight).copysign(weight * value.signum());

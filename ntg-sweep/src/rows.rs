@@ -3,7 +3,7 @@
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use ntg_runtime::problem::Problem;
-use ntg_runtime::report::{ConstraintReport, Report};
+use ntg_runtime::report::{ConstraintReport, Report, Resolution};
 use ntg_runtime::settings::Settings;
 use ntg_runtime::solution::Solution;
 use ntg_runtime::status::Status;
@@ -84,7 +84,11 @@ impl<'a, P: Problem + Clone + Send> Rows<'a, P> {
         for wanted in self.wanted.iter().filter(|wanted| !names[..given].contains(&wanted.text)) {
             numbers.push(wanted.of(problem, report));
         }
-        let status = one_line(&report.status.label());
+        let status = match report.resolution() {
+            Resolution::Unresolved => report.ending(),
+            Resolution::Fine | Resolution::Coarse => report.status.label(),
+        };
+        let status = one_line(&status);
         Row { row, set: set.to_vec(), status, binding: binding(report), numbers }
     }
 }

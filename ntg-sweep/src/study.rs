@@ -1,5 +1,6 @@
 //! What is studied, and what one row of it gave.
 
+use ntg_runtime::report::Resolution;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -65,12 +66,20 @@ impl Row {
         Self { row, set: set.to_vec(), status: status.into(), ..Self::default() }
     }
 
+    /// Whether it has a solution that is less than a solved one: acceptable, or one of the points alone.
+    pub fn is_less_than_solved(&self) -> bool {
+        let alone = |status: &str| Resolution::Unresolved.ending(status);
+        [ACCEPTABLE.to_owned(), alone(SOLVED), alone(ACCEPTABLE)].contains(&self.status)
+    }
+
     /// Whether it was solved.
     pub fn is_solved(&self) -> bool {
         self.status == SOLVED
     }
 }
 
+/// The status of a row that was solved to 1e-6 only.
+const ACCEPTABLE: &str = "acceptable";
 /// The status of a row that was solved.
 pub const SOLVED: &str = "solved";
 

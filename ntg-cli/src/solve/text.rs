@@ -16,7 +16,7 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
     lines.push(led(solved));
     lines.extend(solved.explanation.map(ToString::to_string));
     lines.extend(
-        solved.proved.map(|(summary, found)| format!("\n{summary}{}", crate::certify::words(found).trim_end())),
+        solved.proved.map(|(summary, found)| format!("\n{summary}{}", crate::certify::of_guarantee(found).trim_end())),
     );
     lines.extend(solved.sensitivity.map(super::sensitivity::text));
     lines.push(String::new());
