@@ -1,7 +1,7 @@
 //! What violations of bounds of 0 are relative to (docs/maths.md, equations 9.3a and 9.3b).
 
 use crate::transcribe::Transcription;
-use ntg_nlp::{Evaluation, Outcome, Target};
+use ntg_nlp::{Block, Evaluation, Outcome, Target};
 use ntg_structure::{Domain, Slot};
 use std::collections::BTreeMap;
 
@@ -55,6 +55,43 @@ impl Terms {
     }
 }
 
+/// The least and largest value of each term of each relation of a block.
+struct Ranges {
+    /// The first relation of the block.
+    first: usize,
+    /// How many terms each has.
+    terms: usize,
+    /// By relation, from the first on, and term.
+    ranges: Vec<(f64, f64)>,
+}
+
+impl Ranges {
+    /// No values yet; `relations` are those of all rows.
+    fn of(block: &Block, relations: &[u32]) -> Self {
+        let own = || {
+            block.target.iter().filter_map(|target| match target {
+                Target::Row(row) => Some(relations[*row as usize] as usize),
+                Target::Objective => None,
+            })
+        };
+        let (first, terms) = (own().min().unwrap_or(0), block.jacobian.len());
+        let count = own().max().map_or(0, |last| last + 1 - first);
+        Self { first, terms, ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); count * terms] }
+    }
+
+    fn add(&mut self, (relation, term): (usize, usize), value: f64) {
+        let range = &mut self.ranges[(relation - self.first) * self.terms + term];
+        *range = (range.0.min(value), range.1.max(value));
+    }
+
+    /// Raises the variations of relations to those of these terms.
+    fn raise(&self, all: &mut [Terms]) {
+        for (own, ranges) in all[self.first..].iter_mut().zip(self.ranges.chunks_exact(self.terms.max(1))) {
+            own.variation = ranges.iter().fold(own.variation, |most, (low, high)| most.max(high - low));
+        }
+    }
+}
+
 impl Sizes {
     /// The sizes of the members of all trajectory constraints along the solution; where all terms are 0, and elsewhere than
     /// along a trajectory, the largest slope of the member's rows. `at` holds first derivatives where they are finite, and
@@ -72,8 +109,7 @@ impl Sizes {
             let is_rate = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Flat { derivative: 1.., .. }));
             let is_linear = |slot: usize| block.hessian.iter().all(|(i, j)| *i != slot && *j != slot);
             let kinds: Vec<(bool, bool)> = (0..block.slots).map(|slot| (is_rate(slot), is_linear(slot))).collect();
-            // Least and largest value of each term of each relation.
-            let mut ranges: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
+            let mut ranges = Ranges::of(block, &relations.of_row);
             let mut slots = vec![];
             for e in 0..block.elements {
                 let variables = block.variables(e);
@@ -101,17 +137,13 @@ impl Sizes {
                             own.least = own.least.max((slope * LEAST_RATE * typical).abs());
                         }
                         (false, true) => {
-                            let value = slope * value;
-                            let range = ranges.entry((relation, entry)).or_insert((value, value));
-                            *range = (range.0.min(value), range.1.max(value));
+                            ranges.add((relation, entry), slope * value);
                         }
                         (false, false) => {}
                     }
                 }
             }
-            for ((relation, _), (least, most)) in ranges {
-                terms[relation].variation = terms[relation].variation.max(most - least);
-            }
+            ranges.raise(&mut terms);
         }
         for (relation, factor) in relations.of_row.iter().zip(&outcome.row_factors) {
             if factor.is_finite() && *factor > 0.0 {
