@@ -57,9 +57,9 @@ pub struct Scales {
 pub struct Slopes {
     /// The largest derivative of each row by a scaled variable.
     pub rows: Vec<f64>,
-    /// By how much more a variable of its size moves each row than a slot of that size would: a coefficient of a spline
-    /// moves derivatives by far more than a motion of the same size has, the finer the knots and the higher the
-    /// derivative, the more. Empty where nobody asks.
+    /// By how much more a variable of its size moves the slot by which it moves each row most than the slot's own size: a
+    /// coefficient of a spline moves derivatives by far more than a motion of the same size has, the finer the knots and the
+    /// higher the derivative, the more. Empty where nobody asks.
     pub amplification: Vec<f64>,
     /// The total variation of the objective ([`variation`]).
     pub variation: f64,
@@ -139,25 +139,33 @@ impl Slopes {
                 rows[i] = rows[i].max((slope * size).abs());
             }
         }
-        Self::of_rows(rows, nlp.blocks(), at, sizes)
+        Self::of_rows(rows, nlp.limits(), nlp.blocks(), at, sizes)
     }
 
-    /// The slopes of an evaluation, of which those of the rows are known.
-    pub(crate) fn of_rows(rows: Vec<f64>, blocks: &[Block], at: &Evaluation, sizes: &[f64]) -> Self {
-        let mut by_slots = vec![0.0; rows.len()];
-        add_slopes_by_slots(blocks, at, sizes, &mut by_slots);
-        let ratio = |(slope, by_slot): (&f64, f64)| if by_slot > 0.0 { slope / by_slot } else { 1.0 };
-        let amplification = rows.iter().zip(by_slots).map(ratio).collect();
-        Self { rows, amplification, variation: variation(blocks, at, sizes) }
+    /// The slopes of an evaluation, of which those of the rows are known. Nobody asks for amplifications where no inequality
+    /// is steep.
+    pub(crate) fn of_rows(rows: Vec<f64>, limits: &Limits, blocks: &[Block], at: &Evaluation, sizes: &[f64]) -> Self {
+        let variation = variation(blocks, at, sizes);
+        let mut amplification = vec![];
+        if rows.iter().enumerate().any(|(row, slope)| is_steep(limits, row, *slope)) {
+            amplification = amplifications(blocks, at, sizes, rows.len());
+        }
+        Self { rows, amplification, variation }
     }
 
     /// Whether variables lead some inequality far past its bound only because they are coefficients.
     fn are_amplified(&self, limits: &Limits) -> bool {
         self.rows.iter().zip(&self.amplification).enumerate().any(|(row, (slope, amplification))| {
-            let bound = bound_of_inequality((limits.row_lower[row], limits.row_upper[row]));
-            let is_steep = bound.is_some_and(|bound| *slope > STEEP * bound);
-            is_steep && slope.is_finite() && amplification.is_finite() && *amplification > AMPLIFIED
+            is_steep(limits, row, *slope) && amplification.is_finite() && *amplification > AMPLIFIED
         })
+    }
+
+    /// Raises amplifications to those at another point.
+    fn raise_amplification(&mut self, by: &[f64]) {
+        match self.amplification.is_empty() {
+            true => self.amplification = by.to_vec(),
+            false => self.amplification.iter_mut().zip(by).for_each(|(most, own)| *most = most.max(*own)),
+        }
     }
 
     /// The slopes that scale a program, from those at the start, whose values are given, and at a point beside it (none
@@ -200,9 +208,7 @@ impl Slopes {
                 *slope = if most > rounding { most } else { 0.0 };
             }
         }
-        for (own, beside) in self.amplification.iter_mut().zip(&beside.amplification) {
-            *own = own.max(*beside);
-        }
+        self.raise_amplification(&beside.amplification);
         if is_stationary(self.variation, beside.variation) {
             self.variation = beside.variation;
         } else if beside.variation.is_finite() {
@@ -261,14 +267,13 @@ fn steepest_near<N: Nlp>(nlp: &N, x: &[f64]) -> Slopes {
     let weights = vec![0.0; nlp.rows()];
     let mut near = x.to_vec();
     beside(x, limits, &sizes, &mut near);
-    let mut largest = Slopes { rows: vec![0.0; nlp.rows()], amplification: vec![0.0; nlp.rows()], variation: 0.0 };
-    let raise = |all: &mut [f64], by: &[f64]| all.iter_mut().zip(by).for_each(|(most, own)| *most = most.max(*own));
+    let mut largest = Slopes { rows: vec![0.0; nlp.rows()], ..Slopes::default() };
     for point in [x, &near] {
         if nlp.derivatives(point, 1.0, &weights, &mut work, &mut at).is_ok() {
             assembly.first(nlp.blocks(), &at);
             let slopes = Slopes::of(nlp, &at, &assembly.jacobian, &sizes);
-            raise(&mut largest.rows, &slopes.rows);
-            raise(&mut largest.amplification, &slopes.amplification);
+            largest.rows.iter_mut().zip(&slopes.rows).for_each(|(most, own)| *most = most.max(*own));
+            largest.raise_amplification(&slopes.amplification);
         }
     }
     largest
@@ -300,6 +305,12 @@ fn within_bound(slope: f64, bounds: (f64, f64)) -> f64 {
     bound_of_inequality(bounds).map_or(slope, |bound| slope.min(bound.max(slope / STEEPEST)))
 }
 
+/// Whether one size of a variable leads an inequality far past its larger finite bound.
+fn is_steep(limits: &Limits, row: usize, slope: f64) -> bool {
+    let bound = bound_of_inequality((limits.row_lower[row], limits.row_upper[row]));
+    slope.is_finite() && bound.is_some_and(|bound| slope > STEEP * bound)
+}
+
 /// The larger finite bound of an inequality; none of an equality, and where it is 0.
 fn bound_of_inequality((lower, upper): (f64, f64)) -> Option<f64> {
     let finite = [lower, upper].into_iter().filter(|bound| bound.is_finite());
@@ -312,26 +323,32 @@ fn positive(size: f64) -> f64 {
     if size.is_finite() && size > 0.0 { size } else { 1.0 }
 }
 
-/// Adds to each row, by element, the largest derivative by a slot times the slot's size.
-fn add_slopes_by_slots(blocks: &[Block], at: &Evaluation, sizes: &[f64], rows: &mut [f64]) {
+/// The amplification of each row: that of the slot by which a variable of its size moves the row most. A slot is amplified by
+/// how much more a variable of its size moves it than its own size, the largest one of its variables.
+fn amplifications(blocks: &[Block], at: &Evaluation, sizes: &[f64], rows: usize) -> Vec<f64> {
+    let mut steepest = vec![(0.0_f64, 1.0_f64); rows];
     for (block, values) in blocks.iter().zip(&at.blocks) {
-        let mut largest = vec![0.0_f64; block.target.len()];
-        for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
-            for e in 0..block.elements {
+        for e in 0..block.elements {
+            let variables = block.variables(e);
+            let reach = |slot: usize| {
+                let coefficients = &block.map(e)[slot * variables.len()..][..variables.len()];
+                let moves = variables.iter().zip(coefficients).map(|(v, c)| (c * sizes[*v as usize]).abs());
+                moves.fold(0.0, f64::max)
+            };
+            let slots: Vec<(f64, f64)> =
+                (0..block.slots).map(|slot| (reach(slot), slot_size(block, e, slot, sizes))).collect();
+            for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 let lane = row * block.elements + e;
-                if block.target[lane] == Target::Objective {
-                    continue;
+                let Some(target) = block.target[lane].row() else { continue };
+                let (reach, size) = slots[slot];
+                let slope = (block.weight[lane] * values.jacobian[entry * block.elements + e] * reach).abs();
+                if slope > steepest[target].0 {
+                    steepest[target] = (slope, reach / size);
                 }
-                let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
-                largest[lane] = largest[lane].max(slope.abs() * slot_size(block, e, slot, sizes));
-            }
-        }
-        for (largest, target) in largest.iter().zip(&block.target) {
-            if let Some(row) = target.row() {
-                rows[row] += largest;
             }
         }
     }
+    steepest.into_iter().map(|(_, amplification)| amplification).collect()
 }
 
 /// The total variation of the objective, (5.3): the sum over elements and slots of the size of the first derivative

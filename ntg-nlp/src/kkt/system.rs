@@ -238,7 +238,7 @@ impl<W> System<W> {
             self.elements.border_slopes(&self.unknowns, &self.matrix, &mut rows);
         }
         rows.truncate(m);
-        Slopes::of_rows(rows, nlp.blocks(), &self.latest, &self.scales.variables)
+        Slopes::of_rows(rows, nlp.limits(), nlp.blocks(), &self.latest, &self.scales.variables)
     }
 
     /// Raises entries of `out`, one a function, to the largest slopes of the scaled functions at the latest point by a
