@@ -67,13 +67,34 @@ fn from_elsewhere_the_norm_itself_is_solved_for_and_ends_the_same() {
 
 #[test]
 fn multipliers_of_the_norm_start_the_square_warm() {
-    let program = disc((f64::NEG_INFINITY, 2.0), true);
-    let found = end(&program, &[0.0, 0.0], Method::InteriorPoint);
-    let Multipliers { rows, bounds } = found.multipliers();
+    // Two norms of one relation: (x, y) is at its bound, (v, w) at its tip, so that both are posed as squares.
+    let mut program = Program::dense(&[FREE; 4], &[(f64::NEG_INFINITY, 100.0); 2], |x, out: &mut Functions| {
+        out.set_value(0, -x[0] - 2.0 * x[1] + x[2].powi(2) + x[3].powi(2));
+        out.set_gradient(0, &[-1.0, -2.0, 2.0 * x[2], 2.0 * x[3]]);
+        out.hessian_mut(0)[10] = 2.0;
+        out.hessian_mut(0)[15] = 2.0;
+        for (row, i) in [(1, 0), (2, 2)] {
+            let (a, b, r) = (x[i], x[i + 1], x[i].hypot(x[i + 1]));
+            let inverse = if r > 0.0 { 1.0 / r } else { 0.0 };
+            let cube = inverse.powi(3);
+            out.set_value(row, r);
+            out.gradient_mut(row)[i..i + 2].copy_from_slice(&[a * inverse, b * inverse]);
+            let hessian = out.hessian_mut(row);
+            hessian[5 * i] = b * b * cube;
+            (hessian[5 * i + 1], hessian[5 * i + 4]) = (-a * b * cube, -a * b * cube);
+            hessian[5 * i + 5] = a * a * cube;
+        }
+    });
+    (program.limits.norms, program.limits.relation) = (vec![true; 2], vec![0; 2]);
+    program.limits.scale = vec![100.0; 4];
+    let radius = 100.0 / 5f64.sqrt();
+    let start = [radius, 2.0 * radius, 0.0, 0.0];
+    let (rows, bounds) = ([-(5f64.sqrt()), 0.0], [0.0; 4]);
     let options = Options { method: Method::InteriorPoint, ..Options::default() };
-    // The start is the tip's neighbour, so that the square is posed; its multipliers are those of the solution.
-    let again = method::solve_from(&program, &found.x, Start::Warm(Multipliers { rows, bounds }), &options);
-    assert!(again.status == Status::Solved && again.iterations <= found.iterations, "{} iterations", again.iterations);
+    let from = Start::Warm(Multipliers { rows: &rows, bounds: &bounds });
+    let warm = method::solve_from(&program, &start, from, &options);
+    assert!(warm.status == Status::Solved && warm.iterations <= 5, "{:?}, {}", warm.status, warm.iterations);
+    assert!((warm.row_multipliers[0] / rows[0] - 1.0).abs() < 1e-5, "{:?}", warm.row_multipliers);
 }
 
 #[test]

@@ -3,7 +3,14 @@
 //! Takes a report of a problem whose constraints are held at more points or with other bounds, and the problem itself;
 //! gives the report with violations between the points, and with costs on the finer grid, of the problem itself.
 
-use super::{ConstraintReport, Report, constraints::keep, cost, fine::Plan, fine::Wanted, user};
+use super::{
+    ConstraintReport, Report,
+    constraints::{Means, keep},
+    cost,
+    fine::Plan,
+    fine::Wanted,
+    user,
+};
 use crate::error::Error;
 use crate::problem::Problem;
 use crate::transcribe::Transcription;
@@ -24,14 +31,17 @@ impl Report {
         }
         let all_sizes = &self.sizes;
         let own: &mut Vec<ConstraintReport> = &mut self.constraints;
-        own.iter_mut().for_each(|own| own.between = None);
+        own.iter_mut().for_each(|own| (own.between, own.mean_between) = (None, 0.0));
+        let mut means = Means::new(nlp.model.structure.constraints.len());
         let terms = Plan::new(&nlp, samples)?.evaluate(&nlp, (&inner.x, Wanted::Violated), |checked| {
             // Those of helpers come last, and have no report.
             let Some(own) = own.get_mut(checked.constraint) else { return };
+            means.add(&nlp, checked, || all_sizes.between(&nlp, checked.constraint, checked.indices));
             let sizes = (|| all_sizes.between(&nlp, checked.constraint, checked.indices), own.unit.factor);
             let value = (checked.value, checked.bounds, sizes);
             keep(&nlp, &inner.x, &mut own.between, value, (&checked.point, checked.indices));
         })?;
+        means.write(&nlp, own);
         self.objective_fine = user(&nlp, terms.iter().sum());
         let declared = nlp.model.structure.terms.iter().zip(terms);
         for (own, (term, fine)) in self.terms.iter_mut().zip(declared) {

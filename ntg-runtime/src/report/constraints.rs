@@ -65,7 +65,7 @@ pub(super) fn constraints(
 }
 
 /// The mean violation of equations between the points.
-struct Means {
+pub(super) struct Means {
     /// At how many places each constraint was evaluated.
     places: Vec<usize>,
     /// The sum of gross violations, by constraint and the indices of its member.
@@ -73,11 +73,11 @@ struct Means {
 }
 
 impl Means {
-    fn new(constraints: usize) -> Self {
+    pub(super) fn new(constraints: usize) -> Self {
         Self { places: vec![0; constraints], sums: BTreeMap::new() }
     }
 
-    fn add(&mut self, nlp: &Transcription, checked: &Checked<'_>, size: impl Fn() -> f64) {
+    pub(super) fn add(&mut self, nlp: &Transcription, checked: &Checked<'_>, size: impl Fn() -> f64) {
         let (lower, upper) = checked.bounds;
         // A constraint at no time, or at one, has no mean.
         let is_along = checked.point.phase.is_some() && is_path(nlp, checked.group);
@@ -95,15 +95,16 @@ impl Means {
         }
     }
 
-    fn write(self, nlp: &Transcription, reports: &mut [ConstraintReport]) {
+    /// Writes the means into reports of the constraints, which may leave out the last ones.
+    pub(super) fn write(self, nlp: &Transcription, reports: &mut [ConstraintReport]) {
         if self.sums.is_empty() {
             return;
         }
-        let mut members = vec![0_usize; reports.len()];
+        let mut members = vec![0_usize; self.places.len()];
         nlp.elements.relations.of_constraints().for_each(|(constraint, ..)| members[constraint] += 1);
         for ((constraint, _), sum) in self.sums {
             let mean = sum * members[constraint].max(1) as f64 / self.places[constraint].max(1) as f64;
-            let report = &mut reports[constraint];
+            let Some(report) = reports.get_mut(constraint) else { continue };
             report.mean_between = crate::math::max(report.mean_between, mean);
         }
     }

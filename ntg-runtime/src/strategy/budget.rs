@@ -57,7 +57,7 @@ impl<'a> Budget<'a> {
         self.at_most(self.share(COARSE))
     }
 
-    /// Settings of an attempt after a failed one; none where nothing is left.
+    /// Settings of an attempt after a failed one, which measures rows by slopes alone; none where nothing is left.
     pub(super) fn further(&self) -> Option<Settings> {
         self.at_most(self.share(FURTHER)).map(by_slopes)
     }
