@@ -119,6 +119,9 @@ pub struct Limits {
     /// The rows that are norms: roots of sums of squares, times or over smooth factors. Their squares are posed in their
     /// place (docs/maths.md, section 11.14). Empty where there are none.
     pub norms: Vec<bool>,
+    /// Variables that objective and rows know by their sines and cosines alone, with the change that is a radian: a step
+    /// turns them by little (docs/maths.md, section 11.15).
+    pub angles: Vec<(u32, f64)>,
     /// A positive typical size of each row, from units and bounds; 1 where nothing is known.
     pub row_scale: Vec<f64>,
     /// How much the scaled violation of each row counts beside that of a row of weight 1; empty where all weigh alike.

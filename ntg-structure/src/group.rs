@@ -133,6 +133,19 @@ pub struct Measurement {
     pub sigma: Call,
 }
 
+/// An output that formulas know by the sines and cosines of its multiples alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angle {
+    /// Index into `Structure::phases`.
+    pub phase: usize,
+    /// Index into that phase's `outputs`.
+    pub output: usize,
+    /// The change of the output, SI, by which no argument of a sine changes by more than one.
+    pub radian: f64,
+    /// The change of the output, SI, that formulas do not see; none where there is none, or where its values are bounded.
+    pub turn: Option<f64>,
+}
+
 /// An integral that enters some function nonlinearly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Integral {

@@ -23,7 +23,7 @@ mod part;
 mod quantity;
 
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
-pub use group::{Block, Constraint, Domain, Group, Integral, Measurement, Named, Row, Term};
+pub use group::{Angle, Block, Constraint, Domain, Group, Integral, Measurement, Named, Row, Term};
 pub use guess::{Continuation, Guess, GuessKind, GuessScope};
 pub use index::{Affine, Family, Grid, Loop};
 pub use kernel::{Degree, Kernel};
@@ -81,6 +81,9 @@ pub struct Structure {
     /// The constraints, by number, that bound the norm of a vector, times or over smooth factors: a solver poses their
     /// squares (docs/maths.md, section 11.14).
     pub norms: Vec<usize>,
+    /// The outputs that formulas know by their sines and cosines alone: a solver turns them by little at once
+    /// (docs/maths.md, section 11.15).
+    pub angles: Vec<Angle>,
     /// Integrals that enter a function nonlinearly: each is a variable with a defining row.
     pub integrals: Vec<Integral>,
     /// Named expressions.

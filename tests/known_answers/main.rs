@@ -4,6 +4,7 @@
 //! shipped spec is generated code in one test at most; the others run it through the interpreter
 //! (`support::Shipped`), which agrees with it bit for bit (`tests/contract/`).
 
+mod angles;
 mod car;
 mod constructs;
 mod data;

@@ -12,10 +12,10 @@
 //! bit for bit.
 
 use ntg_structure::{
-    Affine, Agent, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family, Grid,
-    Group, Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement, Named, Output,
-    Parameter, Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline, Start,
-    Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
+    Affine, Agent, Angle, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family,
+    Grid, Group, Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement, Named,
+    Output, Parameter, Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline,
+    Start, Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -111,6 +111,7 @@ structs! {
     Integral { loops, place }
     Loop { first, last }
     Measurement { term, unit, loops, residual, sigma }
+    Angle { phase, output, radian, turn }
     Named { name, doc, unit, family, agent, loops, domain, call }
     Output { name, doc, unit, family, vector, spline }
     Parameter { name, doc, unit, array, value }

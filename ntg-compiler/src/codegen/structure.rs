@@ -30,6 +30,7 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
         ("measurements", quote! { Measurement }, entries(&structure.measurements)),
         ("constraints", quote! { Constraint }, entries(&structure.constraints)),
         ("norms", quote! { usize }, entries(&structure.norms)),
+        ("angles", quote! { Angle }, entries(&structure.angles)),
         ("integrals", quote! { Integral }, entries(&structure.integrals)),
         ("named", quote! { Named }, entries(&structure.named)),
         ("guesses", quote! { Guess }, entries(&structure.guesses)),

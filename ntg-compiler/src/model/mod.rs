@@ -6,6 +6,7 @@
 //! Afterwards: no names are left in expressions, every dimension is right, and everything is in SI units.
 
 mod acknowledged;
+pub(crate) mod angles;
 mod arguments;
 mod bare_angles;
 mod bodies;

@@ -7,6 +7,7 @@ use super::environment::{Environment, loops as positions};
 use super::kernel::{Mode, Root, call};
 use super::lower::Lowering;
 use crate::expr::NodeId;
+use crate::model::angles::angles;
 use crate::model::norms::norms;
 use crate::model::problem::{Bounds, Domain, Duration, GuessKind, GuessScope, Loop, Start};
 
@@ -30,6 +31,7 @@ pub(super) fn structure(lowering: &mut Lowering<'_>) -> Structure {
     structure.corners = lowering.problem.corners.iter().map(|span| lowering.place(*span)).collect();
     structure.constraints = constraints(lowering);
     structure.norms = norms(&lowering.problem);
+    structure.angles = angles(&lowering.problem);
     structure.variables = variables(lowering);
     structure.agents = agents(lowering);
     structure.phases = phases(lowering);

@@ -123,9 +123,9 @@ impl<N: Nlp> State<'_, N> {
         (self.fraction_to_boundary() / most).min(1.0)
     }
 
-    /// The longest step that keeps slacks positive.
+    /// The longest step that keeps slacks positive and turns angles by little.
     pub(super) fn longest_step(&self) -> f64 {
-        self.to_boundary(self.step.shrinkage.slack)
+        self.to_boundary(self.step.shrinkage.slack).min(self.to_turn())
     }
 
     /// The longest step that keeps the multipliers of inequalities positive.

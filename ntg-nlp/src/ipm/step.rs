@@ -138,6 +138,9 @@ impl<N: Nlp> State<'_, N> {
             relaxed.weights(&self.slacks, &mut self.step.inequality_sigma, &mut self.step.compliance);
         }
         self.step.accumulate_sigma(&self.slacks);
+        if self.mode.relaxed().is_none() {
+            self.accumulate_turning();
+        }
         for (c, equality) in self.step.equality_residual.iter_mut().zip(&self.slacks.equalities) {
             *c = self.values[equality.function] - equality.value;
         }

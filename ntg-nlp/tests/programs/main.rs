@@ -12,6 +12,7 @@ mod sensitivity;
 
 // Tests of both methods.
 #[cfg(feature = "sqp")]
+mod angles;
 mod degenerate;
 #[cfg(feature = "sqp")]
 mod elements;

@@ -18,6 +18,7 @@ mod fallback;
 mod session;
 mod simulated_start;
 mod solve;
+mod turns;
 
 pub(crate) use session::{Session, Task};
 pub use solve::Tracked;

@@ -89,6 +89,9 @@ impl Session {
                 failed => self.solve_with_fallback(&mut nlp, task, first_point, failed, !is_last, &mut budget)?,
             };
             outcome.iterations = budget.spent() - spent;
+            if is_last {
+                outcome = self.unwrap_turns(&mut nlp, outcome, settings);
+            }
             history.push(record(&nlp, step, &outcome, step_began));
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
                 let mut report = self.report(nlp, outcome, history, settings)?;

@@ -127,7 +127,8 @@ impl<'p> Transcription<'p> {
         let bounds = rows::variable_bounds(&frame)?;
         let elements = elements::elements(&frame)?;
         let linear = contradictions::linear_system(&frame, &elements, &bounds)?;
-        let limits = limits(&model.structure, &elements, &bounds);
+        let mut limits = limits(&model.structure, &elements, &bounds);
+        limits.angles = angles(&model.structure, &model.layout);
         let mut transcription =
             Self { problem, model: Arc::new(model), elements, limits, has_named_size: vec![], linear };
         transcription.limits.alike = transcription.alike();
@@ -160,8 +161,8 @@ impl<'p> Transcription<'p> {
         let bounds = rows::variable_bounds(&frame)?;
         self.elements.take_data(&frame)?;
         self.linear = contradictions::linear_system(&frame, &self.elements, &bounds)?;
-        let alike = std::mem::take(&mut self.limits.alike);
-        self.limits = Limits { alike, ..limits(&self.model.structure, &self.elements, &bounds) };
+        let Limits { alike, angles, .. } = std::mem::take(&mut self.limits);
+        self.limits = Limits { alike, angles, ..limits(&self.model.structure, &self.elements, &bounds) };
         self.model = Arc::new(model);
         Ok(Change::Data)
     }
@@ -284,9 +285,20 @@ fn differs_in_data_only(a: &Structure, b: &Structure) -> bool {
     let sizes = |structure: &Structure| structure.parameters.iter().map(|p| p.value.len()).collect::<Vec<_>>();
     (&a.name, a.maximize, &a.variables, &a.agents, &a.phases)
         == (&b.name, b.maximize, &b.variables, &b.agents, &b.phases)
-        && (&a.kernels, &a.groups, &a.constraints, &a.norms) == (&b.kernels, &b.groups, &b.constraints, &b.norms)
+        && (&a.kernels, &a.groups, &a.constraints) == (&b.kernels, &b.groups, &b.constraints)
+        && (&a.norms, &a.angles) == (&b.norms, &b.angles)
         && (&a.terms, &a.integrals) == (&b.terms, &b.integrals)
         && sizes(a) == sizes(b)
+}
+
+/// The coefficients of outputs that are angles, with the change that is a radian: a spline is between its coefficients.
+fn angles(structure: &Structure, layout: &Layout) -> Vec<(u32, f64)> {
+    let outputs = layout.phases.iter().flat_map(|phase| phase.outputs.iter().map(move |output| (phase.phase, output)));
+    let radian = |phase: usize, output: usize| {
+        structure.angles.iter().find(|angle| (angle.phase, angle.output) == (phase, output)).map(|angle| angle.radian)
+    };
+    let each = outputs.filter_map(|(phase, output)| Some((radian(phase, output.output)?, &output.coefficients)));
+    each.flat_map(|(radian, coefficients)| coefficients.iter().map(move |variable| (*variable, radian))).collect()
 }
 
 /// Bounds without sizes.
@@ -301,6 +313,7 @@ fn limits(structure: &Structure, elements: &Elements, bounds: &[(f64, f64)]) -> 
         row_lower: elements.lower.clone(),
         row_upper: elements.upper.clone(),
         norms: if structure.norms.is_empty() { vec![] } else { elements.rows.iter().map(is_norm).collect() },
+        angles: vec![],
         row_scale: vec![1.0; elements.rows.len()],
         row_weight: vec![],
     }
