@@ -54,13 +54,17 @@ pub fn trapezoid(points: usize) -> Rule {
     Rule { nodes: (0..points).map(|i| i as f64 / intervals).collect(), weights }
 }
 
-/// A rule on at least `stretches` equal stretches, both ends among the nodes with weight 0: exact for polynomials of
-/// degree 5, also where the integrand has no value at the ends (docs/maths.md, equation 1.10a).
+/// A rule on at least `stretches` equal stretches, both ends among the nodes with weight 0 and no weight negative: exact
+/// for polynomials of degree 5, also where the integrand has no value at the ends, and never below the least value of the
+/// integrand or above the greatest, whatever jumps it has (docs/maths.md, equation 1.10a).
 ///
-/// Boole's rule on four stretches at a time, and the open rule of five points on six stretches at either end:
-/// M. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions* (1964), 25.4.14 and 25.4.23.
+/// Boole's rule on four stretches at a time (M. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, 1964,
+/// 25.4.14), and the open rule of nine points and least squares on ten stretches at either end.
 pub fn equidistant(stretches: usize) -> Rule {
-    const END: [f64; 7] = [0.0, 3.3, -4.2, 7.8, -4.2, 3.3, 0.0];
+    const END: [f64; 11] = {
+        let [a, b, c, d, e] = [6150.0 / 2574.0, 200.0 / 2574.0, 925.0 / 2574.0, 3350.0 / 2574.0, 4490.0 / 2574.0];
+        [0.0, a, b, c, d, e, d, c, b, a, 0.0]
+    };
     const INNER: [f64; 5] = [14.0 / 45.0, 64.0 / 45.0, 24.0 / 45.0, 64.0 / 45.0, 14.0 / 45.0];
     let ends = END.len() - 1;
     let inner = INNER.len() - 1;

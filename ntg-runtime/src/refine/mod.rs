@@ -51,7 +51,7 @@ pub fn refine(
         // A solution starts every further round; there is nothing to continue from.
         structure.continuations.clear();
     });
-    let mut run = Run { mesh, best: report.clone(), report, rounds: vec![], beside: 0.0, wanted, settings: &settings };
+    let mut run = Run { mesh, best: None, report, rounds: vec![], beside: 0.0, wanted, settings: &settings };
     let status = loop {
         if let Some(status) = run.round(before + began.elapsed())? {
             break status;
@@ -60,7 +60,7 @@ pub fn refine(
     let Run { mut report, best, rounds, .. } = run;
     let mut status = status;
     // A solve that met the tolerance is the answer, whatever a coarser mesh made of the objective.
-    if status != RefineStatus::Met && is_better(&best, &report, wanted.tolerance) {
+    if let Some((best, _)) = best.filter(|(_, number)| status != RefineStatus::Met && *number + 1 < rounds.len()) {
         report = best;
         status = RefineStatus::Worse;
     }
@@ -74,8 +74,8 @@ pub fn refine(
 struct Run<'a> {
     mesh: WithStructure<'a>,
     report: Report,
-    /// The best solve so far: its violation counts, and then its objective.
-    best: Report,
+    /// The best solve so far and the number of its round: its violation counts, and then its objective.
+    best: Option<(Report, usize)>,
     rounds: Vec<Round>,
     /// The size of the objective beside the first solution.
     beside: f64,
@@ -93,6 +93,7 @@ impl Run<'_> {
         let found = round(&nlp, &self.report, (&self.rounds, self.beside));
         let met = found.within(self.wanted.tolerance);
         self.rounds.push(found);
+        keep_best(&mut self.best, &self.report, &self.rounds, self.wanted.tolerance);
         if !can_go_on(&self.report) {
             return Ok(Some(ended(&self.report)));
         }
@@ -119,14 +120,22 @@ impl Run<'_> {
         let settings = Settings { time_limit: remaining, ..self.settings.clone() };
         let next = from(&finer, &self.report.solution, &settings)?;
         if can_go_on(&next) {
-            if !is_better(&self.best, &next, self.wanted.tolerance) {
-                self.best = next.clone();
-            }
             (self.report, self.mesh) = (next, finer);
             return Ok(None);
         }
         self.rounds.push(round(&Transcription::new(&finer)?, &next, (&self.rounds, self.beside)));
         Ok(Some(ended(&next)))
+    }
+}
+
+/// Keeps the report of the last round if it is the best one.
+fn keep_best(best: &mut Option<(Report, usize)>, report: &Report, rounds: &[Round], tolerance: f64) {
+    let last = rounds.len() - 1;
+    let is_better = |(best, number): &(Report, usize)| {
+        is_better((best, &rounds[*number]), (report, &rounds[last]), tolerance)
+    };
+    if !best.as_ref().is_some_and(is_better) {
+        *best = Some((report.clone(), last));
     }
 }
 
@@ -149,19 +158,23 @@ fn from(mesh: &WithStructure, before: &Solution, settings: &Settings) -> Result<
     }
 }
 
-/// Whether a solution is better than another: it violates much less, or about as little and its objective is better. Below
-/// the tolerance all violations are alike, and so are objectives that differ by less.
-fn is_better(one: &Report, other: &Report, tolerance: f64) -> bool {
+/// Whether a solution is better than one on a finer mesh: it errs much less, or about as little and its objective is better.
+/// Below the tolerance all errors are alike, and so are objectives that differ by less. An objective of a solution that misses
+/// its constraints or its own integral says nothing.
+fn is_better((one, its): (&Report, &Round), (other, others): (&Report, &Round), tolerance: f64) -> bool {
     /// Violations between the points are those of the worst of some samples: where they differ by less than this factor,
     /// where the samples are says as much. A choice.
     const ALIKE: f64 = 2.0;
     if one.has_solution() != other.has_solution() {
         return one.has_solution();
     }
-    let violation = |report: &Report| crate::math::max(report.violation.between, tolerance);
-    let (a, b) = (violation(one), violation(other));
+    let error = |round: &Round| crate::math::max(crate::math::max(round.violation, round.quadrature), tolerance);
+    let (a, b) = (error(its), error(others));
     if a.max(b) > ALIKE * a.min(b) {
         return a < b;
+    }
+    if a.max(b) > one.between_tolerance.max(tolerance) {
+        return false;
     }
     let (a, b) = (one.objective_fine, other.objective_fine);
     let better_by = if one.solution.structure().maximize { a - b } else { b - a };

@@ -105,9 +105,20 @@ impl Report {
             let mean = constraint.mean_between;
             Some(if constraint.is_equation { Missed::Equation { most, mean } } else { Missed::Limit(most) })
         });
-        // A refined solution tells of its objective there.
-        let cost = self.refined.is_none().then(|| Missed::Objective(cost_apart(self.objective, self.objective_fine)));
-        Resolution::of(constraints.chain(cost), self.between_tolerance)
+        let cost = Missed::Objective(self.cost_missed());
+        Resolution::of(constraints.chain([cost]), self.between_tolerance)
+    }
+
+    /// How far the objective is from its finer integral, as a part of the larger of both; after refinement as that has
+    /// measured it.
+    pub(super) fn cost_missed(&self) -> f64 {
+        match &self.refined {
+            None => cost_apart(self.objective, self.objective_fine),
+            Some(refined) => {
+                let own = refined.rounds.iter().rev().find(|round| round.fine == self.objective_fine);
+                own.map_or(0.0, |round| round.quadrature)
+            }
+        }
     }
 
     /// The report with advice where its solution is one of the points alone.

@@ -1,6 +1,5 @@
 //! What a person should know about a report although it is a solution.
 
-use super::cost::cost_apart;
 use super::{ConstraintReport, RefineStatus, Report};
 use crate::digits::brief;
 use crate::transcribe::Transcription;
@@ -76,11 +75,11 @@ impl Report {
     }
 
     /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to
-    /// the larger of both. A refined solution tells of it there.
+    /// the larger of both.
     pub(super) fn cost_is_off(&self) -> Option<Warning> {
         let (points, fine) = (self.objective, self.objective_fine);
-        let apart = cost_apart(points, fine);
-        let is_off = self.meets_points() && self.refined.is_none() && apart > self.between_tolerance;
+        let apart = self.cost_missed();
+        let is_off = self.meets_points() && apart > self.between_tolerance;
         is_off.then(|| Warning {
             message: format!(
                 "finely integrated, the objective is {} instead of {}, {} % of the larger: the points are too few for it",
