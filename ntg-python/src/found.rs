@@ -113,6 +113,11 @@ impl Found {
     }
 
     #[getter]
+    fn objective_correction(&self) -> f64 {
+        self.report.objective_correction
+    }
+
+    #[getter]
     fn objective_unit(&self) -> &str {
         &self.report.objective_unit.symbol
     }

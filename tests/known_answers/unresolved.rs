@@ -100,3 +100,95 @@ fn one_jump_of_an_input_is_no_reason() {
     let (found, report) = resolution(text);
     assert!(report.is_solved() && found < Resolution::Unresolved, "{report}");
 }
+
+/// A body at 300 K in air that swings fifty times, to 310 K with the least of squared power.
+fn heated(maximize: bool, intervals: usize) -> Report {
+    let objective = if maximize { "maximize -1 * integral(q^2)" } else { "minimize integral(q^2)" };
+    let text = format!(
+        "problem Heat {{
+            duration T = 36000;
+            state b;
+            input q in -50 .. 50;
+            collocation gauss(points = 3, intervals = {intervals});
+            {objective};
+            dynamics {{ 1000 * der(b) == 5 * (300 + 10 * sin(2 * pi * t / 700) - b) + q; }}
+            initial {{ b == 300; }}
+            final {{ b == 310; }}
+        }}"
+    );
+    Shipped::text(&text).solve()
+}
+
+/// What it is: the power that is least is `c exp(r t)`, `r = 5/1000 1/s`, and moves the end by `1/1000 integral of
+/// exp(-r (T - t)) q`.
+fn heat_known() -> f64 {
+    let (r, w, duration) = (0.005_f64, std::f64::consts::TAU / 700.0, 36000.0_f64);
+    // Without power from 300 K: the swing of the air, delayed, and what has died away.
+    let swing = 10.0 * r / (r * r + w * w);
+    let free = swing * (r * (w * duration).sin() - w * (w * duration).cos() + w * (-r * duration).exp());
+    let reach = (1.0 - (-2.0 * r * duration).exp()) / (2.0 * r) / 1e6;
+    (10.0 - free).powi(2) / reach
+}
+
+#[test]
+fn what_equations_miss_is_a_correction_of_the_objective() {
+    let known = heat_known();
+    for intervals in [80, 100, 120] {
+        let report = heated(false, intervals);
+        let (off, rest) = (report.objective - known, report.objective + report.objective_correction - known);
+        assert!(rest.abs() < 0.4 * off.abs(), "{intervals}: {} and {} for {known}", report.objective, rest + known);
+        let turned = heated(true, intervals);
+        assert!((turned.objective_correction + report.objective_correction).abs() < 1e-6 * known, "the user's sense");
+    }
+    let fine = heated(false, 400);
+    assert!((fine.objective / known - 1.0).abs() < 1e-4 && fine.objective_correction.abs() < 1e-4 * known, "{fine}");
+}
+
+/// A mass is kicked once, for a hundredth of the time, and is to be at rest in the end.
+fn kicked(begin: f64, intervals: usize) -> String {
+    format!(
+        "problem Kicked {{
+            duration T = 10;
+            state x, v;
+            input u;
+            collocation gauss(points = 3, intervals = {intervals});
+            minimize integral(u^2);
+            dynamics {{ der(x) == v;  der(v) == u + (if t in {begin} .. {begin} + 0.1 {{ 10 }} else {{ 0 }}); }}
+            initial {{ x == 0;  v == 0; }}
+            final {{ v == 0; }}
+        }}"
+    )
+}
+
+#[test]
+fn a_pulse_that_no_point_sees_is_told_by_what_it_is_worth() {
+    // The kick is a speed of 1, so that -0.1 is to be steered all the time: 0.1 in all. No point is within the kick.
+    let (found, report) = resolution(&kicked(5.2, 10));
+    assert!(report.objective < 1e-12, "{report}");
+    assert_ne!(found, Resolution::Fine, "{report}");
+    // A point is in the kick, and stands for an interval.
+    let (found, report) = resolution(&kicked(5.05, 10));
+    assert!(report.objective > 0.2, "{report}");
+    assert_eq!(found, Resolution::Unresolved, "{report}");
+    let warned = report.warnings().iter().any(|warning| warning.message.contains("the objective is about"));
+    assert!(warned && report.objective_correction < -0.1, "{report}");
+}
+
+#[test]
+fn a_thrust_that_turns_round_is_worth_nothing() {
+    // It turns round in the middle of an interval, and the states there are missed: Gauss points have the end all the same.
+    let text = "problem Reversal {
+        duration T in 0.1 .. 10;
+        state x, v;
+        input u in -1 .. 2;
+        collocation gauss(points = 3, intervals = 5);
+        minimize T;
+        dynamics { der(x) == v - 0.1 * x;  der(v) == u - 0.5 * v; }
+        initial { x == 0;  v == 0; }
+        final { x == 1;  v == 0; }
+    }";
+    let (found, report) = resolution(text);
+    assert!(report.violation.between > 0.03, "{report}");
+    assert!(report.objective_correction.abs() < 1e-9, "{}", report.objective_correction);
+    assert_eq!(found, Resolution::Coarse, "{report}");
+}

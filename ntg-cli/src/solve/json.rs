@@ -22,6 +22,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "objective": report.objective,
         "objective_unit": report.objective_unit.symbol,
         "objective_fine": report.objective_fine,
+        "objective_correction": report.objective_correction,
         "terms": report.terms.iter().map(|t| json!({
             "name": t.name, "value": t.value, "fine": t.fine, "unit": t.unit.symbol,
         })).collect::<Vec<_>>(),

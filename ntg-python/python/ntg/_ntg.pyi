@@ -54,6 +54,7 @@ class Found:
     resolution: str
     objective: float
     objective_fine: float
+    objective_correction: float
     objective_unit: str
     violation: tuple[float, float]
     iterations: int

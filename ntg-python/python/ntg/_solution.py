@@ -174,6 +174,11 @@ class Solution:
         return self._core.objective_fine
 
     @property
+    def objective_correction(self) -> float:
+        """What is to be added to the objective, to first order, for what equations miss between the points."""
+        return self._core.objective_correction
+
+    @property
     def objective_unit(self) -> str:
         """The unit of the objective; empty for a pure number."""
         return self._core.objective_unit

@@ -51,16 +51,16 @@ pub fn refine(
         // A solution starts every further round; there is nothing to continue from.
         structure.continuations.clear();
     });
-    let mut run = Run { mesh, best: None, report, rounds: vec![], beside: 0.0, wanted, settings: &settings };
+    let mut run = Run { mesh, best: None, report, number: 0, rounds: vec![], beside: 0.0, wanted, settings: &settings };
     let status = loop {
         if let Some(status) = run.round(before + began.elapsed())? {
             break status;
         }
     };
-    let Run { mut report, best, rounds, .. } = run;
+    let Run { mut report, best, rounds, number, .. } = run;
     let mut status = status;
     // A solve that met the tolerance is the answer, whatever a coarser mesh made of the objective.
-    if let Some((best, _)) = best.filter(|(_, number)| status != RefineStatus::Met && *number + 1 < rounds.len()) {
+    if let Some((best, _)) = best.filter(|(_, own)| status != RefineStatus::Met && *own < number) {
         report = best;
         status = RefineStatus::Worse;
     }
@@ -74,6 +74,8 @@ pub fn refine(
 struct Run<'a> {
     mesh: WithStructure<'a>,
     report: Report,
+    /// The number of its round.
+    number: usize,
     /// The best solve so far and the number of its round: its violation counts, and then its objective.
     best: Option<(Report, usize)>,
     rounds: Vec<Round>,
@@ -92,6 +94,7 @@ impl Run<'_> {
         }
         let found = round(&nlp, &self.report, (&self.rounds, self.beside));
         let met = found.within(self.wanted.tolerance);
+        self.number = self.rounds.len();
         self.rounds.push(found);
         keep_best(&mut self.best, &self.report, &self.rounds, self.wanted.tolerance);
         if !can_go_on(&self.report) {
@@ -131,9 +134,8 @@ impl Run<'_> {
 /// Keeps the report of the last round if it is the best one.
 fn keep_best(best: &mut Option<(Report, usize)>, report: &Report, rounds: &[Round], tolerance: f64) {
     let last = rounds.len() - 1;
-    let is_better = |(best, number): &(Report, usize)| {
-        is_better((best, &rounds[*number]), (report, &rounds[last]), tolerance)
-    };
+    let is_better =
+        |(best, number): &(Report, usize)| is_better((best, &rounds[*number]), (report, &rounds[last]), tolerance);
     if !best.as_ref().is_some_and(is_better) {
         *best = Some((report.clone(), last));
     }

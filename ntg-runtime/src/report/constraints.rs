@@ -2,6 +2,7 @@
 
 use super::ending::Missed;
 use super::fine::{Checked, Plan, Wanted};
+use super::foreseen::Foreseen;
 use super::sizes::Sizes;
 use super::{ConstraintReport, Worst, multipliers};
 use crate::transcribe::points::Point;
@@ -11,13 +12,21 @@ use ntg_nlp::{Evaluation, Outcome};
 use ntg_structure::{Block, Domain};
 use std::collections::BTreeMap;
 
-/// One entry for each constraint of the spec, none for those of helpers, which come last, and the terms on the finer grid.
+/// What the finer grid says of the minimised objective, SI.
+pub(super) struct Fine {
+    /// Every term.
+    pub(super) terms: Vec<f64>,
+    /// What is to be added for what equations miss.
+    pub(super) correction: f64,
+}
+
+/// One entry for each constraint of the spec, none for those of helpers, which come last, and the objective on the finer grid.
 /// `at` holds the program's values and first derivatives at the last point.
 pub(super) fn constraints(
     nlp: &Transcription,
     (outcome, at): (&Outcome, &Evaluation),
     fine: &mut Plan,
-) -> Result<(Vec<ConstraintReport>, Sizes, Vec<f64>), SetupError> {
+) -> Result<(Vec<ConstraintReport>, Sizes, Fine), SetupError> {
     let structure = &nlp.model.structure;
     let declared = structure.constraints.iter();
     let mut reports: Vec<ConstraintReport> = declared
@@ -45,9 +54,11 @@ pub(super) fn constraints(
         multipliers::add(nlp, outcome, row, report);
     }
     let mut means = Means::new(reports.len());
+    let mut foreseen = Foreseen::new(nlp, outcome);
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
         means.add(nlp, checked, || all_sizes.between(nlp, checked.constraint, checked.indices));
+        foreseen.add(nlp, checked);
         report.is_equation &= checked.bounds.0 == checked.bounds.1;
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         keep(
@@ -61,7 +72,7 @@ pub(super) fn constraints(
     means.write(nlp, &mut reports);
     let own = structure.constraints.iter().position(|constraint| constraint.block == Block::Corner);
     reports.truncate(own.unwrap_or(reports.len()));
-    Ok((reports, all_sizes, terms))
+    Ok((reports, all_sizes, Fine { terms, correction: foreseen.correction() }))
 }
 
 /// The mean violation of equations between the points.

@@ -1,6 +1,6 @@
 //! A report as a person reads it.
 
-use super::{ConstraintReport, Estimate, Report, Warning, Worst};
+use super::{ConstraintReport, Estimate, Report, Resolution, Warning, Worst};
 use crate::digits::brief;
 use crate::transcribe::rows::member_words;
 use ntg_structure::{Independent, Unit};
@@ -34,6 +34,13 @@ impl fmt::Display for Report {
         };
         writeln!(f, "  iterations  {}{steps}, {:.3} ms", self.iterations, 1e3 * self.seconds)?;
         let (points, between) = (self.violation.points, self.violation.between);
+        if self.has_solution() && self.resolution() != Resolution::Fine && self.objective_correction != 0.0 {
+            let correction = self.objective_correction;
+            writeln!(
+                f,
+                "  correction  {correction:+.1e}{unit} to the objective, for what equations miss between the points"
+            )?;
+        }
         write!(f, "  violation   {points:.1e} at the points, {between:.1e} between them (relative)")?;
         if let Some(refined) = &self.refined {
             write!(f, "\n{refined}")?;

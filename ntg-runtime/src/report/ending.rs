@@ -28,7 +28,8 @@ pub enum Missed {
     },
     /// A limit, where it is missed most.
     Limit(f64),
-    /// The objective and its finer integral differ by this part of the larger of both.
+    /// The objective and its finer integral, or the objective without and with its correction, differ by this part of the
+    /// larger of both.
     Objective(f64),
 }
 
@@ -106,7 +107,14 @@ impl Report {
             Some(if constraint.is_equation { Missed::Equation { most, mean } } else { Missed::Limit(most) })
         });
         let cost = Missed::Objective(self.cost_missed());
-        Resolution::of(constraints.chain([cost]), self.between_tolerance)
+        let equations = Missed::Objective(self.correction_part());
+        Resolution::of(constraints.chain([cost, equations]), self.between_tolerance)
+    }
+
+    /// What equations that are missed between the points are worth of the objective, as a part of the larger of the
+    /// objectives without and with it.
+    pub(super) fn correction_part(&self) -> f64 {
+        cost_apart(self.objective, self.objective + self.objective_correction)
     }
 
     /// How far the objective is from its finer integral, as a part of the larger of both; after refinement as that has

@@ -10,6 +10,7 @@ mod display;
 mod ending;
 mod estimate;
 pub(crate) mod fine;
+mod foreseen;
 mod hints;
 mod means;
 mod multipliers;
@@ -79,7 +80,10 @@ pub struct Report {
     pub objective: f64,
     /// The objective integrated on the finer grid: closer to what flying would cost.
     pub objective_fine: f64,
-    /// The unit of both.
+    /// What is to be added to the objective, to first order, for what equations along phases miss between the points
+    /// (docs/maths.md, equation 9.3c); 0 where there are none.
+    pub objective_correction: f64,
+    /// The unit of all three.
     pub objective_unit: Unit,
     /// The objective's terms; they add up to it.
     pub terms: Vec<TermReport>,
@@ -276,8 +280,8 @@ impl Report {
             at.blocks.iter_mut().for_each(|block| block.jacobian.fill(0.0));
             _ = nlp.values(&outcome.x, work, at);
         }
-        let (constraints, sizes, fine_terms) = constraints::constraints(nlp, (&outcome, at), fine)?;
-        let terms = cost::terms(nlp, at, &fine_terms);
+        let (constraints, sizes, on_fine) = constraints::constraints(nlp, (&outcome, at), fine)?;
+        let terms = cost::terms(nlp, at, &on_fine.terms);
         let largest = |worst: fn(&ConstraintReport) -> Option<&Worst>| {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };
@@ -299,7 +303,8 @@ impl Report {
             true => hints::of_estimate(nlp, solution.coefficients(), estimate.as_ref()),
             false => hints::ran_off(nlp, solution.coefficients()),
         });
-        let (objective, objective_fine) = (user(nlp, outcome.objective), user(nlp, fine_terms.iter().sum()));
+        let (objective, objective_fine) = (user(nlp, outcome.objective), user(nlp, on_fine.terms.iter().sum()));
+        let objective_correction = user(nlp, on_fine.correction);
         let tolerance = Settings::default().between_tolerance;
         let is_off = status.has_solution() && cost_apart(objective, objective_fine) > tolerance;
         // Where an equation is missed by more than its terms, or the cost is another, there may be a pole.
@@ -312,6 +317,7 @@ impl Report {
             status,
             objective,
             objective_fine,
+            objective_correction,
             objective_unit: structure.objective_unit.clone(),
             terms,
             estimate,

@@ -71,7 +71,27 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        singular.chain(told).chain(saddle).chain(coarse).chain(self.cost_is_off()).chain(between).chain(unmet).collect()
+        let cost = self.cost_is_off().into_iter().chain(self.equations_are_off());
+        singular.chain(told).chain(saddle).chain(coarse).chain(cost).chain(between).chain(unmet).collect()
+    }
+
+    /// Where the equations that a solution misses between the points are worth more of its objective than
+    /// `Settings::between_tolerance`, to first order.
+    fn equations_are_off(&self) -> Option<Warning> {
+        let part = self.correction_part();
+        let is_off = self.meets_points() && part > self.between_tolerance;
+        let side = if self.objective_correction < 0.0 { "large" } else { "small" };
+        is_off.then(|| Warning {
+            message: format!(
+                "by what equations miss between the points, the objective is about {} too {side}, {} % of the larger: the \
+                 points are too few for them",
+                brief(self.objective_correction.abs()),
+                brief((1e3 * part).round() / 10.0)
+            ),
+            place: self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone()),
+            constraint: String::new(),
+            time: None,
+        })
     }
 
     /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to
