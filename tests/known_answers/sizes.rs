@@ -99,3 +99,43 @@ fn integrals_in_products_roots_and_quotients_have_sizes_of_their_own() {
         }
     }
 }
+
+/// The time from rest to rest over 1 with an acceleration of 1 at most, which is 2.
+fn least_time(bounds: &str, unit: &str, intervals: usize) -> Report {
+    Shipped::text(&format!(
+        "problem Rest {{
+            duration T in {bounds} [{unit}];
+            state x, v;
+            input u in -1 .. 1;
+            collocation gauss(points = 3, intervals = {intervals});
+            minimize T / 1 [{unit}];
+            dynamics {{ der(x) == v / 1 [{unit}];  der(v) == u / 1 [{unit}]; }}
+            initial {{ x == 0;  v == 0; }}
+            final {{ x == 1;  v == 0; }}
+        }}"
+    ))
+    .solve()
+}
+
+#[test]
+fn bounds_of_a_duration_may_be_many_decades_apart() {
+    for unit in ["s", "h", "ns"] {
+        for bounds in ["1e-6 .. 1e6", "0.1 .. 1e5", "1 .. 1e6", "1e-3 .. 1e3", "1e-9 .. 1e3", "0 .. 10"] {
+            for intervals in [10, 40] {
+                let report = least_time(bounds, unit, intervals);
+                close(report.objective, 2.0, 1e-6);
+                assert!(report.iterations <= 60, "{bounds} {unit}, {intervals}: {} iterations", report.iterations);
+                assert!(report.warnings().iter().all(|w| !w.message.contains("shortest")), "{report}");
+            }
+        }
+    }
+    // What is written is kept: the least duration is that of the spec, and not a part of its upper bound.
+    let text = "problem Shortest {
+        duration T in 1e-4 .. 1e6;
+        output x: spline(order = 3, intervals = 4);
+        minimize T;
+        initial { x == 0; }
+        final { x == 1; }
+    }";
+    close(Shipped::text(text).solve().objective, 1e-4, 1e-6);
+}

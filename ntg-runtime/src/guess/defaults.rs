@@ -2,6 +2,7 @@
 
 use crate::transcribe::Transcription;
 use crate::transcribe::layout::Time;
+use crate::transcribe::rows::shortest_duration;
 use crate::transcribe::slots::AffineMap;
 use ntg_nlp::Target;
 use ntg_splines::Side;
@@ -29,9 +30,8 @@ pub(super) fn times(nlp: &Transcription, x: &mut [f64]) {
 }
 
 fn duration(lower: f64, upper: f64) -> f64 {
-    /// The smallest duration of all is a guard of this size, not a bound that anyone wrote.
-    const NOTHING: f64 = 1e-5;
-    match (lower > NOTHING * if upper.is_finite() { upper } else { 1.0 }, upper.is_finite()) {
+    // The smallest duration of all is a guard, not a bound that anyone wrote.
+    match (lower != shortest_duration(upper), upper.is_finite()) {
         (true, true) => middle(lower, upper),
         (true, false) => 2.0 * lower,
         (false, true) => 0.5 * upper,

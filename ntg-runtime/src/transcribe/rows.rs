@@ -85,7 +85,7 @@ pub(crate) fn variable_bounds(frame: &Frame) -> Result<Vec<Pair>, SetupError> {
             let lasting = structure.independent.amount(upper, |value| value.to_string());
             return Err(SetupError::Duration { phase, lasting, place: declared.place.clone() });
         }
-        bounds.push((lower.max(shortest_duration(upper)), upper));
+        bounds.push((least_duration(lower, upper), upper));
     }
     for (agent, member) in layout.agents.iter().enumerate() {
         let declared = &structure.agents[member.agent];
@@ -139,9 +139,18 @@ pub(crate) fn bound_size((lower, upper): Pair) -> f64 {
 
 const UNBOUNDED: Pair = (f64::NEG_INFINITY, f64::INFINITY);
 
-/// No duration becomes shorter than this part of its upper bound (or of a second), so that no
-/// division by a duration can overflow.
-const SHORTEST: f64 = 1e-6;
+/// No duration without a lower bound above 0 becomes shorter than this part of its upper bound (or of a second), so that no
+/// division by a duration can overflow. A little more than a millionth, which somebody may have written.
+const SHORTEST: f64 = 1.000_000_01e-6;
+
+/// No duration at all becomes shorter than this part of its upper bound.
+const SHORTEST_WRITTEN: f64 = 1e-15;
+
+/// The least duration between declared bounds, SI.
+fn least_duration(lower: f64, upper: f64) -> f64 {
+    let shortest = shortest_duration(upper);
+    lower.max(if lower > 0.0 { SHORTEST_WRITTEN / SHORTEST * shortest } else { shortest })
+}
 
 /// The least duration beneath an upper bound, SI.
 pub(crate) fn shortest_duration(upper: f64) -> f64 {
