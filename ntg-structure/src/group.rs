@@ -142,7 +142,7 @@ pub struct Angle {
     pub output: usize,
     /// The change of the output, SI, by which no argument of a sine changes by more than one.
     pub radian: f64,
-    /// The change of the output, SI, that formulas do not see; none where there is none, or where its values are bounded.
+    /// The change of the output, SI, that formulas do not see, but for bounds of the output; none where there is none.
     pub turn: Option<f64>,
 }
 

@@ -121,7 +121,7 @@ fn what_formulas_know_otherwise_is_no_angle() {
     // A turn of the slow argument is two of the fast one; arguments of 2 and 3 times the angle have none that is as plain.
     assert_eq!(angle("th", "trajectory { cos(2 * th) >= -1; }"), Some((0.5, Some(turn))));
     assert_eq!(angle("2 * th", "trajectory { cos(3 * th) >= -1; }"), Some((1.0 / 3.0, None)));
-    assert_eq!(angle("th", "trajectory { th <= 3; }"), Some((1.0, None)));
+    assert_eq!(angle("th", "trajectory { th <= 3; }"), Some((1.0, Some(turn))));
     for extra in ["trajectory { th + x <= 9; }", "trajectory { exp(th) <= 9; }", "trajectory { th^2 <= 9; }"] {
         assert_eq!(angle("th", extra), None, "{extra}");
     }

@@ -21,8 +21,6 @@ type Output = (usize, usize);
 struct Uses {
     /// The factors with which an output stands in arguments of sines, cosines and tangents.
     turned: BTreeMap<Output, Vec<f64>>,
-    /// Outputs of which the values themselves are bounded.
-    bounded: Vec<Output>,
     /// Outputs of which the values themselves, or derivatives, are used.
     exposed: Vec<Output>,
 }
@@ -30,14 +28,14 @@ struct Uses {
 /// The outputs that occur in formulas only as a part, with a constant factor, of arguments of sines, cosines and tangents,
 /// and as what is bounded.
 pub(crate) fn angles(problem: &Problem) -> Vec<Angle> {
-    let Uses { turned, bounded, exposed } = uses(problem);
+    let Uses { turned, exposed } = uses(problem);
     let is_angle = |output: &Output| !exposed.contains(output);
     let angle = |((phase, output), factors): (Output, Vec<f64>)| {
         let (least, most) =
             factors.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), k| (least.min(*k), most.max(*k)));
         let is_whole = |k: &f64| (k / least - (k / least).round()).abs() <= SAME;
-        let may_turn = factors.iter().all(is_whole) && !bounded.contains(&(phase, output));
-        Angle { phase, output, radian: 1.0 / most, turn: may_turn.then(|| std::f64::consts::TAU / least) }
+        let turn = factors.iter().all(is_whole).then(|| std::f64::consts::TAU / least);
+        Angle { phase, output, radian: 1.0 / most, turn }
     };
     turned.into_iter().filter(|(output, _)| is_angle(output)).map(angle).collect()
 }
@@ -46,12 +44,9 @@ pub(crate) fn angles(problem: &Problem) -> Vec<Angle> {
 fn uses(problem: &Problem) -> Uses {
     let mut uses = Uses::default();
     let mut open: Vec<NodeId> = problem.objective.iter().map(|term| term.body).collect();
-    for constraint in &problem.constraints {
-        match output_of(problem, constraint.body) {
-            Some(output) => uses.bounded.push(output),
-            None => open.push(constraint.body),
-        }
-    }
+    let bodies = problem.constraints.iter().map(|constraint| constraint.body);
+    // A bound on the output itself says nothing of how formulas use it.
+    open.extend(bodies.filter(|body| output_of(problem, *body).is_none()));
     let mut seen: Set<NodeId> = open.iter().copied().collect();
     while let Some(id) = open.pop() {
         let mut next: Vec<NodeId> = vec![];

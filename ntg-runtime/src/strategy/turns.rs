@@ -19,7 +19,7 @@ use crate::transcribe::Transcription;
 const SAME: f64 = 1e-8;
 
 impl Session {
-    /// The solution with every angle unwrapped, where that is a solution with the same objective; else the one it was.
+    /// The solution with every angle unwrapped, where that is a solution and no worse; else the one it was.
     pub(super) fn unwrap_turns(&mut self, nlp: &mut Transcription, outcome: Outcome, settings: &Settings) -> Outcome {
         let left = settings.max_iterations.saturating_sub(outcome.iterations);
         if outcome.status != Status::Solved || left == 0 {
@@ -29,8 +29,8 @@ impl Session {
         let from = Start::Warm(outcome.multipliers());
         let rest = Settings { max_iterations: left, ..settings.after(Duration::from_secs_f64(outcome.seconds)) };
         let next = self.solve_measured(nlp, FirstPoint { x: &x, from }, &warm(&rest));
-        let is_same = (next.objective - outcome.objective).abs() <= SAME * outcome.objective.abs().max(SAME);
-        if next.status != Status::Solved || !is_same {
+        let is_worse = next.objective - outcome.objective > SAME * outcome.objective.abs().max(SAME);
+        if next.status != Status::Solved || is_worse {
             return outcome;
         }
         let (iterations, seconds) = (outcome.iterations + next.iterations, outcome.seconds + next.seconds);
