@@ -19,15 +19,11 @@ type Key = (usize, Vec<i64>, usize);
 /// Densities of multipliers over scaled time, by equation and phase, and the sum so far.
 pub(super) struct Foreseen {
     densities: BTreeMap<Key, Vec<(f64, f64)>>,
-    /// The key of the last equation, and the interval with its points that was looked at last.
-    last: Option<(Key, Vec<Interval>)>,
+    /// The equation that was looked at last.
+    last: Option<Key>,
+    /// Its multipliers, interval by interval.
+    multipliers: Piecewise,
     sum: f64,
-}
-
-/// The points of an interval between breakpoints.
-struct Interval {
-    end: f64,
-    points: Vec<(f64, f64)>,
 }
 
 impl Foreseen {
@@ -57,7 +53,7 @@ impl Foreseen {
         if let Some((key, points)) = last {
             densities.entry(key).or_default().extend(points);
         }
-        Self { densities, last: None, sum: 0.0 }
+        Self { densities, last: None, multipliers: Piecewise::default(), sum: 0.0 }
     }
 
     /// Takes in what is missed at one point of the finer grid.
@@ -69,17 +65,13 @@ impl Foreseen {
             return;
         }
         let own = (checked.constraint, checked.indices, phase);
-        if !self.last.as_ref().is_some_and(|(key, _)| is_key(key, own)) {
+        if !self.last.as_ref().is_some_and(|key| is_key(key, own)) {
             let key = (checked.constraint, checked.indices.to_vec(), phase);
-            let Some(all) = self.densities.get(&key) else { return };
-            let intervals = intervals(&nlp.model.layout.phases[phase].breakpoints, all);
-            self.last = Some((key, intervals));
+            let all = self.densities.get(&key).map_or(&[][..], |all| all);
+            self.multipliers.fill(&nlp.model.layout.phases[phase].breakpoints, all);
+            self.last = Some(key);
         }
-        let Some((_, intervals)) = &self.last else { return };
-        let at = intervals.partition_point(|interval| interval.end < checked.point.tau);
-        if let Some(interval) = intervals.get(at) {
-            self.sum += part * interpolated(&interval.points, checked.point.tau);
-        }
+        self.sum += part * self.multipliers.at(checked.point.tau);
     }
 
     /// What is to be added to the minimised objective, SI.
@@ -89,20 +81,77 @@ impl Foreseen {
 }
 
 fn is_key((constraint, indices, phase): &Key, own: (usize, &[i64], usize)) -> bool {
-    (*constraint, indices.as_slice(), *phase) == own
+    // Indices are few: a loop is faster than a call.
+    (*constraint, *phase) == (own.0, own.2) && indices.iter().eq(own.1)
 }
 
-fn intervals(breakpoints: &[f64], all: &[(f64, f64)]) -> Vec<Interval> {
-    let ends = breakpoints.windows(2);
-    let inside = |from: f64, to: f64| all.iter().copied().filter(|(tau, _)| from < *tau && *tau < to).collect();
-    ends.map(|pair| Interval { end: pair[1], points: inside(pair[0], pair[1]) }).collect()
+/// In every interval the polynomial through the points there, in Newton's form; 0 where there are none.
+#[derive(Default)]
+struct Piecewise {
+    /// Where each interval ends, and where its points end.
+    ends: Vec<(f64, usize)>,
+    /// Points with divided differences.
+    points: Vec<(f64, f64)>,
+    /// The interval that was looked at last.
+    last: usize,
 }
 
-/// The polynomial through some points; 0 through none.
-fn interpolated(points: &[(f64, f64)], at: f64) -> f64 {
-    let term = |(i, (tau, value)): (usize, &(f64, f64))| {
-        let others = points.iter().enumerate().filter(|(j, _)| *j != i);
-        value * others.map(|(_, (other, _))| (at - other) / (tau - other)).product::<f64>()
-    };
-    points.iter().enumerate().map(term).sum()
+impl Piecewise {
+    /// Points in order of time, those at breakpoints left out.
+    fn fill(&mut self, breakpoints: &[f64], all: &[(f64, f64)]) {
+        self.ends.clear();
+        self.points.clear();
+        self.last = 0;
+        let mut rest = all.iter().copied().peekable();
+        for pair in breakpoints.windows(2) {
+            let first = self.points.len();
+            while let Some(point) = rest.next_if(|(tau, _)| *tau < pair[1]) {
+                if pair[0] < point.0 {
+                    self.points.push(point);
+                }
+            }
+            divide(&mut self.points[first..]);
+            self.ends.push((pair[1], self.points.len()));
+        }
+    }
+
+    fn at(&mut self, tau: f64) -> f64 {
+        let is_inside = |last: usize| {
+            let begin = if last == 0 { f64::NEG_INFINITY } else { self.ends[last - 1].0 };
+            self.ends.get(last).is_some_and(|(end, _)| begin < tau && tau <= *end)
+        };
+        if !is_inside(self.last) {
+            self.last = self.ends.partition_point(|(end, _)| *end < tau).min(self.ends.len().saturating_sub(1));
+        }
+        let Some((_, stop)) = self.ends.get(self.last) else { return 0.0 };
+        let start = if self.last == 0 { 0 } else { self.ends[self.last - 1].1 };
+        self.points[start..*stop].iter().rev().fold(0.0, |sum, (node, difference)| sum * (tau - node) + difference)
+    }
+}
+
+/// Replaces values by divided differences.
+fn divide(points: &mut [(f64, f64)]) {
+    for order in 1..points.len() {
+        for k in (order..points.len()).rev() {
+            points[k].1 = (points[k].1 - points[k - 1].1) / (points[k].0 - points[k - order].0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_polynomial_of_each_interval_is_its_own() {
+        let of = |tau: f64| if tau < 0.5 { 1.0 + tau * (2.0 - 3.0 * tau) } else { tau * tau };
+        let all: Vec<(f64, f64)> = [0.1, 0.2, 0.4, 0.6, 0.7, 0.9].into_iter().map(|tau| (tau, of(tau))).collect();
+        let mut found = Piecewise::default();
+        found.fill(&[0.0, 0.5, 1.0], &all);
+        for tau in [0.05, 0.45, 0.55, 0.95, 0.3, 1.0] {
+            assert!((found.at(tau) - of(tau)).abs() < 1e-12, "{tau}: {}", found.at(tau));
+        }
+        found.fill(&[0.0, 0.5, 1.0], &[]);
+        assert_eq!(found.at(0.3), 0.0);
+    }
 }
