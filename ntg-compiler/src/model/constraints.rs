@@ -218,7 +218,16 @@ impl<'a> Elaborator<'a> {
     }
 
     /// `lower <= body <= upper`; two constraints where a bound changes along the way.
-    pub(super) fn within(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> Vec<Body> {
+    fn within(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> Vec<Body> {
+        let bodies = self.bounded(lower, body, upper);
+        if !bodies.is_empty() {
+            [lower, upper].into_iter().flatten().for_each(|bound| self.note_bare_angle(body, bound));
+        }
+        bodies
+    }
+
+    /// The same without a word on bare numbers beside angles.
+    pub(super) fn bounded(&mut self, lower: Option<&Value>, body: &Value, upper: Option<&Value>) -> Vec<Body> {
         if self.misfit(lower, body, upper) {
             return vec![];
         }
@@ -232,7 +241,6 @@ impl<'a> Elaborator<'a> {
         if let (Some(lower), Some(upper)) = (lower, upper) {
             self.crossing(&bounds, lower.span.to(upper.span));
         }
-        [lower, upper].into_iter().flatten().for_each(|bound| self.note_bare_angle(body, bound));
         let sides: Vec<&Value> = [Some(body), lower, upper].into_iter().flatten().collect();
         let unit = self.shown(&sides);
         vec![Body { value: body.clone(), bounds, unit }]

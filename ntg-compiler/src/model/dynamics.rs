@@ -156,6 +156,7 @@ impl<'a> Elaborator<'a> {
             if !self.bounds_fit(&cx, name, bounds, &shape) {
                 continue;
             }
+            self.note_bare_bounds(name);
             self.for_elements(&cx, shape.axes(), &[], &mut |this, cx, at| {
                 this.bound_element(cx, (phase, output), name, &axes, at);
             });
@@ -203,7 +204,7 @@ impl<'a> Elaborator<'a> {
         let [lower, upper] = ends;
         let span: Span = name.name.span.to(bounds.span);
         let words = self.bounds_words(cx, name, axes);
-        for body in self.within(lower.as_ref(), &body, upper.as_ref()) {
+        for body in self.bounded(lower.as_ref(), &body, upper.as_ref()) {
             self.origin(body.value.node, span);
             let domain = Domain::Path(cx.phase_at(phase), Part::WHOLE);
             let loops = (*cx.loops).clone();

@@ -310,6 +310,7 @@ impl<'a> Elaborator<'a> {
             dimension = Some(quantity.dimension);
             unit = Some(shown);
         }
+        self.note_bare_bounds(variable);
         let dimension = dimension.unwrap_or(Dimension::NONE);
         self.variables[k].1 = (!is_refused).then_some(dimension);
         let unit = unit.unwrap_or_else(|| units::si(&dimension));
