@@ -17,6 +17,7 @@ mod expected;
 mod habits;
 pub(super) mod imports;
 mod ranges;
+mod relations;
 
 use expected::Expected;
 
@@ -182,7 +183,7 @@ impl Here<'_> {
                 let word = text(self.scan, token);
                 // An operator, a comma or an opening bracket on the next line goes on with the statement, wrongly.
                 let begins = token.kind == TokenKind::Word && begins_line(self.scan, self.index);
-                word == "}" || ITEM_WORDS.contains(&word) || begins
+                word == "}" || ITEM_WORDS.contains(&word) || begins || self.begins_relation()
             }
         };
         let end = before.span.end;
@@ -298,6 +299,9 @@ impl Here<'_> {
             }
             Some("shared") => return Some("write the inputs, and until when: `shared u until 1 [s];`".into()),
             _ => {}
+        }
+        if self.is_deviation(this) {
+            return Some("how uncertain a measurement is stands behind it: `sigma 1 [cm]`".into());
         }
         if self.first_word() == Some("soft") && self.expected.has(Rule::relation) {
             return Some("a soft constraint is `soft(w): c`, with two prices `soft(linear = v, square = w): c`".into());

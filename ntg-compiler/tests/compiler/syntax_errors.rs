@@ -55,6 +55,8 @@ messages! {
     chains: inside("trajectory { a <= b >= c; a == b == c; a <= b == c; a <= b <= c <= d; }");
     an_expression_is_missing: inside("let a = ;\nlet b = x + ;\nlet c = x + * y;\nlet d = f();\nlet e = f(1,);\nlet g = +1;\nlet h = 2 ** 3;\nlet i = [1, 2];\nlet j = (1, 2);\nlet k = 5 km;");
     a_semicolon_is_missing: inside("let a = 1\nlet b = 2;\ninitial { x == 1 }\nfinal { x == 1\n  y == 1; }\nlet c = x // comment\n/// doc\nlet d = x let e = 1;\nphase p { duration = 5 [s] }\nlet f = 2");
+    a_semicolon_is_missing_between_relations: inside("state x, z [m];\ninput speed [km/h];\ninitial { x == 0 z == 0; }\nfinal { speed <= 100 [km/h] z in 0 .. 1; }\ninitial { x == 0 der(z) == 0; }\nfinal { x == 2 m <= 3; }\nfinal { x == 2 km; }\nguess { x = 1 z = 2; }\ntrajectory { for i in 1 .. 3 { x == i z <= i; } }\nfinal { x == 2 z; }");
+    deviations_of_other_languages: inside("measure { x ~ normal(3, 1); }\nmeasure { x == 3 ± 1; }\nmeasure { x == 3 sigma = 1 [cm]; }\nmeasure { x == 3 std 1 [cm]; }\nmeasure { for i in 1 .. 3 { x == seen[i] uncertainty 1 [cm]; } }");
     parentheses_that_are_never_closed: inside("let a = (1 + 2;\nlet b = f(x, [1;\nlet c = x[1;\nlet d = 1;");
     a_block_that_is_never_closed: errors("problem P {\n  trajectory {\n    a <= 1;\n  output x: spline(order = 3);\n  final { x == 1; }\n}");
     a_phase_that_is_never_closed: errors("problem P {\n  phase a { duration = 5;\n  phase b after a { duration = 5; }\n}");

@@ -28,6 +28,9 @@ impl Here<'_> {
             (_, ":") if has(Rule::dots) => "a range is written `1 .. 3`",
             (_, ":") if first == "table" || self.is_within("table") => "a row ends with `;`: `0: 1;  2: 3;`",
             (_, ":") if has(Rule::relation) => "what shall hold is written with `==`, `<=` or `>=`",
+            ("sigma", "=" | "==" | ":") => {
+                "how uncertain a measurement is stands behind it without a sign: `sigma 1 [cm]`"
+            }
             (_, "=") if has(Rule::kw_in) && first == "for" => "write `for i in 1 .. 3 { ... }`",
             (_, "{") if has(Rule::dots) => "a range is written `1 .. 3`",
             (_, ";") if first == "output" && has(Rule::colon) => {

@@ -86,7 +86,14 @@ fn advice(c: char) -> (&'static str, String) {
         '%' => ("", "write a share as a number, `0.05`; comments begin with `//`"),
         '#' => ("", "comments begin with `//`"),
         '@' => ("*", "write `*`, which is the product of matrices too"),
-        '~' => ("", "say which side is meant, with `<=` or `>=`"),
+        '~' => (
+            "",
+            "say which side is meant, with `<=` or `>=`; how uncertain a measurement is stands behind it: `x == 2 [cm] sigma 1 [cm]`",
+        ),
+        '±' => (
+            "",
+            "bounds are two numbers, `x in 1 .. 3`; how uncertain a measurement is stands behind it: `x == 2 [cm] sigma 1 [cm]`",
+        ),
         '!' => ("", "write each constraint with `==`, `<=` or `>=`"),
         '\\' => ("", "write the equation: `A * x == b`, with `x` a state, an input or an output"),
         '?' => ("", "write `if a <= b { ... } else { ... }`"),
