@@ -5,6 +5,10 @@
 //! wrong number of coordinates.
 //! A value is given a meaning inside its target: `tau` and `t` are those of the target's phase or agent.
 
+use std::rc::Rc;
+
+use ntg_structure::Unit;
+
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::problem::{Form, Guess, GuessKind, GuessScope};
@@ -22,10 +26,10 @@ use crate::syntax::ast::{Assign, Event, Expr, GuessKind as Kind, ItemKind, Path,
 pub(super) struct Guessed<'a> {
     pub(super) name: String,
     pub(super) index: Option<Form>,
-    pub(super) dimension: Dimension,
     /// The context inside the scope that the output belongs to.
     pub(super) cx: Context<'a>,
-    pub(super) span: Span,
+    /// Something of its dimension, shown in its unit, where its name stands.
+    pub(super) target: Value,
 }
 
 impl<'a> Elaborator<'a> {
@@ -98,7 +102,8 @@ impl<'a> Elaborator<'a> {
                     at.phase = None;
                 }
                 at.scope = home;
-                let node = self.guess_value(&at, value, &[], self.time, path.span)?;
+                let target = self.wanted_time(path.span);
+                let node = self.guess_value(&at, value, &[], &target)?;
                 let scope = self.guess_scope(&at)?;
                 self.push_guess(cx, scope, GuessKind::Duration(node));
             }
@@ -172,7 +177,7 @@ impl<'a> Elaborator<'a> {
         at: &[Form],
     ) -> Option<()> {
         let guessed = self.guessed_output(inner, segment, at, span)?;
-        let node = self.guess_value(&guessed.cx, value, at, guessed.dimension, span)?;
+        let node = self.guess_value(&guessed.cx, value, at, &guessed.target)?;
         let scope = self.guess_scope(&guessed.cx)?;
         let kind = GuessKind::Output { output: guessed.name, index: guessed.index, value: node };
         self.push_guess(cx, scope, kind);
@@ -194,7 +199,9 @@ impl<'a> Elaborator<'a> {
         }
         let index = if axes.is_empty() { None } else { self.array_member(inner, segment, &axes, at)? };
         let dimension = self.variables[variable].1.unwrap_or(Dimension::NONE);
-        let node = self.guess_value(inner, value, at, dimension, span)?;
+        let unit = self.problem.variables.get(variable).map(|variable| variable.unit.clone());
+        let target = self.wanted(dimension, unit, span);
+        let node = self.guess_value(inner, value, at, &target)?;
         let scope = self.any_scope(inner);
         self.push_guess(cx, scope, GuessKind::Variable(variable, index, node));
         Some(())
@@ -214,7 +221,8 @@ impl<'a> Elaborator<'a> {
         let dimension = self.output_dimensions[home][k]?;
         let axes = self.output_axes[home][k].clone();
         let index = self.array_member(cx, segment, &axes, at)?;
-        Some(Guessed { name, index, dimension, cx: cx.clone(), span })
+        let unit = self.problem.phases[home].outputs[k].unit.clone();
+        Some(Guessed { name, index, cx: cx.clone(), target: self.wanted(dimension, Some(unit), span) })
     }
 
     /// A guessed value of the dimension of its target.
@@ -223,19 +231,28 @@ impl<'a> Elaborator<'a> {
         cx: &Context<'a>,
         expr: &'a Expr,
         at: &[Form],
-        dimension: Dimension,
-        target: Span,
+        target: &Value,
     ) -> Option<NodeId> {
         let value = match at {
             [] => self.usable(cx, expr, Use::Guess)?,
             _ => self.usable_side(cx, expr, at, Use::Guess)?,
         };
-        let zero = self.problem.dag.constant(0.0);
-        let target = Value::new(zero, dimension, target);
-        if self.clash("compare", &target, &value) {
+        if self.clash("compare", target, &value) {
             return None;
         }
         Some(value.node)
+    }
+
+    /// What a guess is held against.
+    fn wanted(&mut self, dimension: Dimension, unit: Option<Unit>, span: Span) -> Value {
+        let zero = self.problem.dag.constant(0.0);
+        Value::new(zero, dimension, span).shown_in(unit.map(Rc::new))
+    }
+
+    /// The same for a duration or a start time.
+    fn wanted_time(&mut self, span: Span) -> Value {
+        let unit = self.clock();
+        self.wanted(self.time, Some(unit), span)
     }
 
     /// The stretch of time of a context.
@@ -275,7 +292,8 @@ impl<'a> Elaborator<'a> {
             self.report(finding.help("name it: `duration(agent) = ...`"));
             return None;
         };
-        let node = self.guess_value(&inner, value, &[], self.time, span)?;
+        let target = self.wanted_time(span);
+        let node = self.guess_value(&inner, value, &[], &target)?;
         match (event, &scope) {
             (Event::Duration, _) => self.push_guess(cx, scope, GuessKind::Duration(node)),
             (Event::Start, GuessScope::Agent(..)) => self.push_guess(cx, scope, GuessKind::Start(node)),

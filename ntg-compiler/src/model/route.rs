@@ -11,7 +11,6 @@ use super::scope::{Context, Entity};
 use super::shape::Shape;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::NodeId;
-use crate::source::Span;
 use crate::syntax::ast::{Expr, Path, Point, Route};
 
 /// An output of a route: itself, or the elements of a vector.
@@ -34,7 +33,8 @@ impl<'a> Elaborator<'a> {
         let scope = self.guess_scope(&first.cx.clone())?;
         for other in outputs.iter().flat_map(|routed| &routed.elements) {
             if self.guess_scope(&other.cx.clone()).as_ref() != Some(&scope) {
-                let finding = Diagnostic::new(Code::NotGuessable, other.span, "a route is about one phase or agent");
+                let finding =
+                    Diagnostic::new(Code::NotGuessable, other.target.span, "a route is about one phase or agent");
                 self.report(finding.help("write a route for each"));
                 return None;
             }
@@ -132,7 +132,7 @@ impl<'a> Elaborator<'a> {
             _ => {
                 let wanted = Shape::Of(vec![n]);
                 let help = "a point has one coordinate for each element; a matrix stands for its rows";
-                self.misfit_shapes((elements[0].span, &wanted), (value.span, &shape), help);
+                self.misfit_shapes((elements[0].target.span, &wanted), (value.span, &shape), help);
                 return None;
             }
         };
@@ -152,7 +152,6 @@ impl<'a> Elaborator<'a> {
     }
 
     fn coordinate(&mut self, element: &Guessed<'a>, value: &'a Expr, at: &[Form]) -> Option<NodeId> {
-        let (cx, dimension, span): (Context<'a>, _, Span) = (element.cx.clone(), element.dimension, element.span);
-        self.guess_value(&cx, value, at, dimension, span)
+        self.guess_value(&element.cx, value, at, &element.target)
     }
 }
