@@ -223,6 +223,12 @@ impl<'a> Elaborator<'a> {
     }
 
     fn cycle(&mut self, cx: &Context<'a>, definition: usize, span: Span) -> Value {
+        let finding = self.needs_itself(cx, definition, span);
+        self.refuse(finding, span)
+    }
+
+    /// What is said of a definition that needs itself, at `span`.
+    pub(super) fn needs_itself(&self, cx: &Context<'a>, definition: usize, span: Span) -> Diagnostic {
         let circle = self.circle_of(cx, definition);
         let name = |d: &usize| format!("`{}`", self.definitions[*d].name.text);
         let mut names: Vec<String> = circle.iter().map(name).collect();
@@ -234,8 +240,7 @@ impl<'a> Elaborator<'a> {
         } else {
             finding = finding.label(span, "needed here");
         }
-        finding = finding.help("what is unknown and not defined by the rest is an `output` or a `variable`");
-        self.refuse(finding, span)
+        finding.help("what is unknown and not defined by the rest is an `output` or a `variable`")
     }
 
     /// The definitions of a circle, the one declared first in front, so that it is told once

@@ -184,6 +184,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) shapes: Option<KnownShapes>,
     /// The definitions whose shapes are being looked for, and whether one needs its own.
     pub(super) shaping: Vec<usize>,
+    /// The same with those that are looked for before the shapes that need them.
+    pub(super) shapes_open: Vec<usize>,
     pub(super) recurs: bool,
     pub(super) unknown_indices: u32,
     /// The sums of squares of which nodes are the roots.
@@ -278,6 +280,7 @@ impl<'a> Elaborator<'a> {
             member_names: Map::default(),
             shapes: None,
             shaping: Vec::new(),
+            shapes_open: Vec::new(),
             recurs: false,
             unknown_indices: 0,
             squares: Map::default(),

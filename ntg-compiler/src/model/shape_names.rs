@@ -9,7 +9,7 @@ use super::scope::{Context, Entity, Meaning, Point, look_up};
 use super::shape::{Ends, Shape, whole_axes};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{Path, Segment};
+use crate::syntax::ast::{ExprKind, Path, Segment};
 
 impl<'a> Elaborator<'a> {
     pub(super) fn path_shape(&mut self, cx: &Context<'a>, path: &'a Path) -> Option<Shape> {
@@ -168,11 +168,22 @@ impl<'a> Elaborator<'a> {
     pub(super) fn member_shape(&mut self, cx: &Context<'a>, definition: usize) -> Option<Shape> {
         let key = (definition, cx.scope);
         if let Some(known) = self.member_shapes.get(&key) {
+            let known = known.clone();
             self.recurs |= self.shaping.contains(&definition);
-            return known.clone();
+            if self.shapes_open.contains(&definition) && self.definitions[definition].indices().next().is_none() {
+                let value = self.definitions[definition].value;
+                let circle = self.needs_itself(cx, definition, value.span);
+                // Elements of a list may need those before them.
+                if !matches!(value.kind, ExprKind::Tuple(_)) {
+                    let _ = self.refuse(circle, value.span);
+                    return None;
+                }
+            }
+            return known;
         }
         // What needs itself is a number here; whoever elaborates it tells of the circle.
         self.member_shapes.insert(key, Some(Shape::NUMBER));
+        self.shapes_open.push(definition);
         self.warm_shapes(cx, definition);
         let lexical = self.definitions[definition].scope;
         let mut inner = self.home(cx, lexical);
@@ -186,6 +197,7 @@ impl<'a> Elaborator<'a> {
         let shape = self.shape(&inner, value).filter(|_| !self.meets_unknown);
         self.meets_unknown = met_before;
         self.shaping.pop();
+        self.shapes_open.pop();
         self.member_shapes.insert(key, shape.clone());
         shape
     }
