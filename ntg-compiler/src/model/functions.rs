@@ -224,8 +224,14 @@ impl<'a> Elaborator<'a> {
             let has_members = self.axes_of(cx, entity, name).is_some_and(|axes| !axes.is_empty());
             let help = match call.arguments.as_slice() {
                 [only] if has_members => format!("an element is `{name}[{}]`", self.text(only.span)),
-                [Expr { kind: ExprKind::Number(_) | ExprKind::Path(_), .. }] if entity == Entity::Output => {
+                [Expr { kind: ExprKind::Number(_), .. }] if entity == Entity::Output => {
                     format!("at an end write `initial({name})` or `final({name})`; to multiply, write `{name} * (...)`")
+                }
+                [time @ Expr { kind: ExprKind::Path(_), .. }] if entity == Entity::Output => {
+                    let time = self.text(time.span);
+                    format!(
+                        "at a time write `at({time}, {name})`, at an end `initial({name})` or `final({name})`; to multiply, write `{name} * (...)`"
+                    )
                 }
                 _ => format!("to multiply, write `{name} * (...)`"),
             };

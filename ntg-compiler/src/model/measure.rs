@@ -83,7 +83,7 @@ impl<'a> Elaborator<'a> {
     fn measured_element(&mut self, cx: &Context<'a>, measured: Measured<'a>, at: &[Form]) {
         let Measured { constraint, left, right, sigma, .. } = measured;
         let mut value = |expr: &'a Expr| {
-            let value = self.usable_side(cx, expr, at, Use::Temporal);
+            let value = self.usable_side(cx, expr, at, Use::Measured);
             self.event = None;
             value
         };

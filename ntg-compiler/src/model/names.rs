@@ -343,7 +343,13 @@ impl<'a> Elaborator<'a> {
                 Some(size) => {
                     format!("`{name}[{size}]` is read as a quantity in {size}; as a size write `{name}[1 .. {size}]`")
                 }
-                None => format!("write `{name}` alone"),
+                None => match segment.indices.last().map(|index| self.text(index.span)) {
+                    // A time from a list, as of a measurement.
+                    Some(time) if time.contains('[') => {
+                        format!("write `{name}` alone; its value at a time is `at({time}, {name})`")
+                    }
+                    _ => format!("write `{name}` alone"),
+                },
             },
             1 => format!("write `{name}[1]` or `{name}[i]`"),
             _ => format!("write `{name}[1, 1]` or `{name}[i, j]`"),

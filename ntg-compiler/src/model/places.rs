@@ -6,9 +6,9 @@
 //! Finds: places that only the solve would tell, places outside (E093), delays (E094).
 
 use super::elaborator::Elaborator;
-use super::mention::mentions_time;
+use super::mention::{mentioned, mentions_time};
 use super::problem::{Duration, Form, IndexId, Instant, Leaf, PhaseAt, Places, Start};
-use super::scope::{Allow, Context, Point};
+use super::scope::{Allow, Context, Entity, PROBLEM, Point};
 use super::settle::Use;
 use super::time::Stretch;
 use super::value::{Flaw, OpenIndex, Value, What};
@@ -359,7 +359,18 @@ impl<'a> Elaborator<'a> {
         let text = self.text(time.span);
         let message =
             format!("where `{text}` lies is not known before the solve: a place is made of constants and durations");
-        let help = self.place_help(stretches);
+        let is_parameter = |name: &&str| {
+            let declared = self.scopes[PROBLEM].names.get(*name);
+            declared.is_some_and(|declared| matches!(declared.entity, Entity::Parameter(_)))
+        };
+        let own = match &time.kind {
+            ExprKind::Path(path) => path.segments.first().map(|segment| segment.name.text.as_str()),
+            _ => None,
+        };
+        let help = match mentioned(time).into_iter().chain(own).find(is_parameter) {
+            Some(name) => format!("`{name}` may change without recompiling: declare it by `const`"),
+            None => self.place_help(stretches),
+        };
         self.refuse(Diagnostic::new(Code::UnknownPlace, time.span, message).help(help), time.span)
     }
 

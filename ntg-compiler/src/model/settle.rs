@@ -5,6 +5,7 @@
 use super::elaborator::Elaborator;
 use super::value::{Flaw, Misplaced, Value, What};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::source::Span;
 
 /// Where an expression stands that belongs to no point of the trajectory.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -13,6 +14,8 @@ pub(super) enum Use<'s> {
     Objective,
     /// A constraint in `temporal`.
     Temporal,
+    /// A side of a measurement.
+    Measured,
     /// A bound of a variable, a duration or a start time; which one in words.
     Bound(&'s str),
     /// Where only constants stand; for what in words.
@@ -36,10 +39,38 @@ impl Elaborator<'_> {
                 None
             }
             Some(Flaw::Misplaced(misplaced)) => {
-                let finding = misplacement(misplaced, place);
+                let mut finding = misplacement(misplaced, place);
+                if place == Use::Objective && misplaced.what == What::Trajectory && !misplaced.text.contains('.') {
+                    let whole = self.text(self.as_one_number(misplaced.span));
+                    finding =
+                        finding.help(format!("write `integral({whole})`, `initial({whole})` or `final({whole})`"));
+                }
                 self.report(finding);
                 None
             }
+        }
+    }
+
+    /// What stands around a name and makes one number of it: `dot(u, u)` around `u`, with the power behind it.
+    fn as_one_number(&self, name: Span) -> Span {
+        let text = &self.source.text;
+        let (before, after) = (&text[..name.start as usize], &text[name.end as usize..]);
+        let mut whole = name;
+        let opens = before.rfind('(').filter(|at| !before[*at..].contains([')', ';', '{']));
+        let closes = after.find(')').filter(|at| !after[..*at].contains(['(', ';', '}']));
+        for function in ["dot", "norm"] {
+            if let (Some(opens), Some(closes)) = (opens, closes)
+                && let Some(rest) = before[..opens].strip_suffix(function)
+                && !rest.ends_with(|c: char| c.is_alphanumeric() || c == '_')
+            {
+                whole = Span { start: rest.len() as u32, end: name.end + closes as u32 + 1 };
+            }
+        }
+        let power =
+            text[whole.end as usize..].strip_prefix('^').map(|rest| rest.bytes().take_while(u8::is_ascii_digit));
+        match power.map(Iterator::count) {
+            Some(digits) if digits > 0 => Span { end: whole.end + 1 + digits as u32, ..whole },
+            _ => whole,
         }
     }
 
@@ -63,6 +94,7 @@ fn misplacement(misplaced: &Misplaced, place: Use<'_>) -> Diagnostic {
     let wanted = match place {
         Use::Objective => "an objective is a single number".to_owned(),
         Use::Temporal => "a `temporal` constraint belongs to no single point".to_owned(),
+        Use::Measured => "a measurement is taken at a time".to_owned(),
         Use::Bound(what) => format!("{what} is made of constants and parameters"),
         Use::Constant(what) => format!("{what} must be known when the spec is compiled"),
         Use::Guess => "a guess is made of parameters, `tau`, `t` and guessed durations".to_owned(),
@@ -94,6 +126,10 @@ fn remedy(misplaced: &Misplaced, place: Use<'_>) -> String {
             None if misplaced.what == What::Time => format!("write the name of the duration, or `final({text})`"),
             None => format!("write `integral({text})`, `initial({text})` or `final({text})`"),
         },
+        (What::Trajectory, Use::Measured) => match text.rsplit_once('.') {
+            Some((path, inner)) => format!("say when: `at({path}, time, {inner})`"),
+            None => format!("say when: `at(time[i], {text})`, inside `for i in 1 .. n {{ ... }}`"),
+        },
         (What::ScaledTime, Use::Objective | Use::Temporal) => {
             format!("write it inside `integral(...)`, where `{text}` has a value at every point")
         }
@@ -107,6 +143,6 @@ fn remedy(misplaced: &Misplaced, place: Use<'_>) -> String {
             None => "write it inside a phase".to_owned(),
         },
         (_, Use::Place) => "write a time such as `2.5 [s]`, or a multiple of the duration such as `0.5 * T`".to_owned(),
-        (_, Use::Objective | Use::Temporal) => "write it in another block".to_owned(),
+        (_, Use::Objective | Use::Temporal | Use::Measured) => "write it in another block".to_owned(),
     }
 }
