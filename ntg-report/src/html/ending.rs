@@ -8,37 +8,24 @@ use super::tables::{number, place_words, prose, with_unit};
 use crate::run::{Constraint, Run};
 use ntg_runtime::report::{Missed, Resolution};
 
-/// Violation of a constraint between the points, and difference of the objective and its finer integral relative to the
-/// larger of both, that are worth a warning: `Settings::between_tolerance` without a word. A fit: the specs beside the
-/// gallery stay below 0.5 %, and 1 % is more than a comparison of runs may hide.
-const OFF: f64 = 0.01;
 /// What `ntg solve --refine` is told where the objective is off: an error that nobody would see.
 const REFINED: &str = "1e-3";
 
-/// Constraints that are met at the points and missed between them.
+/// Constraints that are met at the points and missed between them by more than the run's tolerance.
 fn missed_between(run: &Run) -> Vec<&Constraint> {
-    run.constraints.iter().filter(|constraint| state(constraint) == State::Between).collect()
+    run.constraints.iter().filter(|constraint| state(constraint, run.tolerance()) == State::Between).collect()
 }
 
-/// The relative difference of the objective and its finer integral, where it is worth a warning.
+/// The relative difference of the objective and its finer integral, where it is worth a warning. A refined solution tells
+/// of its objective there.
 fn off(run: &Run) -> Option<f64> {
     let apart = ntg_runtime::report::cost_apart(run.objective, run.objective_fine);
-    (run.has_solution() && apart > OFF).then_some(apart)
+    (run.has_solution() && run.refinement.is_none() && apart > run.tolerance()).then_some(apart)
 }
 
-/// Whether what holds at the points holds between them.
-fn holds_between(run: &Run) -> bool {
-    missed_between(run).is_empty() && off(run).is_none()
-}
-
-/// How the solve ended, in the words of `ntg solve`, and by the page's own measure, which is stricter: `solved at the points`
-/// wherever a constraint is shown as missed between them, worth a warning or not.
+/// How the solve ended, in the words of `ntg solve`.
 pub fn ending(run: &Run) -> String {
-    if !run.has_solution() {
-        return run.status.clone();
-    }
-    let shown = if holds_between(run) { Resolution::Fine } else { Resolution::Coarse };
-    resolution(run).max(shown).ending(&run.status)
+    if run.has_solution() { resolution(run).ending(&run.status) } else { run.status.clone() }
 }
 
 /// Whether a solution of the points is one of the problem: what the file says, or, where it is older, what it says of
@@ -50,22 +37,30 @@ pub fn resolution(run: &Run) -> Resolution {
     let of_file = || {
         let most = run.constraints.iter().filter_map(|constraint| Some(constraint.between.as_ref()?.relative));
         let missed = most.map(Missed::Limit).chain([Missed::Objective(off(run).unwrap_or(0.0))]);
-        Resolution::of(missed, OFF)
+        Resolution::of(missed, run.tolerance())
     };
     Resolution::from_word(&run.resolution).unwrap_or_else(of_file)
 }
 
-/// How the solve ended. What is missed between the points is no good end.
+/// How the solve ended. What is missed between the points is no good end, and what holds at the points alone is none.
 pub(super) fn status(run: &Run) -> Markup {
-    let good = run.is_sound() && holds_between(run);
+    let bad = !run.has_solution() || resolution(run) == Resolution::Unresolved;
+    let good = run.is_sound() && resolution(run) == Resolution::Fine;
     html! {
-        span.status.good[good].warned[run.has_solution() && !good].bad[!run.has_solution()] {
+        span.status.good[good].warned[!good && !bad].bad[bad] {
             @match ending(run).split_once(": ") {
                 Some((word, why)) => { b { (word) } ": " (prose(why)) }
                 None => { b { (ending(run)) } }
             }
         }
     }
+}
+
+/// `ntg solve` of the run's spec.
+fn command(run: &Run) -> String {
+    let name = run.spec.as_ref().map_or("SPEC", |spec| spec.name.as_str());
+    let plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
+    if name.chars().all(plain) { format!("ntg solve {name}") } else { format!("ntg solve '{name}'") }
 }
 
 /// By how much the objective differs from its finer integral; nothing where that is little.
@@ -78,7 +73,7 @@ pub(super) fn cost(run: &Run) -> Markup {
             (with_unit(run.objective, unit)) ": the two differ by "
             (number((1e3 * apart).round() / 10.0)) " % of the larger. The points are too few for its "
             "integrals, and the optimum may be one of these points alone. More points or intervals help: "
-            code { "ntg solve --refine " (REFINED) } " adds intervals until both agree."
+            code { (command(run)) " --refine " (REFINED) } " adds intervals until both agree."
         }
     }
 }
@@ -99,7 +94,7 @@ pub(super) fn missed(run: &Run) -> Markup {
                     " by " (with_unit(between.violation, &worst.unit))
                     (place_words(between.t, &between.phase, &run.independent))
                 }
-                ". " code { "ntg solve --between refine --between-tolerance " (tolerance(relative(worst))) }
+                ". " code { (command(run)) " --between refine --between-tolerance " (tolerance(relative(worst))) }
                 " adds intervals until that is small."
             }
         }
@@ -124,41 +119,64 @@ mod tests {
         Run { status: "solved".to_owned(), objective, objective_fine, ..Run::default() }
     }
 
+    fn missing(relative: f64) -> Run {
+        let between = Some(Worst { violation: relative, relative, ..Worst::default() });
+        Run { constraints: vec![Constraint { between, ..Constraint::default() }], ..solved(1.0, 1.0) }
+    }
+
+    #[test]
+    fn the_head_says_what_the_run_says_by_the_tolerance_of_the_run() {
+        for (told, relative, tolerance, word, class) in [
+            ("fine", 1e-3, 0.0, "solved", "good"),
+            ("", 1e-3, 0.0, "solved", "good"),
+            ("coarse", 1e-3, 1e-4, "solved at the points", "warned"),
+            ("", 1e-3, 1e-4, "solved at the points", "warned"),
+            ("coarse", 0.1, 0.0, "solved at the points", "warned"),
+            ("", 0.1, 0.2, "solved", "good"),
+            ("unresolved", 3.0, 0.0, "solved at the points, and not between them", "bad"),
+            ("", 3.0, 0.0, "solved at the points, and not between them", "bad"),
+        ] {
+            let run = Run { resolution: told.to_owned(), between_tolerance: tolerance, ..missing(relative) };
+            assert_eq!(ending(&run), word, "{told} {relative} {tolerance}");
+            let shown = status(&run).into_string();
+            assert!(shown.contains(&format!("status {class}\"")), "{shown}");
+            assert_eq!(missed(&run).into_string().is_empty(), word == "solved", "{told} {relative} {tolerance}");
+        }
+    }
+
     #[test]
     fn an_objective_that_its_finer_integral_does_not_bear_out_is_no_good_end() {
         let run = solved(11.0458, 12.8027);
         assert_eq!(ending(&run), "solved at the points");
-        // What the page marks at a constraint its head says too, although it is not worth a warning.
-        let mut little = solved(1.0, 1.0);
-        let between = Some(Worst { violation: 1e-3, relative: 1e-3, ..Worst::default() });
-        little.constraints = vec![Constraint { between, ..Constraint::default() }];
-        assert_eq!(ending(&little), "solved at the points");
-        assert!(status(&little).into_string().contains("status warned"));
         let mut nowhere = solved(1.0, 1.0);
         nowhere.resolution = Resolution::Unresolved.word().to_owned();
         assert_eq!(ending(&nowhere), "solved at the points, and not between them");
         assert!(status(&run).into_string().contains("status warned"));
         let words = cost(&run).into_string();
         assert!(words.contains("12.8027 instead of 11.0458: the two differ by 13.7 % of the larger"), "{words}");
-        assert!(words.contains("<code>ntg solve --refine 1e-3</code>"), "{words}");
+        assert!(words.contains("<code>ntg solve SPEC --refine 1e-3</code>"), "{words}");
         for near in [solved(1.702, 1.694), solved(1e-12, 3e-12), solved(f64::NAN, f64::NAN), solved(0.0, 0.0)] {
             assert!(status(&near).into_string().contains("status good") && cost(&near).into_string().is_empty());
         }
     }
 
     #[test]
-    fn the_command_refines_what_is_missed() {
-        for (found, told) in [(5e-4, "1e-5"), (1e-3, "1e-4"), (0.0123, "1e-3"), (9.9, "1e-2"), (1.2e-4, "1e-5")] {
+    fn the_command_refines_what_is_missed_in_its_spec() {
+        for (found, told) in [(0.0123, "1e-3"), (0.02, "1e-3"), (9.9, "1e-2")] {
             assert_eq!(tolerance(found), told);
-            let mut run = solved(1.0, 1.0);
-            let between = Some(Worst { violation: found, relative: found, ..Worst::default() });
-            run.constraints = vec![Constraint { between, ..Constraint::default() }];
-            let words = missed(&run).into_string();
-            assert!(
-                words.contains(&format!("ntg solve --between refine --between-tolerance {told}</code>")),
-                "{words}"
-            );
+            let words = missed(&missing(found)).into_string();
+            let command = format!("<code>ntg solve SPEC --between refine --between-tolerance {told}</code>");
+            assert!(words.contains(&command), "{words}");
         }
+        assert_eq!(tolerance(1e-3), "1e-4");
+        let spec = |name: &str| Some(crate::run::Spec { name: name.to_owned(), ..crate::run::Spec::default() });
+        let words = |name| missed(&Run { spec: spec(name), ..missing(0.1) }).into_string();
+        assert!(words("specs/arm_5.ntg").contains("<code>ntg solve specs/arm_5.ntg --between refine"));
+        assert!(
+            words("my arm.ntg").contains("<code>ntg solve 'my arm.ntg' --between refine"),
+            "{}",
+            words("my arm.ntg")
+        );
     }
 
     #[test]

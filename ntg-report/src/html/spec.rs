@@ -4,12 +4,10 @@
 use maud::{Markup, html};
 
 use super::tables::{multiplier_words, number, place_words, prose, with_unit};
-use crate::run::{Constraint, Independent, Run, Spec};
+use crate::run::{Constraint, Run, Spec};
 
 /// Relative violations at points above this are violations.
 pub(super) const VIOLATED: f64 = 1e-6;
-/// Relative violations between points above this are worth a mark.
-pub(super) const BETWEEN: f64 = 1e-4;
 
 /// How a constraint ended, from bad to good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,14 +41,14 @@ impl State {
     }
 }
 
-/// How a constraint ended.
-pub(super) fn state(constraint: &Constraint) -> State {
+/// How a constraint ended; `tolerance` is how much is missed between the points without a word, [`Run::tolerance`].
+pub(super) fn state(constraint: &Constraint, tolerance: f64) -> State {
     let worst = |worst: &Option<crate::run::Worst>| worst.as_ref().map_or(0.0, |w| w.relative);
     let (points, between) = (worst(&constraint.points), worst(&constraint.between));
     if points > VIOLATED || points.is_nan() {
         return State::Violated;
     }
-    if between > BETWEEN {
+    if between > tolerance || between.is_nan() {
         return State::Between;
     }
     let members = &constraint.members;
@@ -110,11 +108,11 @@ fn text(spec: &Spec, run: &Run) -> Markup {
     let mut parts: Vec<Markup> = vec![];
     for mark in &marks {
         parts.push(plain(&spec.text[at..mark.start]));
-        let state = mark.constraints.iter().map(|c| state(c)).min().unwrap_or(State::Inactive);
+        let state = mark.constraints.iter().map(|c| state(c, run.tolerance())).min().unwrap_or(State::Inactive);
         parts.push(html! {
             mark class=(state.class()) tabindex="0" {
                 (&spec.text[mark.start..mark.end])
-                span.tip role="tooltip" { @for constraint in &mark.constraints { (tip(constraint, &run.independent)) } }
+                span.tip role="tooltip" { @for constraint in &mark.constraints { (tip(constraint, run)) } }
             }
         });
         at = mark.end;
@@ -124,8 +122,8 @@ fn text(spec: &Spec, run: &Run) -> Markup {
 }
 
 /// What one reads on pointing at a constraint.
-fn tip(constraint: &Constraint, independent: &Independent) -> Markup {
-    let state = state(constraint);
+fn tip(constraint: &Constraint, run: &Run) -> Markup {
+    let (state, independent) = (state(constraint, run.tolerance()), &run.independent);
     html! {
         span.tipline {
             b { (constraint.name) } " is " (state.word())
@@ -245,10 +243,10 @@ mod tests {
             members: vec![member],
             ..Constraint::default()
         };
-        assert_eq!(state(&with(member(None, Some(1.0), 0.5), 0.0)), State::Inactive);
-        assert_eq!(state(&with(member(None, Some(1.0), 1.0), 0.0)), State::Active);
-        assert_eq!(state(&with(member(Some(1.0), Some(1.0), 1.0), 0.0)), State::Equality);
-        assert_eq!(state(&with(member(None, Some(1.0), 1.1), 0.1)), State::Violated);
-        assert_eq!(state(&with(member(None, Some(1.0), 1.1), f64::NAN)), State::Violated);
+        assert_eq!(state(&with(member(None, Some(1.0), 0.5), 0.0), 0.01), State::Inactive);
+        assert_eq!(state(&with(member(None, Some(1.0), 1.0), 0.0), 0.01), State::Active);
+        assert_eq!(state(&with(member(Some(1.0), Some(1.0), 1.0), 0.0), 0.01), State::Equality);
+        assert_eq!(state(&with(member(None, Some(1.0), 1.1), 0.1), 0.01), State::Violated);
+        assert_eq!(state(&with(member(None, Some(1.0), 1.1), f64::NAN), 0.01), State::Violated);
     }
 }

@@ -100,7 +100,7 @@ pub(super) fn constraints(run: &Run) -> Markup {
                         th.n title="when the bound moves everywhere at once" { "dJ*/d(bound)" } th { "unit" }
                     } }
                     tbody { @for constraint in &run.constraints {
-                        @let state = state(constraint);
+                        @let state = state(constraint, run.tolerance());
                         tr.dim[state == State::Inactive] {
                             td.name { (constraint.name) (which(run, constraint)) }
                             td { (constraint.block) }

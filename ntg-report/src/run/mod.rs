@@ -42,6 +42,9 @@ pub struct Run {
     pub status: String,
     /// Whether a solution of the points is one of the problem: `fine`, `coarse` or `unresolved`; empty in older files.
     pub resolution: String,
+    /// The largest relative violation between the points of which nothing is said; 0 in older files, see [`Run::tolerance`].
+    #[serde(with = "numbers::one")]
+    pub between_tolerance: f64,
     /// What everything is a function of; every time is in its unit.
     pub independent: Independent,
     /// What to try next; empty when solved.
@@ -510,6 +513,13 @@ impl Run {
     /// Whether there is a solution: solved or acceptable.
     pub fn has_solution(&self) -> bool {
         self.is_solved() || self.is_acceptable()
+    }
+
+    /// The largest relative violation between the points of which nothing is said: what the run was told, or what holds
+    /// without a word.
+    pub fn tolerance(&self) -> f64 {
+        let default = || ntg_runtime::settings::Settings::default().between_tolerance;
+        if self.between_tolerance > 0.0 { self.between_tolerance } else { default() }
     }
 
     /// Whether it is solved and there is nothing to warn of.

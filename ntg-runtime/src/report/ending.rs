@@ -133,7 +133,7 @@ impl Report {
     pub(crate) fn advised(mut self) -> Self {
         if self.resolution() == Resolution::Unresolved && self.advice.is_empty() {
             "Use more points or intervals, let the mesh be refined (`refine`, `between`), or look for another minimum \
-             (`starts`): this one is none of the problem."
+             (`starts`): what was found solves the equations at the points only, it is not a solution of the problem."
                 .clone_into(&mut self.advice);
         }
         self

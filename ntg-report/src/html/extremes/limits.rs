@@ -4,7 +4,7 @@
 //! only tell a limit of the quantity from that of a difference: `v <= v_max` may bound `v` or `v - v_max`.
 
 use crate::figure::base;
-use crate::html::spec::{BETWEEN, State, VIOLATED, state};
+use crate::html::spec::{State, VIOLATED, state};
 use crate::run::{Constraint, Member, Run, Series};
 
 /// Mean difference of two curves, relative to their range, up to which they are one curve: samples of one that jumps
@@ -38,7 +38,7 @@ impl Limit {
         let room = below.into_iter().chain(above).fold(f64::INFINITY, f64::min);
         let (lower, upper) = (member.lower, member.upper);
         let phase = split(&member.name).0.to_owned();
-        Self { place, phase, lower, upper, room, state: member_state(constraint, member, room) }
+        Self { place, phase, lower, upper, room, state: member_state(constraint, (member, room), run.tolerance()) }
     }
 }
 
@@ -70,14 +70,14 @@ fn size(values: &[f64]) -> f64 {
 }
 
 /// How one member ended; the state of its constraint is that of the worst of them.
-fn member_state(constraint: &Constraint, member: &Member, room: f64) -> State {
-    let whole = state(constraint);
+fn member_state(constraint: &Constraint, (member, room): (&Member, f64), tolerance: f64) -> State {
+    let whole = state(constraint, tolerance);
     let worst = [&constraint.points, &constraint.between].into_iter().flatten().find(|worst| worst.relative > 0.0);
     let size = [member.lower, member.upper].into_iter().flatten().map(f64::abs).fold(1.0, f64::max);
     let scale = worst.map(|worst| worst.violation / worst.relative).filter(|scale| *scale > 0.0).unwrap_or(size);
     match whole {
         State::Violated if room < -VIOLATED * scale => State::Violated,
-        State::Between if room < -BETWEEN * scale => State::Between,
+        State::Between if room < -tolerance * scale => State::Between,
         _ => {
             let alone = Constraint { members: vec![member.clone()], ..Constraint::default() };
             if room <= 0.0 || alone.reaches_a_bound() { State::Active } else { State::Inactive }
