@@ -6,7 +6,15 @@ function NtgClock(place, charts, show, number) {
   if (!place || !times.length) return;
   const first = Math.min(...times), last = Math.max(...times);
   const play = place.appendChild(document.createElement("button"));
-  play.type = "button"; play.textContent = "▶"; play.title = "play";
+  play.type = "button";
+  // Drawn, since not every font has the signs.
+  const sign = (path, title) => {
+    play.innerHTML = `<svg viewBox="0 0 12 12" width="12" height="12" aria-hidden="true"><path fill="currentColor" d="${path}"/></svg>`;
+    play.title = title;
+    play.setAttribute("aria-label", title);
+  };
+  const PLAY = "M2 1 L11 6 L2 11 Z", PAUSE = "M2 1 H5 V11 H2 Z M7 1 H10 V11 H7 Z";
+  sign(PLAY, "play");
   const slider = place.appendChild(document.createElement("input"));
   Object.assign(slider, { type: "range", min: 0, max: 1000, step: "any", value: 0, title: "time" });
   slider.setAttribute("aria-label", "time");
@@ -20,7 +28,7 @@ function NtgClock(place, charts, show, number) {
     reading.textContent = `${place.dataset.name} = ${number(t)} ${place.dataset.unit}`;
     show(t);
   };
-  const stop = () => { cancelAnimationFrame(running); running = null; play.textContent = "▶"; };
+  const stop = () => { cancelAnimationFrame(running); running = null; sign(PLAY, "play"); };
   play.addEventListener("click", () => {
     if (running) { stop(); return; }
     const begun = performance.now() - (slider.value >= 1000 ? 0 : (slider.value / 1000) * WHOLE);
@@ -29,7 +37,7 @@ function NtgClock(place, charts, show, number) {
       set(Math.max(share, 0));
       if (share < 1) running = requestAnimationFrame(step); else stop();
     };
-    play.textContent = "⏸";
+    sign(PAUSE, "pause");
     running = requestAnimationFrame(step);
   });
   slider.addEventListener("input", () => { stop(); set(slider.value / 1000); });

@@ -21,6 +21,20 @@
   const wear = (on) => { root.classList.toggle("dark", on); drawn.forEach((chart) => chart.redraw()); };
   wear(prefers.matches);
   prefers.addEventListener("change", (event) => wear(event.matches));
+  // Paper is light and narrow: charts are drawn anew for it, and again for the screen.
+  const paper = matchMedia("print");
+  let worn = null;
+  const print = (on) => {
+    if (on === (worn !== null)) return;
+    if (on) worn = isDark();
+    root.classList.toggle("paper", on);
+    drawn.forEach((chart) => chart.resize && chart.resize());
+    wear(!on && worn);
+    if (!on) worn = null;
+  };
+  addEventListener("beforeprint", () => print(true));
+  addEventListener("afterprint", () => print(false));
+  paper.addEventListener("change", (event) => print(event.matches));
   document.getElementById("theme").addEventListener("click", () => wear(!isDark()));
 
   const number = (v) => {
@@ -126,10 +140,11 @@
       cursor: { sync: log ? undefined : { key: "t" }, drag: { x: true, y: false } },
       legend: { live: true }, hooks: { draw: [marks(chart)] },
     }, joined(chart.lines), place);
-    new ResizeObserver(() => u.setSize({ width: width(), height: 270 })).observe(place);
+    const resize = () => u.setSize({ width: width(), height: 270 });
+    new ResizeObserver(resize).observe(place);
     // The clock moves the cursor of all charts over time.
     const clock = (t) => { if (!log) u.setCursor({ left: u.valToPos(t, "x"), top: -10 }); };
-    drawn.push({ redraw: () => u.redraw(false, true), clock });
+    drawn.push({ redraw: () => u.redraw(false, true), resize, clock });
   };
 
   for (const place of document.querySelectorAll("[data-chart]")) {

@@ -170,8 +170,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_printed_page_is_light_and_as_wide_as_its_sheet() {
+        for event in ["\"beforeprint\", () => print(true)", "\"afterprint\", () => print(false)"] {
+            assert!(PROGRAM.contains(event), "{event}");
+        }
+        assert!(PROGRAM.contains("wear(!on && worn)"));
+        assert!(STYLE.contains(":root.paper body { width: 17.5cm;"));
+    }
+
+    #[test]
+    fn the_buttons_of_the_clock_need_no_signs_of_a_font() {
+        assert!(!CLOCK.contains(['▶', '⏸']) && CLOCK.contains("<svg"));
+    }
+
+    #[test]
     fn what_users_write_wraps_wherever_it_may_be_longer_than_a_narrow_page() {
-        for selector in [".u-legend th, .u-legend td {", "p, li, h2 {", ".status {", "td.name {", "h1 {"] {
+        for selector in [".u-legend th, .u-legend td {", "p, li, h2, h3 {", ".status {", "td.name {", "h1 {"] {
             let rule = STYLE.split(selector).nth(1).and_then(|rest| rest.split('}').next());
             assert!(rule.is_some_and(|rule| rule.contains("overflow-wrap: anywhere")), "{selector} {rule:?}");
         }
