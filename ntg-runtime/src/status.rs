@@ -163,8 +163,7 @@ impl Status {
             Self::TimeLimit => "Allow more time (`time_limit`), give a better guess, or use fewer intervals first.",
             Self::Cancelled => "Start again from the returned point to go on.",
             Self::StepTooSmall => {
-                "Look for kinks (abs, min, max, tables that jump) and badly scaled quantities; give typical sizes \
-                 (`scales`), or start from another guess."
+                "Look for badly scaled quantities and give typical sizes (`scales`), or start from another guess."
             }
             Self::Unbounded => "Bound the variables, or check the sign of the objective (minimize or maximize).",
             Self::NotFinite(_) => {

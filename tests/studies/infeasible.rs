@@ -29,6 +29,24 @@ fn names(found: &Conflict) -> Vec<&str> {
     names
 }
 
+/// The cosine of a turn has no slope where the turn is 0, so that its first limit seems to contradict itself alone.
+#[test]
+fn of_two_targets_of_one_quantity_both_are_named() {
+    let spec = Shipped::text(
+        "problem Turn {
+            duration T = 5 [s];
+            output turn: spline(order = 4, intervals = 4);
+            param first = 0;
+            param second = 1;
+            minimize integral(der(turn)^2);
+            initial { turn == 0;  der(turn) == 0; }
+            final { cos(turn) == first;  cos(turn) == second; }
+        }",
+    );
+    let found = conflict(&spec, Method::InteriorPoint);
+    assert_eq!(names(&found), ["cos(turn) == first", "cos(turn) == second"], "{found}");
+}
+
 /// The fifth derivative on 60 intervals is 60^5 times what the coefficients are, and its square is beyond the digits of the
 /// condensed matrix. The problem has a solution, and all points to which the method comes back meet all constraints.
 #[test]

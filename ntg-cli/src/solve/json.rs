@@ -17,7 +17,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "status": report.status.label(),
         "ending": report.ending(),
         "resolution": report.resolution().word(),
-        "advice": report.advice,
+        "advice": report.advice_beside(solved.explanation),
         "independent": { "name": independent.name, "unit": independent.unit.symbol },
         "objective": report.objective,
         "objective_unit": report.objective_unit.symbol,

@@ -48,7 +48,9 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
 
 /// The report; where it says that a problem is infeasible, its first line names the culprit.
 fn led(solved: &Solved<'_>) -> String {
-    let text = solved.report.to_string();
+    let mut report = solved.report.clone();
+    solved.report.advice_beside(solved.explanation).clone_into(&mut report.advice);
+    let text = report.to_string();
     let conflict = solved.explanation.and_then(|explanation| explanation.conflict());
     let headline = conflict.filter(|conflict| conflict.settled).and_then(|conflict| conflict.headline());
     match (headline, &solved.report.status, text.split_once('\n')) {

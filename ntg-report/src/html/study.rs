@@ -18,8 +18,8 @@ pub(super) fn explanation(run: &Run) -> Markup {
                     tbody { @for part in &found.parts {
                         tr {
                             td.name {
-                                (part.name)
-                                @if !part.bound && !part.indices.is_empty() { (format!("{:?}", part.indices)) }
+                                @if part.bound { (part.name) } @else { code { (part.name) } }
+                                @if !part.bound && !part.indices.is_empty() { " " (format!("{:?}", part.indices)) }
                             }
                             td.n { @if part.line > 0 { (part.line) } }
                             td.n { @if part.amount != 0.0 { (with_unit(part.amount, &part.unit)) } @else { "–" } }
@@ -93,4 +93,18 @@ fn capitalised(words: &str) -> String {
     let mut letters = words.trim_end_matches(':').chars();
     let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
     format!("{first}{}.", letters.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Explanation, Part};
+
+    #[test]
+    fn the_index_of_a_member_stands_apart_from_its_name() {
+        let part = Part { name: "v == 0".to_owned(), indices: vec![3], ..Part::default() };
+        let found = Explanation { verdict: "conflict".to_owned(), parts: vec![part], ..Explanation::default() };
+        let page = explanation(&Run { explanation: Some(found), ..Run::default() }).into_string();
+        assert!(page.contains("<code>v == 0</code> [3]"), "{page}");
+    }
 }

@@ -33,8 +33,11 @@ impl fmt::Display for Conflict {
         if !self.settled {
             f.write_str("the solve was stopped before its end, at a point that is no solution; ")?;
         }
-        write!(f, "near {} these cannot hold together", self.near)?;
-        f.write_str(if self.minimal {
+        let alone = self.parts.len() == 1 && self.undecided == 0;
+        write!(f, "near {} {}", self.near, if alone { "this cannot hold" } else { "these cannot hold together" })?;
+        f.write_str(if alone {
+            ", whatever else does:"
+        } else if self.minimal {
             "; without any one of them the others could:"
         } else {
             "; perhaps not all of them are needed for that:"

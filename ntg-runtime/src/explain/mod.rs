@@ -143,6 +143,15 @@ impl Explanation {
 }
 
 impl Report {
+    /// What to try next: where it is known which constraints contradict each other, that comes before all that might be
+    /// wrong with the solve.
+    pub fn advice_beside<'a>(&'a self, explanation: Option<&Explanation>) -> &'a str {
+        match explanation.and_then(Explanation::conflict) {
+            Some(_) => Status::Infeasible { rows: vec![] }.advice(),
+            None => &self.advice,
+        }
+    }
+
     /// Why no solution was found: the constraints that cannot hold together near the last point, or near the spec's
     /// own guess where the last point does not tell.
     /// None where there is nothing to explain: the problem was solved, or the solve was stopped (by

@@ -40,7 +40,21 @@ impl Search<'_> {
         let is_part = |(doubtful, ranked): &(bool, Ranked)| !doubtful || ranked.part.amount != 0.0;
         let (mut parts, left): (Vec<_>, Vec<_>) = all.into_iter().partition(is_part);
         parts.sort_by(|(_, a), (_, b)| a.rank().cmp(&b.rank()).then(b.share.total_cmp(&a.share)));
+        if let (1, 1, Some(only)) = (parts.len(), kept.len(), kept.first()) {
+            parts.extend(self.rivals(*only, relaxed).into_iter().map(|part| (false, bound(part))));
+        }
         (parts.into_iter().map(|(_, ranked)| ranked.part).collect(), left.len())
+    }
+
+    /// Other constraints of what a constraint is about. Where the slope of it vanishes, as that of a cosine at 0, a
+    /// constraint seems to contradict nothing but itself.
+    fn rivals(&self, only: usize, relaxed: &Relaxed) -> Vec<Part> {
+        let all = &self.nlp.model.structure.constraints;
+        let own = &all[only];
+        let about = subject(&own.place.text);
+        let is_rival = |c: &usize| *c != only && all[*c].block == own.block && subject(&all[*c].place.text) == about;
+        let rivals = (0..all.len()).filter(|c| about.is_some() && is_rival(c));
+        rivals.filter_map(|c| Some(Part { amount: 0.0, ..self.part(c, relaxed)?.part })).collect()
     }
 
     /// One constraint at its worst row, or at the row with the largest multiplier where all hold.
@@ -111,4 +125,10 @@ impl Search<'_> {
         let declared = last.checked_sub(1).and_then(|at| structure.variables.get(at));
         declared.map(|declared| declared.place.clone()).unwrap_or_default()
     }
+}
+
+/// What the text of a constraint is about: its left side.
+fn subject(text: &str) -> Option<&str> {
+    let ends = ["==", "<=", ">=", " in "].into_iter().filter_map(|sign| text.find(sign));
+    ends.min().map(|end| text[..end].trim())
 }

@@ -36,7 +36,7 @@ pub(super) fn terms(nlp: &Transcription, at: &Evaluation, fine: &[f64]) -> Vec<T
     }
     let terms = structure.terms.iter().zip(sums).zip(fine);
     let report = terms.map(|((term, value), fine)| TermReport {
-        name: term.name.clone().unwrap_or_else(|| term.place.text.clone()),
+        name: term.name.clone().unwrap_or_else(|| statement(&term.place.text)),
         value: shown(structure, term, value),
         fine: shown(structure, term, *fine),
         unit: term.unit.clone(),
@@ -44,8 +44,23 @@ pub(super) fn terms(nlp: &Transcription, at: &Evaluation, fine: &[f64]) -> Vec<T
     report.collect()
 }
 
+/// The text of a statement as a name: without the sign that ends it.
+pub(super) fn statement(text: &str) -> String {
+    text.trim_end().trim_end_matches(';').trim_end().to_owned()
+}
+
 /// A minimised value of a term in the user's sense and unit.
 pub(super) fn shown(structure: &Structure, term: &Term, minimised: f64) -> f64 {
     let sign = if structure.maximize { -1.0 } else { 1.0 };
     sign * minimised / term.unit.factor
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_term_without_a_name_is_called_by_its_text_without_the_semicolon() {
+        assert_eq!(super::statement("minimize worst;"), "minimize worst");
+        assert_eq!(super::statement("minimize integral(u^2) ;"), "minimize integral(u^2)");
+        assert_eq!(super::statement("maximize final(x...)"), "maximize final(x...)");
+    }
 }

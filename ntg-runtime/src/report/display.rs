@@ -96,7 +96,10 @@ fn estimated(f: &mut fmt::Formatter<'_>, estimate: &Estimate) -> fmt::Result {
         write!(f, "\n    {:<24} {share:.0} %, {count} of {} sigma in the mean", measurement.name, brief(mean))?;
         if let Some(worst) = worst.filter(|_| count > 1) {
             let indices: Vec<String> = worst.indices.iter().map(i64::to_string).collect();
-            write!(f, ", at most {} at [{}]", brief(worst.ratio), indices.join(", "))?;
+            write!(f, ", at most {}", brief(worst.ratio))?;
+            if !indices.is_empty() {
+                write!(f, " at [{}]", indices.join(", "))?;
+            }
         }
     }
     if let Some(why) = &estimate.unknown {

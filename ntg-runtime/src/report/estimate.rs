@@ -110,7 +110,7 @@ fn residuals(nlp: &Transcription, x: &[f64]) -> Result<Vec<MeasurementReport>, S
         let values = frame.evaluate_members(&measurement.residual, &measurement.loops, x)?;
         let sigmas = frame.evaluate_members(&measurement.sigma, &measurement.loops, x)?;
         let at = found.iter().position(|(known, _)| *known == measurement.term).unwrap_or_else(|| {
-            let name = term.name.clone().unwrap_or_else(|| term.place.text.clone());
+            let name = term.name.clone().unwrap_or_else(|| super::cost::statement(&term.place.text));
             let unit = measurement.unit.clone();
             let report = MeasurementReport { name, unit, chi2: 0.0, share: 0.0, residuals: vec![] };
             found.push((measurement.term, report));
