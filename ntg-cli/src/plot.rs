@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// Where to write; `.svg` or `.png`.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Draw a track of two quantities, with equal axes where they have the same unit.
+    /// Draw a track of two quantities, `x,y` or of a vector `"r[1],r[2]"`, with equal axes where they have the same unit.
     #[arg(long, value_name = "X,Y", value_parser = runs::pair)]
     xy: Vec<(String, String)>,
     /// Draw this quantity or constraint (by name) over time: of all agents and members, or of one
