@@ -118,7 +118,7 @@ fn every_local_minimum_is_drawn_listed_and_saved() {
     let picture = read("minima.svg");
     // Both turns, the better one first; its dashed sibling is known on paper to cost 105.65148.
     assert!(
-        picture.contains("16 of 16 starts solved, 2 local minima; the best: solved at the points, objective 95.97491"),
+        picture.contains("16 of 16 starts solved, 2 local minima; the best: solved, objective 95.97491"),
         "{picture}"
     );
     let (right, left) = (picture.find("95.974911, 15 of 16 starts"), picture.find("105.651512, 1 of 16 starts"));
