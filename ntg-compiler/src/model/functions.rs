@@ -19,7 +19,7 @@ use super::vectors::{VECTOR_FUNCTIONS, vector_function};
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{NodeId, Unary};
 use crate::standard::APPLIED;
-use crate::syntax::ast::{Call, Expr, ExprKind};
+use crate::syntax::ast::Call;
 
 /// A function of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -222,19 +222,7 @@ impl<'a> Elaborator<'a> {
             let message = format!("`{name}` is {}, not a function", entity.describe());
             let finding = Diagnostic::new(Code::NoFunction, span, message);
             let has_members = self.axes_of(cx, entity, name).is_some_and(|axes| !axes.is_empty());
-            let help = match call.arguments.as_slice() {
-                [only] if has_members => format!("an element is `{name}[{}]`", self.text(only.span)),
-                [Expr { kind: ExprKind::Number(_), .. }] if entity == Entity::Output => {
-                    format!("at an end write `initial({name})` or `final({name})`; to multiply, write `{name} * (...)`")
-                }
-                [time @ Expr { kind: ExprKind::Path(_), .. }] if entity == Entity::Output => {
-                    let time = self.text(time.span);
-                    format!(
-                        "at a time write `at({time}, {name})`, at an end `initial({name})` or `final({name})`; to multiply, write `{name} * (...)`"
-                    )
-                }
-                _ => format!("to multiply, write `{name} * (...)`"),
-            };
+            let help = self.help_of_called(name, &call.arguments, (entity == Entity::Output, has_members));
             return self.refuse(finding.help(help), call.span);
         }
         let finding = Diagnostic::new(Code::NoFunction, span, format!("unknown function `{name}`"));

@@ -14,7 +14,7 @@ use super::elaborator::Elaborator;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{DeclaredName, Role, ShapeAxis};
+use crate::syntax::ast::{DeclaredName, Expr, ExprKind, Role, ShapeAxis};
 
 /// What helps need to know about the spec.
 #[derive(Default)]
@@ -34,6 +34,26 @@ pub(super) struct Noted {
 }
 
 impl<'a> Elaborator<'a> {
+    /// What may be meant by a quantity that is written as a function of these arguments.
+    pub(super) fn help_of_called(
+        &self,
+        name: &str,
+        arguments: &[Expr],
+        (is_output, has_members): (bool, bool),
+    ) -> String {
+        let multiply = format!("to multiply, write `{name} * (...)`");
+        let ends = format!("`initial({name})` or `final({name})`");
+        match arguments {
+            [only] if has_members => format!("an element is `{name}[{}]`", self.text(only.span)),
+            [Expr { kind: ExprKind::Number(_), .. }] if is_output => format!("at an end write {ends}; {multiply}"),
+            [time @ Expr { kind: ExprKind::Path(_), .. }] if is_output => {
+                let time = self.text(time.span);
+                format!("at a time write `at({time}, {name})`, at an end {ends}; {multiply}")
+            }
+            _ => multiply,
+        }
+    }
+
     /// Notes the power of a quantity whose unit cannot be written.
     pub(super) fn note_root(&mut self, base: &Value, span: Span, exponent: Ratio) {
         let dimension = base.dimension_or_none();
