@@ -21,6 +21,24 @@ def test_the_flight_is_solved_in_three_lines():
     assert solution.raise_if_unsolved() is solution
 
 
+def test_what_equations_miss_is_worth_something_of_the_objective():
+    flat = ntg.load(str(SPECS / "low_observable.ntg")).solve(signature_max=7)
+    assert flat.objective_correction == 0.0
+    # A kick of a speed of 1 that one point of ten intervals sees: 0.1 on fine meshes.
+    kicked = ntg.loads("""problem Kicked {
+        duration T = 10;
+        state x, v;
+        input u;
+        collocation gauss(points = 3, intervals = 10);
+        minimize integral(u^2);
+        dynamics { der(x) == v;  der(v) == u + (if t in 5.05 .. 5.15 { 10 } else { 0 }); }
+        initial { x == 0;  v == 0; }
+        final { v == 0; }
+    }""").solve()
+    assert kicked.resolution == "unresolved"
+    assert kicked.objective > 0.2 and kicked.objective_correction < -0.1
+
+
 def test_values_are_in_declared_units_with_the_shape_of_the_times(move):
     solution = move.solve(distance=3)
     assert solution.objective == pytest.approx(12 * 9 / 8, abs=1e-6)
