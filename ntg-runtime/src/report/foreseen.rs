@@ -2,8 +2,8 @@
 //! 9.3c).
 //!
 //! Takes the multipliers of the rows of equations along phases, and what the equations miss on the finer grid. An input
-//! that jumps misses much where it jumps, and the multiplier weighs that with next to nothing; a pulse that no point has
-//! seen counts in full.
+//! that jumps misses much where it jumps, and the multiplier weighs that with next to nothing; a pulse that the points see
+//! too large counts in full. Where multipliers are 0, since the points see no reason to steer, nothing counts.
 //!
 //! Reference: R. Becker and R. Rannacher, *Acta Numerica* 10 (2001), the dual-weighted residual.
 

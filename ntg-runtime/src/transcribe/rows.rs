@@ -148,13 +148,17 @@ const SHORTEST_WRITTEN: f64 = 1e-15;
 
 /// The least duration between declared bounds, SI.
 fn least_duration(lower: f64, upper: f64) -> f64 {
-    let shortest = shortest_duration(upper);
-    lower.max(if lower > 0.0 { SHORTEST_WRITTEN / SHORTEST * shortest } else { shortest })
+    lower.max(if lower > 0.0 { SHORTEST_WRITTEN * below(upper) } else { shortest_duration(upper) })
 }
 
 /// The least duration beneath an upper bound, SI.
 pub(crate) fn shortest_duration(upper: f64) -> f64 {
-    SHORTEST * if upper.is_finite() { upper } else { 1.0 }
+    SHORTEST * below(upper)
+}
+
+/// What the least duration is a part of: the upper bound, a second where there is none.
+fn below(upper: f64) -> f64 {
+    if upper.is_finite() { upper } else { 1.0 }
 }
 
 fn declared_bounds(frame: &Frame, bounds: &Bounds, indices: &[i64]) -> Result<Pair, SetupError> {
