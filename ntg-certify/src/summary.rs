@@ -170,7 +170,7 @@ impl Proof {
         let unit = if self.unit.symbol.is_empty() { String::new() } else { format!(" {}", self.unit.symbol) };
         match self.verdict {
             Verdict::Bounded | Verdict::Proved => "proved for all times".to_owned(),
-            Verdict::Within(residual) => format!("holds to within {residual:.1e}{unit}, proved"),
+            Verdict::Within(residual) => format!("missed by {residual:.1e}{unit} at most, proved"),
             Verdict::Refuted(least, most) => {
                 let at = self.witness.map_or(String::new(), |(t, value)| {
                     let Independent { name, unit } = &self.independent;
@@ -191,10 +191,12 @@ impl fmt::Display for Summary {
         writeln!(
             f,
             "Between the points: {} ({} boxes of time, {:.3} s)",
-            if open == 0 {
-                "every constraint is proved for all times".to_owned()
-            } else {
+            if open > 0 {
                 format!("{open} of {} constraints not proved", self.constraints.len())
+            } else if self.constraints.iter().any(|proof| proof.along && proof.word() == "within") {
+                "every limit is proved for all times, and by how much equations are missed at most".to_owned()
+            } else {
+                "every constraint is proved for all times".to_owned()
             },
             self.boxes,
             self.seconds

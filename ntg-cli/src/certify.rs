@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         Format::Json => {
             let mut document = document(&summary);
             document["status"] = json!(found.report.status.to_string());
-            document["resolution"] = json!(found.report.resolution().word());
+            document["resolution"] = json!(found.report.resolution().map(Resolution::word));
             document["objective"] = json!(found.report.objective);
             if arguments.guarantee {
                 document["guarantee"] = cost(&found);
@@ -107,7 +107,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         }
         save(path, arguments.force, &found.certificate)?;
     }
-    let is_resolved = found.report.resolution() < Resolution::Unresolved;
+    let is_resolved = found.report.resolution() != Some(Resolution::Unresolved);
     Ok(match found.report.is_solved() && is_resolved && summary.is_proved() && is_followed {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,

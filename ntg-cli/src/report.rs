@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     let page = html::page(&runs, &html::Page { tracks: arguments.xy.clone(), all: arguments.all })?;
     write::whole(&arguments.output, arguments.force, page.as_bytes())?;
     let all = |is: fn(&Run) -> bool| loaded.iter().all(|(_, run)| is(run));
-    let is_solved: fn(&Run) -> bool = |run| run.is_solved() && html::resolution(run) < Resolution::Unresolved;
+    let is_solved: fn(&Run) -> bool = |run| run.is_solved() && html::resolution(run) != Some(Resolution::Unresolved);
     Ok(match (all(is_solved), all(Run::has_solution)) {
         (true, _) => Exit::Done,
         (_, true) => Exit::Acceptable,

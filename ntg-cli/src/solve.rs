@@ -121,7 +121,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     }
     arguments.sampled.write((problem, report), (every, samples), arguments.force)?;
     let proved = summary.as_ref().is_none_or(Summary::is_proved);
-    let is_met = report.refined.as_ref().is_none_or(Refined::is_met) && report.resolution() < Resolution::Unresolved;
+    let is_met =
+        report.refined.as_ref().is_none_or(Refined::is_met) && report.resolution() != Some(Resolution::Unresolved);
     Ok(match proved && report.is_solved() && is_met {
         true => Exit::Done,
         false if interrupt.is_pressed() => Exit::Interrupted,

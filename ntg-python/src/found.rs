@@ -93,8 +93,8 @@ impl Found {
     }
 
     #[getter]
-    fn resolution(&self) -> &'static str {
-        self.report.resolution().word()
+    fn resolution(&self) -> Option<&'static str> {
+        Some(self.report.resolution()?.word())
     }
 
     #[getter]

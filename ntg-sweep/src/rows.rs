@@ -85,8 +85,8 @@ impl<'a, P: Problem + Clone + Send> Rows<'a, P> {
             numbers.push(wanted.of(problem, report));
         }
         let status = match report.resolution() {
-            Resolution::Unresolved => report.ending(),
-            Resolution::Fine | Resolution::Coarse => report.status.label(),
+            Some(Resolution::Unresolved) => report.ending(),
+            Some(Resolution::Fine | Resolution::Coarse) | None => report.status.label(),
         };
         let status = one_line(&status);
         Row { row, set: set.to_vec(), status, binding: binding(report), numbers }

@@ -67,7 +67,7 @@ fn solved(text: &str, most: usize) -> Report {
     let report = Shipped::text(text).solve();
     assert!(report.is_solved(), "{:?}: {text}", report.status);
     assert!(report.iterations <= most, "{} iterations: {text}", report.iterations);
-    assert_ne!(report.resolution(), Resolution::Unresolved, "{text}");
+    assert_ne!(report.resolution(), Some(Resolution::Unresolved), "{text}");
     report
 }
 

@@ -247,3 +247,25 @@ fn a_spin_is_turned_over_though_the_guess_leads_to_a_least_violation() {
     close(report.objective, 1e-8 * std::f64::consts::PI, 1e-6);
     assert!(report.iterations <= 500, "{} iterations", report.iterations);
 }
+
+/// At the guess, 0 throughout, the row has no slope, and no linear model of it has a solution: sequential quadratic
+/// programming begins once more, beside the guess. The least `int x'^2` with `int x^2 = 1` between zeros is `pi^2`.
+#[test]
+fn a_row_without_a_slope_at_the_guess_does_not_end_sequential_quadratic_programming() {
+    let spec = Shipped::text(
+        "problem Eigenvalue {
+            duration T = 1;
+            state x;
+            input u;
+            collocation gauss(points = 3, intervals = 10);
+            minimize integral(u^2);
+            dynamics { der(x) == u; }
+            initial { x == 0; }
+            temporal { integral(x^2) == 1; }
+            final { x == 0; }
+        }",
+    );
+    let report = spec.by(Method::Sqp).solve();
+    close(report.objective, std::f64::consts::PI.powi(2), 1e-6);
+    assert!(report.iterations <= 50, "{} iterations", report.iterations);
+}

@@ -7,7 +7,7 @@ use crate::support::Shipped;
 
 fn resolution(text: &str) -> (Resolution, Report) {
     let report = Shipped::text(text).solve();
-    (report.resolution(), report)
+    (report.resolution().expect("there is a solution"), report)
 }
 
 /// A wheel that turns `turns` times beside a controlled speed: too few points alias it.

@@ -1,7 +1,7 @@
 //! The solution for programs. Numbers that are not finite are null.
 
 use ntg_runtime::problem::Problem;
-use ntg_runtime::report::{ConstraintReport, Report, Worst};
+use ntg_runtime::report::{ConstraintReport, Report, Resolution, Worst};
 use ntg_runtime::structure::{Independent, Parameter};
 use serde_json::{Map, Value, json};
 
@@ -16,7 +16,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "problem": report.problem,
         "status": report.status.label(),
         "ending": report.ending(),
-        "resolution": report.resolution().word(),
+        "resolution": report.resolution().map(Resolution::word),
         "advice": report.advice_beside(solved.explanation),
         "independent": { "name": independent.name, "unit": independent.unit.symbol },
         "objective": report.objective,

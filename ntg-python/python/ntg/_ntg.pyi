@@ -51,7 +51,7 @@ class Found:
     message: str
     advice: str
     is_solved: bool
-    resolution: str
+    resolution: str | None
     objective: float
     objective_fine: float
     objective_correction: float

@@ -134,8 +134,8 @@ class Solution:
         return self._core.is_solved
 
     @property
-    def resolution(self) -> str:
-        """Whether what holds at the points of the mesh holds between them: `fine`; `coarse`, where something is missed by
+    def resolution(self) -> str | None:
+        """Of a solution, whether what holds at the points of the mesh holds between them: `fine`; `coarse`, where something is missed by
         more than is worth a warning; `unresolved`, where an equation is missed by more than its largest term, a limit by
         more than half, or more than half of the objective is not seen."""
         return self._core.resolution

@@ -25,27 +25,28 @@ fn off(run: &Run) -> Option<f64> {
 
 /// How the solve ended, in the words of `ntg solve`.
 pub fn ending(run: &Run) -> String {
-    if run.has_solution() { resolution(run).ending(&run.status) } else { run.status.clone() }
+    resolution(run).map_or_else(|| run.status.clone(), |resolution| resolution.ending(&run.status))
 }
 
 /// Whether a solution of the points is one of the problem: what the file says, or, where it is older, what it says of
-/// constraints and objective.
-pub fn resolution(run: &Run) -> Resolution {
+/// constraints and objective; nothing where there is no solution.
+pub fn resolution(run: &Run) -> Option<Resolution> {
     if !run.has_solution() {
-        return Resolution::Fine;
+        return None;
     }
     let of_file = || {
         let most = run.constraints.iter().filter_map(|constraint| Some(constraint.between.as_ref()?.relative));
         let missed = most.map(Missed::Limit).chain([Missed::Objective(off(run).unwrap_or(0.0))]);
         Resolution::of(missed, run.tolerance())
     };
-    Resolution::from_word(&run.resolution).unwrap_or_else(of_file)
+    Some(Resolution::from_word(&run.resolution).unwrap_or_else(of_file))
 }
 
 /// How the solve ended. What is missed between the points is no good end, and what holds at the points alone is none.
 pub(super) fn status(run: &Run) -> Markup {
-    let bad = !run.has_solution() || resolution(run) == Resolution::Unresolved;
-    let good = run.is_sound() && resolution(run) == Resolution::Fine;
+    let resolution = resolution(run);
+    let bad = resolution.is_none_or(|resolution| resolution == Resolution::Unresolved);
+    let good = run.is_sound() && resolution == Some(Resolution::Fine);
     html! {
         span.status.good[good].warned[!good && !bad].bad[bad] {
             @match ending(run).split_once(": ") {

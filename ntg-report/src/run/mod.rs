@@ -40,7 +40,8 @@ pub struct Run {
     pub doc: String,
     /// `solved`, or why the solve ended.
     pub status: String,
-    /// Whether a solution of the points is one of the problem: `fine`, `coarse` or `unresolved`; empty in older files.
+    /// Whether a solution of the points is one of the problem: `fine`, `coarse` or `unresolved`; empty where there is none, and in
+    /// older files.
     pub resolution: String,
     /// The largest relative violation between the points of which nothing is said; 0 in older files, see [`Run::tolerance`].
     #[serde(with = "numbers::one")]

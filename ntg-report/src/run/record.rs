@@ -65,7 +65,7 @@ impl Recording<'_> {
                 factor: independent.unit.factor,
             },
             status: report.status.label(),
-            resolution: report.resolution().word().to_owned(),
+            resolution: report.resolution().map(|resolution| resolution.word().to_owned()).unwrap_or_default(),
             between_tolerance: report.between_tolerance,
             advice: report.advice_beside(self.explanation).to_owned(),
             warnings: report.warnings().into_iter().map(|warning| warning.message).collect(),

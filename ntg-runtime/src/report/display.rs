@@ -34,7 +34,9 @@ impl fmt::Display for Report {
         };
         writeln!(f, "  iterations  {}{steps}, {:.3} ms", self.iterations, 1e3 * self.seconds)?;
         let (points, between) = (self.violation.points, self.violation.between);
-        if self.has_solution() && self.resolution() != Resolution::Fine && self.objective_correction != 0.0 {
+        if self.resolution().is_some_and(|resolution| resolution != Resolution::Fine)
+            && self.objective_correction != 0.0
+        {
             let correction = self.objective_correction;
             writeln!(
                 f,

@@ -95,11 +95,10 @@ impl Resolution {
 }
 
 impl Report {
-    /// How far the solution of the points is one of the problem. [`Resolution::Fine`] where there is no solution, since
-    /// nothing is claimed there.
-    pub fn resolution(&self) -> Resolution {
+    /// How far the solution of the points is one of the problem; nothing where there is no solution.
+    pub fn resolution(&self) -> Option<Resolution> {
         if !self.has_solution() {
-            return Resolution::Fine;
+            return None;
         }
         let constraints = self.constraints.iter().filter_map(|constraint| {
             let most = constraint.between.as_ref()?.relative;
@@ -108,7 +107,7 @@ impl Report {
         });
         let cost = Missed::Objective(self.cost_missed());
         let equations = Missed::Objective(self.correction_part());
-        Resolution::of(constraints.chain([cost, equations]), self.between_tolerance)
+        Some(Resolution::of(constraints.chain([cost, equations]), self.between_tolerance))
     }
 
     /// What equations that are missed between the points are worth of the objective, as a part of the larger of the
@@ -131,7 +130,7 @@ impl Report {
 
     /// The report with advice where its solution is one of the points alone.
     pub(crate) fn advised(mut self) -> Self {
-        if self.resolution() == Resolution::Unresolved && self.advice.is_empty() {
+        if self.resolution() == Some(Resolution::Unresolved) && self.advice.is_empty() {
             "Use more points or intervals, let the mesh be refined (`refine`, `between`), or look for another minimum \
              (`starts`): what was found solves the equations at the points only, it is not a solution of the problem."
                 .clone_into(&mut self.advice);
@@ -142,7 +141,7 @@ impl Report {
     /// The status in a word or in words; of a solution also whether it holds between the points.
     pub fn ending(&self) -> String {
         let status = self.status.label();
-        if self.has_solution() { self.resolution().ending(&status) } else { status }
+        self.resolution().map_or_else(|| status.clone(), |resolution| resolution.ending(&status))
     }
 }
 

@@ -92,7 +92,8 @@ impl Session {
     /// Solves by the method of the settings, from beside the first point where something is not finite there. The first point
     /// may be a solution on coarser knots; `guessed` is the guess then. `simulated` is how an attempt from a simulation has
     /// failed before. An automatic method makes further attempts where that fails, unless there seems to be no solution and
-    /// it would only serve as a guess (a step of a continuation), or all constraints are linear. Iterations are those of all
+    /// it would only serve as a guess (a step of a continuation), or all constraints are linear. A method of the user's
+    /// choice begins once more, beside the first point, where there seems to be no solution. Iterations are those of all
     /// attempts.
     pub(super) fn solve_with_fallback(
         &mut self,
@@ -124,8 +125,17 @@ impl Session {
         if let Some(simulated) = simulated {
             outcome = better(simulated, outcome);
         }
-        if settings.method == Method::Auto {
-            let mut seems_infeasible = misses(&outcome);
+        let mut seems_infeasible = misses(&outcome) || outcome.status == Status::SubproblemFailed;
+        if settings.method != Method::Auto {
+            let beside = match seems_infeasible {
+                true => self.attempt(Attempt::Beside, nlp, task, x, &outcome, budget)?,
+                false => None,
+            };
+            outcome = match beside {
+                Some(next) => better(outcome, next),
+                None => outcome,
+            };
+        } else {
             for attempt in ATTEMPTS {
                 let is_believed = is_infeasible(&outcome) && (is_guess || nlp.is_linear());
                 if is_believed
