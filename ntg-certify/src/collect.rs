@@ -150,6 +150,11 @@ impl<'a> Collector<'a> {
         Ok(())
     }
 
+    /// Whether a group evaluates what the spec writes, in place of helpers.
+    fn is_written(&self, group: &Group) -> bool {
+        self.structure.shown.iter().any(|own| std::ptr::eq(own, group))
+    }
+
     /// Integrals that enter nonlinearly: first a place for each member, then their summands.
     fn integrals(&mut self) -> Result<(), SetupError> {
         let structure = self.structure;
@@ -172,8 +177,12 @@ impl<'a> Collector<'a> {
 
     fn constraints(&mut self) -> Result<(), SetupError> {
         let mut parts: BTreeMap<Member, Vec<Summand>> = BTreeMap::new();
+        let shown = self.structure.constraints_shown();
         self.rows(|this, group, row, (indices, over)| {
             let Row::Part { constraint, index } = &group.rows[row] else { return Ok(()) };
+            if shown[*constraint] != this.is_written(group) {
+                return Ok(());
+            }
             let index = index.iter().map(|affine| affine.at(indices)).collect();
             let function = this.function(&group.call, row, indices)?;
             parts.entry((*constraint, index)).or_default().push(Summand { function, over });
@@ -184,6 +193,9 @@ impl<'a> Collector<'a> {
             let Row::Constraint { constraint, lower, upper } = &group.rows[row] else { return Ok(()) };
             if this.structure.constraints[*constraint].block == Block::Corner {
                 return Ok(()); // It holds at the points, and nothing is claimed between them.
+            }
+            if shown[*constraint] != this.is_written(group) {
+                return Ok(());
             }
             let along = if let Over::Phase(phase) = over { Some(phase) } else { None };
             if along.is_some() && !known.insert((*constraint, indices.to_vec(), along)) {
@@ -206,7 +218,7 @@ impl<'a> Collector<'a> {
             let above = if lower == upper { below } else { bound(this, upper)? };
             let declared = &this.structure.constraints[*constraint];
             let name = declared.name.as_deref().unwrap_or(&declared.place.text);
-            let mut name = this.named_member(name, indices, along);
+            let mut name = this.named_member(name, declared.shown_indices(indices), along);
             // The same text may stand at both ends.
             if let Over::Start(_) | Over::End(_) = over {
                 name.push_str(if matches!(over, Over::Start(_)) { " at the start" } else { " at the end" });
@@ -228,8 +240,7 @@ impl<'a> Collector<'a> {
         let shown = self.structure.terms_shown();
         self.rows(|this, group, row, (indices, over)| {
             let Row::Cost { term } = &group.rows[row] else { return Ok(()) };
-            let written = this.structure.shown.iter().any(|own| std::ptr::eq(own, group));
-            if shown[*term] != written {
+            if shown[*term] != this.is_written(group) {
                 return Ok(());
             }
             let function = this.function(&group.call, row, indices)?;

@@ -1,11 +1,13 @@
 //! What a certificate says of the spec's constraints, terms and named expressions, one entry for each, in units that a
 //! person uses: what reports show.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use ntg_structure::{Independent, Structure, Unit};
 
 use crate::certify::{Certificate, Finding, Verdict};
+use crate::interval::Interval;
 use crate::statement::{Kind, Quantity, Subject};
 
 /// What is proved of one constraint of the spec, over all of its members.
@@ -101,7 +103,7 @@ impl Certificate {
         let own = || self.each().filter(|(subject, _)| subject.kind == Kind::Constraint(number));
         let declared = &structure.constraints[number];
         let unit = declared.unit.factor;
-        let values = own().map(|(_, finding)| finding.values).reduce(|a, b| a.hull(b))?;
+        let values = values(own(), declared.sides > 0)?;
         let (subject, _) = own().find(|(_, finding)| std::ptr::eq(*finding, worst))?;
         let witness = worst
             .witness
@@ -145,6 +147,22 @@ impl Certificate {
         let values = of(finding.values.low(), finding.values.high());
         Bounds { name: subject.name.clone(), values, bands, unit: subject.unit.clone() }
     }
+}
+
+/// The values of all members. Where members have sides, that of a member is the largest or the least one of its sides at
+/// each time, so that what bounds one side bounds it too.
+fn values<'a>(own: impl Iterator<Item = (&'a Subject, &'a Finding)>, have_sides: bool) -> Option<Interval> {
+    let mut members: BTreeMap<&str, Interval> = BTreeMap::new();
+    for (subject, finding) in own {
+        let (name, values) = (subject.name.as_str(), finding.values);
+        let of_member = members.get(name).map(|known| match (have_sides, subject.bounds.1.is_some()) {
+            (false, _) => known.hull(values),
+            (true, true) => Interval::new(known.low().max(values.low()), known.high().max(values.high())),
+            (true, false) => Interval::new(known.low().min(values.low()), known.high().min(values.high())),
+        });
+        members.insert(name, of_member.unwrap_or(values));
+    }
+    members.into_values().reduce(|a, b| a.hull(b))
 }
 
 impl Summary {

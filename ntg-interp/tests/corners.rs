@@ -172,8 +172,9 @@ fn other_corners_stay_and_are_named() {
     assert_eq!(corners("minimize w * integral(abs(u));"), Vec::<String>::new());
     assert_eq!(corners("maximize integral(abs(u));"), ["abs(u)"]);
     assert_eq!(corners("minimize integral(x * abs(u));"), ["abs(u)"]);
-    assert_eq!(corners("minimize integral(u^2); trajectory { abs(u) <= 2; }"), ["abs(u)"]);
-    assert_eq!(corners("minimize integral(abs(u)); trajectory { abs(u) <= 2; }"), ["abs(u)"]);
+    assert_eq!(corners("minimize integral(u^2); trajectory { abs(u) <= 2; }"), Vec::<String>::new());
+    assert_eq!(corners("minimize integral(u^2); trajectory { abs(u) >= 2; }"), ["abs(u)"]);
+    assert_eq!(corners("minimize integral(abs(u)); trajectory { u * abs(u) <= 2; }"), ["abs(u)"]);
     assert_eq!(corners("minimize integral((1 + x^2) * abs(u) + exp(-t) * max(x, v, 0));"), Vec::<String>::new());
 
     let text = format!(
@@ -195,4 +196,66 @@ fn a_weight_below_0_is_refused() {
     problem.assign("w", "-1").expect("a parameter");
     let Err(error) = solve(&problem, &Settings::default()) else { panic!("it was solved") };
     assert!(error.to_string().contains("w >= 0, the weight of a corner"), "{error}");
+}
+
+/// `|u| + |v| <= 1` from rest to rest over 1: `v' = 1 - v` up to the middle, `t - 1 + exp(-t) = 1/2` there. With 1.5 of fuel
+/// at most and thrusts of 1 the motion coasts at 0.75.
+#[test]
+fn corners_of_limits_are_rows() {
+    let block = |rest: &str| {
+        format!(
+            "problem P {{ duration T in 0.1 .. 20; state x, v; input u in -1 .. 1; minimize T; \
+             dynamics {{ der(x) == v; der(v) == u; }} initial {{ x == 0; v == 0; }} final {{ x == 1; v == 0; }} {rest} }}"
+        )
+    };
+    let mut half = 1.2_f64;
+    (0..50).for_each(|_| half -= (half - 1.5 + (-half).exp()) / (1.0 - (-half).exp()));
+    let text = |limit: &str| block(&format!("collocation gauss(points = 3, intervals = 40); trajectory {{ {limit} }}"));
+    for limit in ["abs(u) + abs(v) <= 1;", "1 - abs(v) >= max(u, -u);", "min(1 - u - v, 1 + u - v) >= 0; v >= 0;"] {
+        reaches(&text(limit), 2.0 * half, 1e-5);
+        assert!(report(&text(limit)).iterations <= 60, "{limit}");
+    }
+    let knots = 0.75 / (25.0 / 12.0);
+    for limit in ["integral(abs(u)) <= 1.5;", "sqrt(integral(max(u, -u))) <= sqrt(1.5);"] {
+        let knots = format!("collocation gauss(points = 3, knots = (0, {knots}, {}, 1));", 1.0 - knots);
+        reaches(&block(&format!("{knots} temporal {{ {limit} }}")), 25.0 / 12.0, 1e-6);
+    }
+}
+
+/// A corner has as many members as sides, of which nobody hears; its multipliers are those of both.
+#[test]
+fn the_sides_of_a_limit_are_seen_by_nobody() {
+    let text = format!(
+        "problem P {{ {BLOCK} collocation gauss(points = 3, intervals = 12); minimize (final(x) + 1)^2; \
+         trajectory {{ for i in 1 .. 2 {{ thrust: i * abs(u) <= 1; }} }} }}"
+    )
+    .replace("final { x == 0; v == 0; }", "final { v == 0; }");
+    let problem = compiled(&text);
+    let report = solve(&problem, &Settings::default()).expect("a problem that can be set up");
+    let thrust = report.constraints.iter().find(|own| own.name == "thrust").expect("a constraint");
+    assert!(thrust.points.as_ref().is_some_and(|worst| worst.indices.len() == 1), "{thrust:?}");
+    let traces = report.solution.traces(&problem, 4).expect("the problem that was solved");
+    let own: Vec<_> = traces.iter().filter(|trace| trace.indices.len() == 1).collect();
+    assert_eq!(own.iter().map(|trace| &trace.indices[..]).collect::<Vec<_>>(), [[1], [2]]);
+    let (least, most) = own[1].points.iter().fold((f64::MAX, f64::MIN), |(a, b), (_, v)| (a.min(*v), b.max(*v)));
+    assert!(least >= 0.0 && (most - 1.0).abs() < 1e-6, "{least} {most}");
+    let of_rows: f64 = report.solution.multipliers("thrust").iter().map(|multiplier| multiplier.value.abs()).sum();
+    assert!(of_rows > 1e-3 && thrust.sensitivity < 0.0, "{of_rows} {thrust:?}");
+    // Two members, and in each interval three Gauss points and both ends.
+    assert_eq!(report.solution.multipliers("thrust").len(), 2 * 12 * 5);
+}
+
+/// A corner in a limit is what its rows are by hand.
+#[test]
+fn a_limit_with_corners_is_its_rows_bit_for_bit() {
+    let text = |limits: &str| {
+        format!(
+            "problem P {{ {BLOCK} collocation gauss(points = 3, intervals = 12); minimize integral(u^2); \
+             trajectory {{ {limits} }} }}"
+        )
+    };
+    let corner = report(&text("for i in 1 .. 1 { 1.1 * abs(u) <= 1; }"));
+    let rows = report(&text("for i in 1 .. 2 { 1.1 * ((3 - 2 * i) * u) <= 1; }"));
+    assert!(corner.is_solved() && corner.iterations == rows.iterations, "{corner}{rows}");
+    assert!((corner.objective - rows.objective).abs() <= 1e-12 * rows.objective, "{corner}{rows}");
 }

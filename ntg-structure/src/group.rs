@@ -104,6 +104,16 @@ pub struct Constraint {
     pub block: Block,
     /// The unit in which violations are reported.
     pub unit: Unit,
+    /// How many of the innermost loops of its rows go through the sides of its corners, `u` and `-u` of `abs(u) <= 1`
+    /// (docs/maths.md, section 18). Nobody sees their indices.
+    pub sides: usize,
+}
+
+impl Constraint {
+    /// The indices of a member without those of its sides.
+    pub fn shown_indices<'a>(&self, indices: &'a [i64]) -> &'a [i64] {
+        &indices[..indices.len().saturating_sub(self.sides)]
+    }
 }
 
 /// A term of the objective.

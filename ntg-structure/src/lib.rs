@@ -67,8 +67,7 @@ pub struct Structure {
     pub kernels: Vec<Kernel>,
     /// Which kernel is called where, and what becomes of its rows.
     pub groups: Vec<Group>,
-    /// Costs as the spec writes them, for reports, of terms in which helpers stand for corners in `groups`. Their rows are
-    /// [`Row::Cost`] alone.
+    /// Costs and constraints as the spec writes them, for reports, where helpers stand for corners in `groups`.
     pub shown: Vec<Group>,
     /// Where a gradient may jump in what is solved.
     pub corners: Vec<Place>,
@@ -106,6 +105,19 @@ impl Structure {
         for row in self.shown.iter().flat_map(|group| &group.rows) {
             if let Row::Cost { term } = row
                 && let Some(shown) = shown.get_mut(*term)
+            {
+                *shown = true;
+            }
+        }
+        shown
+    }
+
+    /// The constraints that reports evaluate by `shown`.
+    pub fn constraints_shown(&self) -> Vec<bool> {
+        let mut shown = vec![false; self.constraints.len()];
+        for row in self.shown.iter().flat_map(|group| &group.rows) {
+            if let Row::Constraint { constraint, .. } | Row::Part { constraint, .. } = row
+                && let Some(shown) = shown.get_mut(*constraint)
             {
                 *shown = true;
             }

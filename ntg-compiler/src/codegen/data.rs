@@ -103,7 +103,7 @@ macro_rules! enums {
 
 structs! {
     Agent { name, family, start, duration_name, place }
-    Constraint { name, place, block, unit }
+    Constraint { name, place, block, unit, sides }
     Continuation { parameter, steps }
     Grid { row, column, columns }
     Group { loops, domain, call, rows, bounds }

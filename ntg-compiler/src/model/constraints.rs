@@ -303,6 +303,8 @@ impl<'a> Elaborator<'a> {
                 block: site.block,
                 unit,
                 loops: (*cx.loops).clone(),
+                sides: 0,
+                written: None,
                 domain: domain.clone(),
                 body: body.node,
                 bounds,

@@ -211,6 +211,8 @@ impl<'a> Elaborator<'a> {
                 block: Block::Continuity,
                 unit,
                 loops: loops.clone(),
+                sides: 0,
+                written: None,
                 domain: Domain::Mission,
                 body,
                 bounds: Bounds { lower: Some(zero), upper: Some(zero) },

@@ -1,8 +1,8 @@
-//! Corners of the objective: `abs`, `max`, `min`, `norm` where they are minimised (docs/maths.md, section 18).
+//! Corners, `abs`, `max`, `min`, `norm`, where they are minimised or limited (docs/maths.md, section 18).
 //!
-//! Takes the terms of the objective. Where a corner enters with a weight that is not negative, and the objective pushes
-//! it against its corner, a helper stands for it (`epigraph.rs`) and the gradient jumps no more: this is exact, at the
-//! points. The term keeps what was written, for reports.
+//! Takes the terms of the objective, and constraints. Where a corner enters with a weight that is not negative, and the
+//! objective pushes it against its corner, a helper stands for it (`epigraph.rs`) and the gradient jumps no more: this is
+//! exact, at the points. The term keeps what was written, for reports. Those of constraints are in `sides.rs`.
 //! Afterwards: notes of corners that are gone are gone; `Problem::corners` holds the places of all others.
 
 use ntg_structure::Block;
@@ -10,8 +10,9 @@ use ntg_structure::Block;
 use super::elaborator::Elaborator;
 use super::problem::{Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt, Problem};
 use super::signs::Signs;
+use super::unknowns::{is_affine, is_given};
 use crate::diagnostic::Code;
-use crate::expr::{self, Binary, Dag, Degree, Fold, Map, Node, NodeId, Set, Unary};
+use crate::expr::{self, Binary, Dag, Fold, Map, Node, NodeId, Set, Unary};
 use crate::source::Span;
 
 /// Where an expression stands: the loops around it, and the phase along which it is integrated.
@@ -50,7 +51,8 @@ impl Elaborator<'_> {
         if self.has_failed() {
             return;
         }
-        let bodies: Vec<NodeId> = self.problem.objective.iter().map(|term| term.body).collect();
+        let terms = self.problem.objective.iter().map(|term| term.body);
+        let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
         let mut pass = Corners {
             signs: Signs::of(&self.problem),
             within: self.with_corners(&bodies),
@@ -59,6 +61,7 @@ impl Elaborator<'_> {
             helpers: 0,
             span: Span::default(),
         };
+        self.corners_limited(&mut pass);
         for term in 0..self.problem.objective.len() {
             let own = &self.problem.objective[term];
             let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None });
@@ -127,7 +130,7 @@ impl Elaborator<'_> {
             Node::Binary(Binary::Hypot, a, b) => is_affine(&self.problem, a) && is_affine(&self.problem, b),
             _ => false,
         };
-        has && !self.kinds(node).is_fixed()
+        has && !is_given(&self.problem, node)
     }
 
     /// What stands for a node; `growing` says whether the objective grows with it, or falls.
@@ -202,7 +205,7 @@ impl Elaborator<'_> {
     }
 
     /// Whether a node grows with an operand, or falls; none where that is not known.
-    fn slope(&self, pass: &mut Corners, node: &Node, at: usize) -> Option<bool> {
+    pub(super) fn slope(&self, pass: &mut Corners, node: &Node, at: usize) -> Option<bool> {
         let mut positive = |x: NodeId| pass.signs.is_positive(&self.problem, x);
         match *node {
             Node::Unary(Unary::Neg, _) => Some(false),
@@ -269,6 +272,8 @@ impl Elaborator<'_> {
                 block: Block::Corner,
                 unit,
                 loops: over.into_iter().collect(),
+                sides: 0,
+                written: None,
                 domain: Domain::Mission,
                 body,
                 bounds: Bounds { lower: Some(zero), upper: None },
@@ -282,7 +287,16 @@ impl Elaborator<'_> {
         let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();
         let all = self.below(&bodies);
         let kinks: Set<NodeId> = expr::kinks(&self.problem.dag, &all).into_iter().collect();
-        all.into_iter().filter(|node| kinks.contains(node) && !self.kinds(*node).is_fixed()).collect()
+        all.into_iter().filter(|node| kinks.contains(node) && self.may_jump(*node)).collect()
+    }
+
+    /// Whether what is solved for decides on which side of a kink its gradient is taken.
+    fn may_jump(&mut self, kink: NodeId) -> bool {
+        let decides = match *self.problem.dag.node(kink) {
+            Node::Select { condition, .. } => condition,
+            _ => kink,
+        };
+        !self.kinds(decides).is_fixed()
     }
 
     /// Takes back the notes of corners that are gone.
@@ -315,12 +329,6 @@ fn may_vanish(problem: &Problem, sum: NodeId) -> bool {
         }
     }
     true
-}
-
-/// Whether a node is affine in what is solved for, and no constant.
-pub(super) fn is_affine(problem: &Problem, node: NodeId) -> bool {
-    let varies = |input| !matches!(problem.leaves.leaf(input), Leaf::Parameter { .. } | Leaf::Index(_));
-    expr::degree(&problem.dag, node, varies) == Degree::Linear
 }
 
 fn is_number(dag: &Dag, node: NodeId) -> bool {

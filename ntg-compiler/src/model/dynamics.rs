@@ -214,6 +214,8 @@ impl<'a> Elaborator<'a> {
                 block: Block::Trajectory,
                 unit: body.unit,
                 loops,
+                sides: 0,
+                written: None,
                 domain,
                 body: body.value.node,
                 bounds: body.bounds,

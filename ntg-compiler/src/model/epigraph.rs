@@ -1,4 +1,4 @@
-//! Helpers that stand for corners of the objective (docs/maths.md, section 18).
+//! Helpers that stand for corners of the objective and in integrals of limits (docs/maths.md, section 18).
 //!
 //! Takes a corner that is pushed down, gives a number `s` held above it: `s >= e` and `s >= -e` for `abs(e)`, `s >= a`
 //! and `s >= b` for `max(a, b)`, `s^2 >= v . v` and `s >= 0` for `norm(v)`; `s <= a` and `s <= b` for `min(a, b)` that is
@@ -7,9 +7,10 @@
 
 use ntg_structure::{Block, Unit};
 
-use super::corners::{Corners, Site, is_affine};
+use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
 use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Leaf, Loop, Output, Part, Variable};
+use super::unknowns::{is_affine, is_given};
 use crate::expr::{Binary, Fold, Node, NodeId, Unary};
 use crate::source::Span;
 
@@ -67,7 +68,7 @@ impl Elaborator<'_> {
         };
         sides
             .into_iter()
-            .all(|side| pass.has_corners(side) || is_affine(&self.problem, side) || self.kinds(side).is_fixed())
+            .all(|side| pass.has_corners(side) || is_affine(&self.problem, side) || is_given(&self.problem, side))
     }
 
     fn against(
@@ -77,7 +78,7 @@ impl Elaborator<'_> {
         (site, growing): (&Site, bool),
         depth: usize,
     ) -> Option<Against> {
-        if !self.has_helper(site) || self.kinds(corner).is_fixed() {
+        if !self.has_helper(site) || is_given(&self.problem, corner) {
             return None;
         }
         let fold = if growing { (Binary::Max, Fold::Max) } else { (Binary::Min, Fold::Min) };
@@ -168,6 +169,8 @@ impl Elaborator<'_> {
             block: Block::Corner,
             unit: Unit::default(),
             loops: site.loops.iter().cloned().chain(loops).collect(),
+            sides: 0,
+            written: None,
             domain,
             body,
             bounds,

@@ -370,6 +370,8 @@ impl<'a> Elaborator<'a> {
             block: ntg_structure::Block::Temporal,
             unit: self.time_unit(),
             loops: (*cx.loops).clone(),
+            sides: 0,
+            written: None,
             domain: Domain::Mission,
             body,
             bounds,

@@ -124,6 +124,8 @@ impl<'a> Elaborator<'a> {
                 block: Block::Temporal,
                 unit: self.rate_unit(&unit, order),
                 loops: loops.clone(),
+                sides: 0,
+                written: None,
                 domain: Domain::Mission,
                 body,
                 bounds: Bounds { lower: Some(zero), upper: Some(zero) },

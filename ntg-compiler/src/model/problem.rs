@@ -275,8 +275,12 @@ pub struct Constraint {
     pub block: Block,
     /// The unit in which violations are reported.
     pub unit: Unit,
-    /// The loops around it: agent, phase, then `for`s.
+    /// The loops around it: agent, phase, then `for`s, then those of its sides.
     pub loops: Vec<Loop>,
+    /// How many of its loops go through the sides of its corners.
+    pub sides: usize,
+    /// The body as it was written, where helpers stand for corners in its integrals.
+    pub written: Option<NodeId>,
     /// Where it holds.
     pub domain: Domain,
     /// What is bounded.

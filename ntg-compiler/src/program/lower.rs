@@ -127,7 +127,7 @@ impl Lowering<'_> {
         gathered.into_iter().map(|group| self.group(group)).collect()
     }
 
-    /// Costs as the spec writes them, of terms in which helpers stand for corners; not of those that would need integrals
+    /// Costs and constraints as the spec writes them, where helpers stand for corners; not those that would need integrals
     /// of their own.
     fn written(&mut self) -> Vec<Piece> {
         let mut pieces = Vec::new();
@@ -135,14 +135,24 @@ impl Lowering<'_> {
             let Some(written) = t.written else { continue };
             let cost = || Role::Cost { term };
             let own = split(&mut self.problem, &t.loops, written, t.span, cost(), &cost);
-            let is_integral =
-                |input: crate::expr::InputId| matches!(self.problem.leaves.leaf(input), model::Leaf::Integral { .. });
-            let bodies: Vec<NodeId> = own.iter().map(|piece| piece.body).collect();
-            if !self.problem.dag.inputs_of(&bodies).into_iter().any(is_integral) {
-                pieces.extend(own);
-            }
+            pieces.extend(self.without_integrals(own));
+        }
+        for (constraint, c) in self.problem.constraints.clone().into_iter().enumerate() {
+            let Some(written) = c.written else { continue };
+            let role = Role::Constraint { constraint, bounds: c.bounds };
+            let part = part_of(constraint, c.loops.len());
+            let own = split(&mut self.problem, &c.loops, written, c.span, role, &part);
+            pieces.extend(self.without_integrals(own));
         }
         pieces
+    }
+
+    /// Pieces that need no integrals of their own; else none.
+    fn without_integrals(&mut self, pieces: Vec<Piece>) -> Vec<Piece> {
+        let is_integral =
+            |input: crate::expr::InputId| matches!(self.problem.leaves.leaf(input), model::Leaf::Integral { .. });
+        let bodies: Vec<NodeId> = pieces.iter().map(|piece| piece.body).collect();
+        if self.problem.dag.inputs_of(&bodies).into_iter().any(is_integral) { vec![] } else { pieces }
     }
 
     /// Whether a constraint is about shared outputs alone: its rows are the same for several members.

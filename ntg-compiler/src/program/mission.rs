@@ -57,6 +57,7 @@ fn constraints(lowering: &Lowering<'_>) -> Vec<out::Constraint> {
         place: lowering.place(c.span),
         block: c.block,
         unit: c.unit.clone(),
+        sides: c.sides,
     };
     lowering.problem.constraints.iter().map(constraint).collect()
 }

@@ -33,7 +33,8 @@ fn along(phase: usize) -> Domain {
 }
 
 fn constraint(name: &str) -> Constraint {
-    Constraint { name: Some(name.into()), place: Place::default(), block: Block::Trajectory, unit: Unit::default() }
+    let (place, block, unit) = (Place::default(), Block::Trajectory, Unit::default());
+    Constraint { name: Some(name.into()), place, block, unit, sides: 0 }
 }
 
 /// The lines of an item that begins with `start`, up to the line that closes it.

@@ -30,8 +30,12 @@ fn a_corner_that_is_gone_is_not_noted() {
     const NOTE: &str = "N001: the gradient of `abs` may jump here";
     assert_eq!(said("input u; minimize integral(abs(u));"), [""; 0]);
     assert_eq!(said("input u; let f = abs(u); minimize integral(f) + max(final(x), 0);"), [""; 0]);
-    assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) <= 1; }"), [NOTE]);
-    assert_eq!(said("input u; let f = abs(u); minimize integral(f); trajectory { f <= 1; }"), [NOTE]);
+    assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) <= 1; }"), [""; 0]);
+    assert_eq!(said("input u; let f = abs(u); minimize integral(f); trajectory { f <= 1; }"), [""; 0]);
+    assert_eq!(said("input u; minimize integral(u^2); temporal { integral(abs(u)) <= 1; }"), [""; 0]);
+    assert_eq!(said("input u; minimize integral(abs(u - sin(3 * t)));"), [""; 0]);
+    assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) >= 1; }"), [NOTE]);
+    assert_eq!(said("input u; minimize integral(u^2); trajectory { u * abs(u) <= 1; }"), [NOTE]);
     assert_eq!(said("input u in -1 .. 1; maximize integral(abs(u));"), [NOTE]);
 }
 

@@ -39,7 +39,8 @@ impl Report {
             means.add(&nlp, checked, || all_sizes.between(&nlp, checked.constraint, checked.indices));
             let sizes = (|| all_sizes.between(&nlp, checked.constraint, checked.indices), own.unit.factor);
             let value = (checked.value, checked.bounds, sizes);
-            keep(&nlp, &inner.x, &mut own.between, value, (&checked.point, checked.indices));
+            let indices = nlp.model.structure.constraints[checked.constraint].shown_indices(checked.indices);
+            keep(&nlp, &inner.x, &mut own.between, value, (&checked.point, indices));
         })?;
         means.write(&nlp, own);
         self.objective_fine = user(&nlp, terms.iter().sum());

@@ -50,7 +50,8 @@ pub(super) fn constraints(
         let report = &mut reports[constraint];
         report.is_equation &= bounds.0 == bounds.1;
         let sizes = (|| all_sizes.at_points(nlp, constraint, &info.indices), report.unit.factor);
-        keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), (&info.point, &info.indices));
+        let indices = structure.constraints[constraint].shown_indices(&info.indices);
+        keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), (&info.point, indices));
         multipliers::add(nlp, outcome, row, report);
     }
     let mut means = Means::new(reports.len());
@@ -61,13 +62,8 @@ pub(super) fn constraints(
         foreseen.add(nlp, checked);
         report.is_equation &= checked.bounds.0 == checked.bounds.1;
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
-        keep(
-            nlp,
-            &outcome.x,
-            &mut report.between,
-            (checked.value, checked.bounds, sizes),
-            (&checked.point, checked.indices),
-        );
+        let indices = structure.constraints[checked.constraint].shown_indices(checked.indices);
+        keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, sizes), (&checked.point, indices));
     })?;
     means.write(nlp, &mut reports);
     let own = structure.constraints.iter().position(|constraint| constraint.block == Block::Corner);

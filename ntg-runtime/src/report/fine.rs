@@ -112,17 +112,20 @@ impl Plan {
         self.parts.iter_mut().for_each(|part| part.values(nlp, &x));
         let structure = &nlp.model.structure;
         let (mut terms, shown) = (vec![0.0; structure.terms.len()], structure.terms_shown());
+        let constraints_shown = structure.constraints_shown();
+        // Between the points a helper says nothing of the corner that it stands for.
+        let counts = |shown: &[bool], of: usize, group: usize| {
+            shown.get(of).is_some_and(|shown| *shown == (group >= structure.groups.len()))
+        };
         let mut parts: BTreeMap<Member, f64> = BTreeMap::new();
         for part in self.parts.iter().filter(|part| part.adds) {
-            let written = part.group >= structure.groups.len();
             part.integrands(nlp, |row, site, value| match row {
                 Row::Cost { term } => {
-                    // Between the points a helper says nothing of the corner that it stands for.
-                    let counts = shown.get(*term).is_some_and(|shown| *shown == written);
-                    if let Some(sum) = terms.get_mut(*term).filter(|_| counts) {
+                    if let Some(sum) = terms.get_mut(*term).filter(|_| counts(&shown, *term, part.group)) {
                         *sum += value;
                     }
                 }
+                Row::Part { constraint, .. } if !counts(&constraints_shown, *constraint, part.group) => {}
                 Row::Part { constraint, index } => {
                     let index = index.iter().map(|affine| affine.at(&site.indices)).collect();
                     *parts.entry((*constraint, index)).or_insert(0.0) += value;
@@ -131,7 +134,11 @@ impl Plan {
             });
         }
         for part in self.parts.iter().filter(|part| part.checks) {
-            part.check(nlp, (&parts, wanted), &mut visit);
+            part.check(nlp, (&parts, wanted), &mut |checked| {
+                if counts(&constraints_shown, checked.constraint, part.group) {
+                    visit(checked);
+                }
+            });
         }
         Ok(terms)
     }

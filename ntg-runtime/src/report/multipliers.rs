@@ -7,7 +7,9 @@ use crate::transcribe::Transcription;
 use crate::transcribe::layout::Layout;
 use crate::transcribe::rows::{RowInfo, RowKind, constraint_name};
 use ntg_nlp::Outcome;
+use ntg_splines::Side;
 use ntg_structure::Structure;
+use std::collections::HashMap;
 
 /// Adds one row's multiplier to its constraint's report.
 pub(super) fn add(nlp: &Transcription, outcome: &Outcome, row: usize, report: &mut ConstraintReport) {
@@ -23,18 +25,34 @@ pub(super) fn add(nlp: &Transcription, outcome: &Outcome, row: usize, report: &m
 
 impl Solution {
     /// All multipliers of a constraint, named by its name or its text, in the order of its
-    /// members and points. Empty for an unknown name.
+    /// members and points; of a corner, `abs(u) <= 1`, the sum of those of its sides at each point. Empty for an unknown
+    /// name.
     pub fn multipliers(&self, constraint: &str) -> Vec<Multiplier> {
         let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
-        let rows = self.inner.rows.iter().zip(&self.inner.row_multipliers);
-        let own = rows.filter_map(|(info, raw)| {
-            let RowKind::Constraint(index) = info.kind else { return None };
+        let mut found: Vec<Multiplier> = vec![];
+        // Where the multipliers of a member at a point are, of corners alone.
+        let mut places: HashMap<(usize, &[i64], Option<usize>, u64, bool), usize> = HashMap::new(); // Looked up, never iterated.
+        for (info, raw) in self.inner.rows.iter().zip(&self.inner.row_multipliers) {
+            let RowKind::Constraint(index) = info.kind else { continue };
             let declared = &structure.constraints[index];
+            if !is_called(constraint_name(declared), constraint) && declared.place.text != constraint {
+                continue;
+            }
             let sense = sense(structure, declared.unit.factor);
-            (is_called(constraint_name(declared), constraint) || declared.place.text == constraint)
-                .then(|| multiplier(layout, &self.inner.x, info, sense * raw))
-        });
-        own.collect()
+            let own = multiplier(layout, &self.inner.x, info, sense * raw);
+            if declared.sides > 0 {
+                let indices = declared.shown_indices(&info.indices);
+                let point = &info.point;
+                let key = (index, indices, point.phase, point.tau.to_bits(), point.side == Side::Left);
+                if let Some(place) = places.get(&key) {
+                    found[*place].value += own.value;
+                    continue;
+                }
+                places.insert(key, found.len());
+            }
+            found.push(own);
+        }
+        found
     }
 
     /// Derivative of the objective by the active bound of a declared variable, in units of the

@@ -38,6 +38,28 @@ pub struct Trace {
     pub means: Vec<(f64, f64, f64)>,
 }
 
+impl Trace {
+    /// Whether two traces are sides of one member.
+    fn is_of_member(&self, other: &Self) -> bool {
+        (self.constraint, &self.phase, &self.indices) == (other.constraint, &other.phase, &other.indices)
+    }
+
+    /// Takes another side of a corner into one trace: the constraint as it was written has the value of the side that is
+    /// nearest to its bound, and a bound that moves moves it for all sides at once.
+    fn add_side(&mut self, other: &Self) {
+        let is_upper = self.upper.is_finite();
+        for ((_, value), (_, side)) in self.points.iter_mut().zip(&other.points) {
+            *value = if is_upper { crate::math::max(*value, *side) } else { crate::math::min(*value, *side) };
+        }
+        for ((_, value), (_, side)) in self.multipliers.iter_mut().zip(&other.multipliers) {
+            *value += side;
+        }
+        for ((.., mean), (.., side)) in self.means.iter_mut().zip(&other.means) {
+            *mean += side;
+        }
+    }
+}
+
 /// Constraint, phase member and all loop indices.
 type Key = (usize, Option<usize>, Vec<i64>);
 
@@ -92,9 +114,15 @@ impl Solution {
             trace.means =
                 means.map(|(from, to, mean)| (start + from * duration, start + to * duration, mean)).collect();
         }
-        let mut traces: Vec<Trace> = found.into_values().collect();
-        for trace in &mut traces {
+        let mut traces: Vec<Trace> = vec![];
+        for mut trace in found.into_values() {
             trace.multipliers.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let sides = inner.model.structure.constraints[trace.constraint].sides;
+            trace.indices.truncate(trace.indices.len().saturating_sub(sides));
+            match traces.last_mut().filter(|last| sides > 0 && last.is_of_member(&trace)) {
+                Some(last) => last.add_side(&trace),
+                None => traces.push(trace),
+            }
         }
         Ok(traces)
     }

@@ -112,7 +112,7 @@ pub(crate) fn constraint_name(constraint: &Constraint) -> &str {
 
 /// The constraint with its members' indices: "`turn`[2]".
 pub(crate) fn constraint_words(constraint: &Constraint, indices: &[i64]) -> String {
-    member_words(constraint_name(constraint), indices)
+    member_words(constraint_name(constraint), constraint.shown_indices(indices))
 }
 
 /// A constraint's name with the indices of a member behind it; in the place of the dots of `u[..] in 0 .. 1`, which stands

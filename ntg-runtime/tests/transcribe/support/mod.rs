@@ -59,7 +59,13 @@ impl Double {
 
     pub fn constraint(&mut self, name: &str, block: Block) -> usize {
         let unit = Unit::default();
-        self.structure.constraints.push(Constraint { name: Some(name.into()), place: place(name), block, unit });
+        self.structure.constraints.push(Constraint {
+            name: Some(name.into()),
+            place: place(name),
+            block,
+            unit,
+            sides: 0,
+        });
         self.structure.constraints.len() - 1
     }
 

@@ -1,0 +1,169 @@
+//! Corners of constraints: `abs`, `max`, `min` where they are limited (docs/maths.md, section 18).
+//!
+//! Takes constraints with one bound; in integrals helpers stand for their corners (`epigraph.rs`). Elsewhere, where a corner enters so that the bound limits it on the side of its corner, as in
+//! `max(a, b) <= c`, the constraint has a member for each side of the corner in its place: `a <= c` and `b <= c`. That
+//! is exact at every point, needs no convexity, and no gradient jumps.
+
+use super::corners::{Corners, Site};
+use super::elaborator::Elaborator;
+use super::problem::{Domain, Form, Leaf, Loop};
+use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
+
+/// Most members of the sides of one constraint, beyond which its corners stay: two sides each of four corners. A choice.
+const MOST_SIDES: i64 = 16;
+
+/// How deep expressions are looked into; deeper corners stay.
+const MAX_DEPTH: usize = 500;
+
+/// The sides of the corners of one constraint.
+#[derive(Default)]
+struct Sides {
+    /// One for each corner.
+    loops: Vec<Loop>,
+    /// Members of all of them.
+    count: i64,
+    done: Map<(NodeId, bool), NodeId>, // Looked up, never iterated.
+    treated: Vec<NodeId>,
+}
+
+impl Elaborator<'_> {
+    /// Takes the corners out of constraints with one bound: of integrals by helpers, elsewhere by sides.
+    pub(super) fn corners_limited(&mut self, pass: &mut Corners) {
+        for number in 0..self.problem.constraints.len() {
+            let own = &self.problem.constraints[number];
+            let growing = match (own.bounds.lower, own.bounds.upper) {
+                (None, Some(_)) => true,
+                (Some(_), None) => false,
+                _ => continue,
+            };
+            if !pass.has_corners(own.body) {
+                continue;
+            }
+            if own.domain != Domain::Mission || !self.by_helpers(pass, number, growing) {
+                self.by_sides(pass, number, growing);
+            }
+        }
+    }
+
+    /// Whether helpers stand for corners of a constraint now.
+    fn by_helpers(&mut self, pass: &mut Corners, number: usize, growing: bool) -> bool {
+        let own = &self.problem.constraints[number];
+        let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None });
+        pass.span = own.span;
+        let smooth = self.smooth(pass, body, (&site, growing), 0);
+        if smooth == body {
+            return false;
+        }
+        self.origin(smooth, pass.span);
+        let own = &mut self.problem.constraints[number];
+        (own.body, own.written) = (smooth, Some(body));
+        true
+    }
+
+    /// Gives a constraint a member for each side of its corners.
+    fn by_sides(&mut self, pass: &mut Corners, number: usize, growing: bool) {
+        let own = &self.problem.constraints[number];
+        let (body, span) = (own.body, own.span);
+        let mut sides = Sides { count: 1, ..Sides::default() };
+        let smooth = self.side(pass, &mut sides, body, growing, 0);
+        if smooth == body || sides.count > MOST_SIDES {
+            return;
+        }
+        self.origin(smooth, span);
+        pass.treated.extend(sides.treated);
+        let own = &mut self.problem.constraints[number];
+        own.body = smooth;
+        own.sides = sides.loops.len();
+        own.loops.extend(sides.loops);
+    }
+
+    /// A node in which one side stands for each corner.
+    fn side(&mut self, pass: &mut Corners, sides: &mut Sides, node: NodeId, growing: bool, depth: usize) -> NodeId {
+        if depth > MAX_DEPTH || !pass.has_corners(node) {
+            return node;
+        }
+        if let Some(known) = sides.done.get(&(node, growing)) {
+            return *known;
+        }
+        let own = self.problem.dag.node(node).clone();
+        let (max, fold) = if growing { (Binary::Max, Fold::Max) } else { (Binary::Min, Fold::Min) };
+        let one = match own {
+            Node::Unary(Unary::Abs, x) if growing && pass.signs.is_positive(&self.problem, x) => {
+                self.side(pass, sides, x, growing, depth + 1)
+            }
+            Node::Unary(Unary::Abs, x) if growing && !pass.has_corners(x) => {
+                let minus = self.problem.dag.neg(x);
+                self.choice(sides, &[x, minus])
+            }
+            Node::Binary(op, ..) if op == max => {
+                let (mut members, mut open) = (vec![], vec![node]);
+                while let Some(node) = open.pop() {
+                    match *self.problem.dag.node(node) {
+                        Node::Binary(own, a, b) if own == op => open.extend([b, a]),
+                        _ => members.push(self.side(pass, sides, node, growing, depth + 1)),
+                    }
+                }
+                self.choice(sides, &members)
+            }
+            Node::Reduce { fold: own, range, body, .. } if own == fold => {
+                let over = self.problem.ranges[range as usize].clone();
+                match (over.first.as_number(), over.last.as_number()) {
+                    (Some(first), Some(last)) if first <= last && !sides.loops.contains(&over) => {
+                        sides.loops.push(over);
+                        self.side(pass, sides, body, growing, depth + 1)
+                    }
+                    _ => node,
+                }
+            }
+            _ => self.below_sides(pass, sides, (node, &own), growing, depth + 1),
+        };
+        if one != node {
+            sides.treated.push(node);
+        }
+        sides.done.insert((node, growing), one);
+        one
+    }
+
+    /// One of several nodes, by a new index.
+    fn choice(&mut self, sides: &mut Sides, members: &[NodeId]) -> NodeId {
+        let count = members.len() as i64;
+        let over = self.new_index(Form::number(1), Form::number(count));
+        let index = self.leaf(Leaf::Index(Form::index(over.index)));
+        sides.loops.push(over);
+        sides.count = sides.count.saturating_mul(count);
+        let (last, others) = members.split_last().expect("a corner has sides");
+        let mut one = *last;
+        for (at, member) in others.iter().enumerate().rev() {
+            let number = self.problem.dag.constant((at + 1) as f64);
+            let is_other = self.problem.dag.sub(index, number);
+            one = self.problem.dag.select(is_other, one, *member);
+        }
+        one
+    }
+
+    fn below_sides(
+        &mut self,
+        pass: &mut Corners,
+        sides: &mut Sides,
+        (node, own): (NodeId, &Node),
+        growing: bool,
+        depth: usize,
+    ) -> NodeId {
+        if matches!(own, Node::Input(_) | Node::Reduce { .. }) {
+            return node;
+        }
+        let mut images: Map<NodeId, NodeId> = Map::default();
+        for (at, operand) in own.operands().into_iter().enumerate() {
+            let rises = if pass.has_corners(operand) { self.slope(pass, own, at) } else { None };
+            let image = match rises {
+                Some(rises) => self.side(pass, sides, operand, growing == rises, depth),
+                None => operand,
+            };
+            // One operand that the node both grows and falls with stays.
+            if images.insert(operand, image).is_some_and(|before| before != image) {
+                return node;
+            }
+        }
+        self.problem.dag.rebuild(own, |operand| images[&operand])
+    }
+}
