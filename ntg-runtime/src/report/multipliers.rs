@@ -11,6 +11,9 @@ use ntg_splines::Side;
 use ntg_structure::Structure;
 use std::collections::HashMap;
 
+/// Constraint, member, and point: phase, bits of the scaled time, and whether from the left.
+type Place<'a> = (usize, &'a [i64], Option<usize>, u64, bool);
+
 /// Adds one row's multiplier to its constraint's report.
 pub(super) fn add(nlp: &Transcription, outcome: &Outcome, row: usize, report: &mut ConstraintReport) {
     let Some(raw) = outcome.row_multipliers.get(row) else { return };
@@ -31,7 +34,7 @@ impl Solution {
         let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
         let mut found: Vec<Multiplier> = vec![];
         // Where the multipliers of a member at a point are, of corners alone.
-        let mut places: HashMap<(usize, &[i64], Option<usize>, u64, bool), usize> = HashMap::new(); // Looked up, never iterated.
+        let mut places: HashMap<Place<'_>, usize> = HashMap::new(); // Looked up, never iterated.
         for (info, raw) in self.inner.rows.iter().zip(&self.inner.row_multipliers) {
             let RowKind::Constraint(index) = info.kind else { continue };
             let declared = &structure.constraints[index];
