@@ -1,6 +1,6 @@
 //! The functions of a certificate on boxes of time.
 
-use crate::interval::Interval;
+use crate::interval::{Interval, pi};
 use crate::jet::{Jet, binomial};
 use crate::read::{Axis, Certificate, Flat, Input, Node, Table};
 use crate::real::Real;
@@ -149,8 +149,11 @@ fn operation(name: &str, args: &[Jet]) -> Jet {
         ("sin", [x]) => x.sine_and_cosine().0,
         ("cos", [x]) => x.sine_and_cosine().1,
         ("tan", [x]) => x.sine_and_cosine().0.over(&x.sine_and_cosine().1),
-        ("asin", [x]) => x.atan2(&((one - *x) * (one + *x)).sqrt()),
-        ("acos", [x]) => ((one - *x) * (one + *x)).sqrt().atan2(x),
+        ("asin", [x]) => x.atan2(&((one - *x) * (one + *x)).sqrt()).narrowed(x.c[0].asin()),
+        ("acos", [x]) => {
+            let value = pi().scaled(-1) - x.c[0].asin();
+            ((one - *x) * (one + *x)).sqrt().atan2(x).narrowed(value)
+        }
         ("atan", [x]) => x.atan(),
         ("sinh", [x]) => (x.exp() - (-*x).exp()) * half,
         ("cosh", [x]) => (x.exp() + (-*x).exp()) * half,

@@ -10,7 +10,7 @@
 use crate::contract::{Evaluation, Nlp};
 use crate::options::Options;
 use crate::outcome::Outcome;
-use crate::residuals::{self, Point, Residual, slot_terms, violation};
+use crate::residuals::{self, GAP, Point, Residual, slot_terms, violation};
 use crate::scaling::{Scales, Slopes, steepest_of_relations, variation};
 use crate::sizes::{Resized, multiples};
 use crate::sparse::Assembly;
@@ -37,6 +37,8 @@ pub(crate) const UNSEEN: f64 = 0.5;
 pub(crate) const OUTGROWN: f64 = 100.0;
 /// By how much the new size of what has outgrown its typical size exceeds what it is.
 const MARGIN: f64 = 10.0;
+/// Below so many typical sizes the terms of an objective have their digits. A law: a tenth of what the double format has.
+const FAR: f64 = 1e6;
 /// Variables within so many typical sizes, and an objective that varies by at least this part of what it did at the
 /// start, are measured well enough.
 const NEAR_SIZE: f64 = 10.0;
@@ -64,6 +66,8 @@ pub(crate) struct Round<'a> {
     pub(crate) start: Option<&'a [f64]>,
     /// Whether it may end where variables have outgrown their sizes.
     pub(crate) may_outgrow: bool,
+    /// Whether slacks with nothing on their other sides are damped.
+    pub(crate) is_damped: bool,
 }
 
 /// Solves, and goes on as long as the scales do not hold.
@@ -77,9 +81,11 @@ pub(crate) fn until_measured<N: Nlp>(
     let mut start: Option<Vec<f64>> = None;
     let (mut iterations, mut rounds, mut restarts, mut saddles) = (0, 0, 0, 0);
     let mut left_saddle: Option<Outcome> = None;
+    let mut undamped: Option<Outcome> = None;
     loop {
         let left = options.max_iterations.saturating_sub(iterations);
-        let round = Round { start: start.as_deref(), may_outgrow: restarts < RESTARTS };
+        let is_damped = undamped.is_some();
+        let round = Round { start: start.as_deref(), may_outgrow: restarts < RESTARTS, is_damped };
         let options = Options { max_iterations: left, ..options.after(began.elapsed()) };
         let (mut outcome, measure) = solve(&resized, round, &options);
         iterations += outcome.iterations;
@@ -92,7 +98,17 @@ pub(crate) fn until_measured<N: Nlp>(
             measure => measure,
         };
         match measure {
-            Measure::Holds => return unless_worse(left_saddle, outcome),
+            Measure::Holds if !is_damped && has_lost_digits(nlp, &outcome, &options) => {
+                (resized, start, undamped) = (Resized::new(nlp), None, Some(outcome));
+                continue;
+            }
+            Measure::Holds => {
+                let end = match undamped {
+                    Some(undamped) if !outcome.status.has_solution() => Outcome { iterations, ..undamped },
+                    _ => outcome,
+                };
+                return unless_worse(left_saddle, end);
+            }
             Measure::Saddle(_) if saddles == SADDLES => {
                 return unless_worse(left_saddle, Outcome { is_saddle: true, ..outcome });
             }
@@ -144,6 +160,22 @@ pub(crate) fn outgrown<N: Nlp>(nlp: &N, scaled: &[f64], limits: &[f64]) -> Vec<f
 pub(crate) fn is_near_scales<N: Nlp>(nlp: &N, (objective, at): (f64, &Evaluation), end: &Outcome) -> bool {
     let (sizes, grown) = sizes_at(nlp, &end.x);
     grown <= NEAR_SIZE && objective * variation(nlp.blocks(), at, &sizes) >= NEAR_VARIATION
+}
+
+/// Whether variables have become so large that the objective, a difference of their terms, has lost the digits that a
+/// solution is to have of it: as many tolerances as the gap between it and its optimum, of what it is or varies by.
+fn has_lost_digits<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> bool {
+    let sizes = Scales::sizes(nlp.limits());
+    if !end.status.has_solution() || end.x.iter().zip(&sizes).all(|(x, size)| x.abs() <= FAR * size) {
+        return false;
+    }
+    let (mut work, mut at) = nlp.workspace();
+    if nlp.derivatives(&end.x, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).is_err() {
+        return false;
+    }
+    let large: Vec<f64> = end.x.iter().map(|x| x.abs()).collect();
+    let rounding = f64::EPSILON * variation(nlp.blocks(), &at, &large);
+    rounding > GAP * options.tolerance * end.objective.abs().max(variation(nlp.blocks(), &at, &sizes))
 }
 
 /// The sizes by which a solution is none: those that variables have there, where they are larger than their typical ones.

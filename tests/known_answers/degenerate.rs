@@ -269,3 +269,45 @@ fn a_row_without_a_slope_at_the_guess_does_not_end_sequential_quadratic_programm
     close(report.objective, std::f64::consts::PI.powi(2), 1e-6);
     assert!(report.iterations <= 50, "{} iterations", report.iterations);
 }
+
+/// All `a >= 1`, `b = a + 3` are optima. In the middle of them the barrier is at infinity, where a difference of 1e13s has
+/// no digits left: -2.825 was called solved.
+#[test]
+fn an_unbounded_set_of_optima_does_not_cost_the_digits_of_the_objective() {
+    for first in [1.0, 1e-3, 1e3] {
+        let report = Shipped::text(&format!(
+            "problem Valley {{
+                duration T = 1;
+                variable a, b;
+                state x;
+                input u in 0 .. 1;
+                collocation gauss(points = 3, intervals = 10);
+                minimize a - b;
+                dynamics {{ der(x) == u; }}
+                initial {{ x == 0; }}
+                final {{ a >= {first};  b <= 3 + a; }}
+            }}"
+        ))
+        .solve();
+        close(report.objective, -3.0, 1e-6);
+    }
+}
+
+/// 1300 products of multipliers and distances of 1e-6 each are a thousandth of the objective.
+#[test]
+fn many_small_products_of_multipliers_and_distances_are_not_small_together() {
+    for price in ["1", "1e5", "1e6", "1e-6"] {
+        let report = Shipped::text(&format!(
+            "problem Contact {{
+                duration T = 10;
+                output x: spline(order = 5, intervals = 320, smoothness = 2);
+                minimize {price} * integral(3 * x + 0.5 * der(x, 2)^2);
+                initial {{ x == 1;  der(x) == -2; }}
+                trajectory {{ x >= 0; }}
+                final {{ x == 0;  der(x) == 0; }}
+            }}"
+        ))
+        .solve();
+        close(report.objective / price.parse::<f64>().expect("a number"), 2.866039558, 1e-6);
+    }
+}

@@ -183,3 +183,25 @@ fn members_of_a_scenario_are_measured() {
     let drag = short_estimate.deviations[0].variable.value;
     close((1.0 - (-2.0 * drag).exp()) / drag, 1.0, 1e-4);
 }
+
+/// With `u = c` throughout, `u^2` and the price `1 - c` weigh alike: `c = 1/2`, a cost of 3/4 for each member by its weight.
+#[test]
+fn prices_of_soft_constraints_count_by_the_weights_of_the_members() {
+    for (weight, expected) in [("weight 0.375", 0.5625), ("weight 0.5 * k", 1.125), ("", 0.75)] {
+        let spec = format!(
+            "problem P {{
+                duration T = 1;
+                collocation gauss(points = 3, intervals = 8);
+                scenario a[k in 1 .. 2] {weight} {{
+                    state x;
+                    input u;
+                    dynamics {{ der(x) == u; }}
+                    minimize integral(u^2);
+                    initial {{ x == 0; }}
+                    final {{ soft(1): x == 1; }}
+                }}
+            }}"
+        );
+        close(Shipped::text(&spec).solve().objective, expected, 1e-6);
+    }
+}

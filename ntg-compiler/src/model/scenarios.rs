@@ -155,11 +155,13 @@ impl Pass<'_> {
                 }
                 ItemKind::Block(mut block) => {
                     rename.statements(&mut block.statements, &mut Rename::constraint);
+                    weigh_prices(scenario, &mut block.statements);
                     block.statements = vec![each(scenario, block.statements, item.span)];
                     ItemKind::Block(block)
                 }
                 ItemKind::At(mut at) => {
                     rename.statements(&mut at.statements, &mut Rename::constraint);
+                    weigh_prices(scenario, &mut at.statements);
                     at.statements = vec![each(scenario, at.statements, item.span)];
                     ItemKind::At(at)
                 }
@@ -170,7 +172,7 @@ impl Pass<'_> {
                 }
                 ItemKind::Objective(mut objective) => {
                     rename.expr(&mut objective.value);
-                    objective.value = weighed(scenario, objective.value);
+                    objective.value = summed(scenario, objective.value);
                     ItemKind::Objective(objective)
                 }
                 ItemKind::Periodic(mut periodic) => {
@@ -305,7 +307,30 @@ fn held(scenario: &Scenario, item: &Item, place: BlockPlace, body: Vec<Statement
     Some(Item { doc: None, kind: ItemKind::Block(block), span: item.span })
 }
 
+/// The prices of soft constraints times the weights of the members, as their other costs.
+fn weigh_prices(scenario: &Scenario, statements: &mut [Statement<Constraint>]) {
+    for statement in statements {
+        match statement {
+            Statement::For(inner) => weigh_prices(scenario, &mut inner.body),
+            Statement::One(Constraint { softness: Some(softness), .. }) => {
+                for price in softness.linear.iter_mut().chain(&mut softness.square) {
+                    *price = weighed(scenario, price.clone());
+                }
+            }
+            Statement::One(_) => {}
+        }
+    }
+}
+
 /// The sum over the members by their weights, or their mean.
+fn summed(scenario: &Scenario, value: Expr) -> Expr {
+    let span = value.span;
+    let body = weighed(scenario, value);
+    let reduction = Reduction { op: ReduceOp::Sum, over: scenario.family.clone(), body, width: None };
+    Expr { kind: ExprKind::Reduce(Box::new(reduction)), span }
+}
+
+/// A member's part of a sum by weights, or of a mean.
 fn weighed(scenario: &Scenario, value: Expr) -> Expr {
     let span = value.span;
     let IndexRange { first, last, .. } = &scenario.family;
@@ -318,7 +343,5 @@ fn weighed(scenario: &Scenario, value: Expr) -> Expr {
             vec![(MulOp::Multiply, value), (MulOp::Divide, count)]
         }
     };
-    let body = Expr { kind: ExprKind::Product(body), span };
-    let reduction = Reduction { op: ReduceOp::Sum, over: scenario.family.clone(), body, width: None };
-    Expr { kind: ExprKind::Reduce(Box::new(reduction)), span }
+    Expr { kind: ExprKind::Product(body), span }
 }

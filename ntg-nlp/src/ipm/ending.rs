@@ -144,7 +144,7 @@ impl<'a, N: Nlp> State<'a, N> {
         let n = self.nlp.variables();
         let objective = self.system.scales.objective;
         let first = self.system.first_variable();
-        self.slacks.multipliers(self.system.objective(), &mut self.multipliers);
+        self.slacks.multipliers(self.system.objective(), 0.0, &mut self.multipliers);
         let row_multipliers = self.row_multipliers();
         let bound_multipliers: Vec<f64> =
             (0..n).map(|j| self.multipliers[first + j] / self.system.scales.variables[j] / objective).collect();

@@ -145,7 +145,7 @@ impl<N: Nlp> State<'_, N> {
             return;
         }
         let n = self.x.len() - 1;
-        self.slacks.multipliers(self.system.objective(), &mut self.multipliers);
+        self.slacks.multipliers(self.system.objective(), self.damping(), &mut self.multipliers);
         self.system.transposed_product(&self.multipliers, &mut self.step.x);
         self.step.border.fill(0.0);
         self.system.solve(&mut self.step.x[..n], &mut self.step.border);

@@ -100,6 +100,7 @@ impl<'a, N: Nlp> State<'a, N> {
             iterations: 0,
             begin,
             size_limits: vec![],
+            is_damped: false,
             x,
             slacks,
             system,

@@ -110,7 +110,8 @@ impl<N: Nlp> State<'_, N> {
 
     /// Derivative of the barrier objective along the step.
     pub(super) fn slope(&self) -> f64 {
-        self.step.jacobian_x[self.system.objective()] - self.mu * self.step.shrinkage.slack_sum
+        let slope = self.step.jacobian_x[self.system.objective()] - self.mu * self.step.shrinkage.slack_sum;
+        slope + self.damped(self.mu, &self.step.s)
     }
 
     /// The fraction to the boundary, WB (8): tau.
@@ -146,7 +147,8 @@ impl<N: Nlp> State<'_, N> {
             Scaled { length: alpha, vector: &self.step.y },
             Scaled { length: self.to_dual_boundary(), vector: &self.step.z },
         );
-        self.slacks.multipliers_after(self.system.objective(), dy, dz, &mut self.trial.multipliers);
+        let (objective, damping) = (self.system.objective(), self.damping());
+        self.slacks.multipliers_after(objective, damping, (dy, dz), &mut self.trial.multipliers);
         let Trial { x, values, multipliers, .. } = &mut self.trial;
         match self.system.speculative_derivatives(self.nlp, x, multipliers, values) {
             Ok(()) => {

@@ -99,6 +99,7 @@ fn solve_posed<N: Nlp>(
                 if round.may_outgrow {
                     state.watch_sizes();
                 }
+                state.is_damped = round.is_damped;
                 iterate(state)
             }
             Err(status) => {

@@ -170,6 +170,7 @@ impl<N: Nlp> State<'_, N> {
         s.iter_mut().zip(&self.slacks.distance).for_each(|(s, d)| *s = d.max(least));
         let theta = self.slacks.infeasibility(&self.values, &self.slacks.distance, s);
         let phi = self.values[self.system.objective()] - mu * log_sum(s);
+        let phi = phi + self.damped(mu, &self.trial.s);
         if theta > most || !phi.is_finite() || !self.filter.accepts(theta, phi) {
             return;
         }

@@ -56,6 +56,8 @@ pub(super) struct Slacks {
     pub(super) z: Vec<f64>,
     /// The multiplier of each equality.
     pub(super) y: Vec<f64>,
+    /// 1 for each inequality whose function has no other bound, else 0.
+    one_sided: Vec<f64>,
     /// The number of the first function that is a variable.
     pub(super) first_variable: usize,
 }
@@ -70,6 +72,13 @@ impl Slacks {
         all.distance = all.s.clone();
         all.z = vec![0.0; all.inequalities.len()];
         all.y = vec![0.0; all.equalities.len()];
+        // Both bounds of a function follow one another.
+        let function = |k: usize| all.inequalities.get(k).map(|of| of.function);
+        let is_alone = |k: usize| {
+            let own = function(k);
+            own != function(k + 1) && (k == 0 || own != function(k - 1))
+        };
+        all.one_sided = (0..all.s.len()).map(|k| if is_alone(k) { 1.0 } else { 0.0 }).collect();
         all
     }
 
@@ -139,27 +148,39 @@ impl Slacks {
     }
 
     /// Writes the multiplier of every function, `-1` for the objective, so that the gradient of the
-    /// Lagrangian is *minus* the sum of multipliers times gradients.
-    pub(super) fn multipliers(&self, objective: usize, out: &mut [f64]) {
+    /// Lagrangian is *minus* the sum of multipliers times gradients. That of the barrier problem has what `damping` takes off.
+    pub(super) fn multipliers(&self, objective: usize, damping: f64, out: &mut [f64]) {
         out.fill(0.0);
         out[objective] = -1.0;
         for (equality, y) in self.equalities.iter().zip(&self.y) {
             out[equality.function] += y;
         }
-        for (of, z) in self.inequalities.iter().zip(&self.z) {
-            out[of.function] += of.sign * z;
+        for ((of, z), one_sided) in self.inequalities.iter().zip(&self.z).zip(&self.one_sided) {
+            out[of.function] += of.sign * (z - damping * one_sided);
         }
     }
 
+    /// The sum of slacks, or of steps of slacks, that the barrier problem damps, (11.1a).
+    pub(super) fn damped(&self, s: &[f64]) -> f64 {
+        sum([s, &self.one_sided], |[s, one_sided]| s * one_sided)
+    }
+
     /// As [`Slacks::multipliers`], after a step `dy` and `dz` of the given lengths.
-    pub(super) fn multipliers_after(&self, objective: usize, dy: Scaled<'_>, dz: Scaled<'_>, out: &mut [f64]) {
+    pub(super) fn multipliers_after(
+        &self,
+        objective: usize,
+        damping: f64,
+        (dy, dz): (Scaled<'_>, Scaled<'_>),
+        out: &mut [f64],
+    ) {
         out.fill(0.0);
         out[objective] = -1.0;
         for ((equality, y), d) in self.equalities.iter().zip(&self.y).zip(dy.vector) {
             out[equality.function] += y + dy.length * d;
         }
-        for ((of, z), d) in self.inequalities.iter().zip(&self.z).zip(dz.vector) {
-            out[of.function] += of.sign * (z + dz.length * d);
+        let inequalities = self.inequalities.iter().zip(&self.one_sided);
+        for (((of, one_sided), z), d) in inequalities.zip(&self.z).zip(dz.vector) {
+            out[of.function] += of.sign * (z + dz.length * d - damping * one_sided);
         }
     }
 
@@ -187,6 +208,11 @@ impl Slacks {
     /// The largest product of an inequality's multiplier and the distance to its bound.
     pub(super) fn complementarity(&self) -> f64 {
         largest([&self.distance, &self.z], |[d, z]| (z * d).abs())
+    }
+
+    /// The sum of all these products.
+    pub(super) fn gap(&self) -> f64 {
+        sum([&self.distance, &self.z], |[d, z]| (z * d).abs())
     }
 
     /// The largest product of an equality's multiplier and its residual.

@@ -21,6 +21,10 @@ use crate::status::Status;
 use crate::stopping::Stage;
 use std::time::Instant;
 
+/// What a slack with nothing on its other side costs, as a multiple of the barrier parameter, where that is asked for:
+/// kappa_d of WB, section 3.7; as in their program.
+const DAMPING: f64 = 1e-5;
+
 /// Everything that one solve needs, allocated once. All vectors are scaled.
 pub(super) struct State<'a, N: Nlp> {
     pub(super) nlp: &'a N,
@@ -85,6 +89,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) begin: Instant,
     /// How large each scaled variable may become: beyond, it has outgrown its typical size. Empty: as large as it will.
     pub(super) size_limits: Vec<f64>,
+    /// Whether slacks with nothing on their other sides are damped.
+    pub(super) is_damped: bool,
 }
 
 /// What one solve leaves to the next: the scaled system with its symbolic analysis. `W` is the program's workspace.
@@ -169,7 +175,7 @@ impl<N: Nlp> State<'_, N> {
     /// Collects the multipliers of all functions. In restoration the objective has none.
     fn collect_multipliers(&mut self) {
         let objective = self.system.objective();
-        self.slacks.multipliers(objective, &mut self.multipliers);
+        self.slacks.multipliers(objective, self.damping(), &mut self.multipliers);
         if self.mode.restoration().is_some() {
             self.multipliers[objective] = 0.0;
         }
@@ -187,7 +193,17 @@ impl<N: Nlp> State<'_, N> {
 
     /// The barrier objective at some function values and slacks.
     pub(super) fn barrier_objective(&self, values: &[f64], s: &[f64]) -> f64 {
-        values[self.system.objective()] - self.mu * log_sum(s)
+        values[self.system.objective()] - self.mu * log_sum(s) + self.damped(self.mu, s)
+    }
+
+    /// What is taken off the multipliers of inequalities with nothing on their other sides, (11.1a).
+    pub(super) fn damping(&self) -> f64 {
+        if self.is_damped && matches!(self.mode, Mode::Filter) { DAMPING * self.mu } else { 0.0 }
+    }
+
+    /// What such slacks cost, or a step of theirs, in the filter's mode.
+    pub(super) fn damped(&self, mu: f64, s: &[f64]) -> f64 {
+        if self.is_damped { DAMPING * mu * self.slacks.damped(s) } else { 0.0 }
     }
 
     /// Computes the gradient of the Lagrangian and the residuals of the present point, and begins its record.
@@ -200,6 +216,7 @@ impl<N: Nlp> State<'_, N> {
             primal: self.slacks.violation(&self.values),
             dual: self.dual_residual(),
             complementarity: self.slacks.complementarity(),
+            gap: self.slacks.gap(),
             worth: self.slacks.worth(&self.values),
             rounding: 0.0,
         };
