@@ -132,6 +132,7 @@ codes! {
     WrongMeasurement "E095" "something in `measure` that is no measurement";
     UnitInDoubt "E096" "a unit in a list that can be read two ways";
     MissesJumps "E097" "a derivative that misses the jumps of what it is taken of";
+    TooLarge "E098" "a problem too large to be solved";
 
     GradientJumps "N001" "a gradient that may jump";
     DerivativeJumps "N002" "a derivative that jumps at the knots";

@@ -2,7 +2,7 @@
 //!
 //! Takes the finished problem.
 //! Finds: boundary conditions that contradict one another or a bound, more of them than an output
-//! can meet, a problem without an objective; notes an end without a start.
+//! can meet, a problem without an objective; notes an end without a start; `size` finds what is too large.
 //! Only what constants decide is told here; what parameters decide is the solver's affair.
 
 use std::collections::HashMap;
@@ -31,6 +31,10 @@ impl Elaborator<'_> {
     pub(super) fn check(&mut self) {
         if self.has_failed() {
             return; // The rest would only repeat it.
+        }
+        self.check_size();
+        if self.has_failed() {
+            return; // The rest would take its time.
         }
         for phase in 0..self.problem.phases.len() {
             for block in [Block::Initial, Block::Final] {

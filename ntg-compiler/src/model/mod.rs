@@ -73,6 +73,7 @@ mod shared;
 mod shown_unit;
 mod sides;
 mod signs;
+mod size;
 mod soft;
 mod steps;
 mod suggest;
