@@ -163,7 +163,7 @@ fn the_ground_is_the_table_and_the_limit_above_it_a_line() {
     assert!(apart.into_iter().all(|apart| (apart - 40.0).abs() < 1e-3));
     let side = list(&charts).find(|chart| chart["title"] == "z from the side").expect("a view from the side");
     let kinds: Vec<_> = list(&side["shapes"]).map(|shape| (shape[0].as_str(), shape[1].as_str())).collect();
-    assert_eq!(kinds, [(Some("ground"), Some("ground")), (Some("border"), Some("above"))]);
+    assert_eq!(kinds, [(Some("ground"), Some("ground")), (Some("border"), Some("above: stay above"))]);
     let (run, _) = saved(SIDE);
     let lines: Vec<_> = list(&run["scene"]["outlines"]).map(|o| (o["name"].as_str(), o["ground"].as_bool())).collect();
     assert_eq!(lines, [(Some("ground"), Some(true)), (Some("above"), Some(false))]);

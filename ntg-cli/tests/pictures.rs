@@ -268,3 +268,55 @@ fn five_commands_lead_from_nothing_to_a_picture_of_a_descent_that_turns() {
     let page = read(folder, "lander.html");
     assert!(page.contains("\"kind\":\"space\"") && page.contains("status good"), "solved, in green");
 }
+
+/// The charts of a page.
+fn charts(page: &str) -> Value {
+    let data = page.split("id=\"data\">").nth(1).and_then(|rest| rest.split("</script>").next()).expect("data");
+    serde_json::from_str(data).expect("a list of charts")
+}
+
+#[test]
+fn runs_that_are_compared_have_their_own_zones_in_their_own_colours() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    done(folder, &["new", "lander", "--three-dimensional"]);
+    done(folder, &["solve", "lander.ntg", "--save", "wide.json"]);
+    done(folder, &["solve", "lander.ntg", "--set", "hill_radius=500", "--save", "narrow.json"]);
+    done(folder, &["report", "wide.json", "-o", "one.html"]);
+    done(folder, &["report", "wide.json", "narrow.json", "-o", "both.html"]);
+    let kind = |charts: &Value, title: &str| {
+        let all = charts.as_array().expect("charts");
+        all.iter().find(|chart| chart["title"] == title).expect(title).clone()
+    };
+    let both = charts(&read(folder, "both.html"));
+    let balls: Vec<(String, Value)> = kind(&both, "in space")["balls"]
+        .as_array()
+        .expect("balls")
+        .iter()
+        .map(|ball| (ball["name"].as_str().unwrap_or_default().to_owned(), ball["of"].clone()))
+        .collect();
+    assert_eq!(balls, [("clear (wide)".to_owned(), Value::from(0)), ("clear (narrow)".to_owned(), Value::from(1))]);
+    // Kind, name, and line of what lies beneath a map. The glide slope is the same, and each track is over a part of its own.
+    let beneath = |charts: &Value, title: &str| -> Vec<(String, String, Value)> {
+        let shapes = kind(charts, title)["shapes"].as_array().expect("shapes").clone();
+        let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        let all = shapes.iter().map(|shape| (word(&shape[0]), word(&shape[1]), shape[4].clone()));
+        all.filter(|(kind, ..)| kind == "area" || kind == "ground").collect()
+    };
+    let of = |kind: &str, name: &str, line: Value| (kind.to_owned(), name.to_owned(), line);
+    assert_eq!(
+        beneath(&both, "r[3] from the side"),
+        [
+            of("ground", "glide_slope", Value::from(0)),
+            of("area", "clear (wide)", Value::from(0)),
+            of("ground", "glide_slope", Value::from(1)),
+            of("area", "clear (narrow)", Value::from(1)),
+        ]
+    );
+    let own = [of("area", "clear (wide)", Value::from(0)), of("area", "clear (narrow)", Value::from(1))];
+    assert_eq!(beneath(&both, "r[2] over r[1], from above"), own);
+    // Alone, the hill is cut along the track, and is nobody's.
+    let one = charts(&read(folder, "one.html"));
+    let cut = [of("ground", "glide_slope", Value::Null), of("area", "clear", Value::Null)];
+    assert_eq!(beneath(&one, "r[3] from the side"), cut);
+}

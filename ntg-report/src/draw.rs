@@ -171,23 +171,24 @@ fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>)
 
 /// What lies beneath the lines.
 fn draw_shape(chart: &mut Chart<'_>, shape: &Shape, (xs, ys): (&Range<f64>, &Range<f64>)) -> Drawn {
-    let colour = match shape.kind {
-        Kind::Area | Kind::Border => LIMIT,
-        Kind::Ground => GROUND,
-        Kind::Contour | Kind::Place => GREY,
+    let colour = match (shape.of, shape.kind) {
+        (Some(line), _) => COLOURS[line % COLOURS.len()],
+        (None, Kind::Area | Kind::Border) => LIMIT,
+        (None, Kind::Ground) => GROUND,
+        (None, Kind::Contour | Kind::Place) => GREY,
     };
     let area = clip::area(&shape.points, xs, ys);
     if shape.kind == Kind::Area && area.len() > 2 {
-        chart.draw_series([Polygon::new(area.clone(), LIMIT.mix(0.12))])?;
+        chart.draw_series([Polygon::new(area.clone(), colour.mix(0.12))])?;
     }
     let parts = clip::line(&shape.points, xs, ys);
     for part in parts.iter().cloned() {
         match shape.kind {
-            Kind::Area => chart.draw_series(LineSeries::new(part, LIMIT.stroke_width(20)))?,
-            Kind::Contour => chart.draw_series(LineSeries::new(part, GREY.mix(0.45).stroke_width(15)))?,
-            Kind::Ground => chart.draw_series(LineSeries::new(part, GROUND.stroke_width(35)))?,
+            Kind::Area => chart.draw_series(LineSeries::new(part, colour.stroke_width(20)))?,
+            Kind::Contour => chart.draw_series(LineSeries::new(part, colour.mix(0.45).stroke_width(15)))?,
+            Kind::Ground => chart.draw_series(LineSeries::new(part, colour.stroke_width(35)))?,
             Kind::Border | Kind::Place => {
-                chart.draw_series(DashedLineSeries::new(part, 100, 60, LIMIT.stroke_width(25)))?;
+                chart.draw_series(DashedLineSeries::new(part, 100, 60, colour.stroke_width(25)))?;
                 continue;
             }
         };
@@ -209,6 +210,8 @@ fn draw_shape(chart: &mut Chart<'_>, shape: &Shape, (xs, ys): (&Range<f64>, &Ran
     if let Some(at) = at {
         // Above the middle of an area, where a place may have its own name.
         let offset = if shape.kind == Kind::Area { (-200, -400) } else { (100, -80) };
+        // Areas of several lines may have one middle.
+        let offset = (offset.0, offset.1 - 260 * i32::try_from(shape.of.unwrap_or(0))?);
         let style = font(200).color(&colour);
         let size = style.font.box_size(&shape.name)?;
         let size = (i32::try_from(size.0)?, i32::try_from(size.1)?);
@@ -372,8 +375,12 @@ mod tests {
         let frame = ((100, 100), (1000, 900));
         assert_eq!(within((500, 500), (20, -30), (200, 50), frame), (20, -30), "there is room");
         assert_eq!(within((980, 110), (20, -30), (200, 50), frame), (-220, 30), "above and to the right there is none");
-        let shape =
-            |kind, name: &str, points: &[(f64, f64)]| Shape { kind, name: name.to_owned(), points: points.to_vec() };
+        let shape = |kind, name: &str, points: &[(f64, f64)]| Shape {
+            kind,
+            name: name.to_owned(),
+            of: None,
+            points: points.to_vec(),
+        };
         let panel = Panel {
             equal: true,
             lines: vec![Line { points: vec![(0.0, 0.0), (10.0, 10.0)], times: vec![0.0, 1.0], ..Line::default() }],

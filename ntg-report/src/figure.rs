@@ -4,6 +4,8 @@
 //! quantity of several agents and runs share axes.
 
 mod ground;
+mod own;
+mod section;
 mod track;
 
 pub use track::{Space, side, space, track, tracks};
@@ -66,6 +68,8 @@ pub struct Shape {
     pub kind: Kind,
     /// What it is called.
     pub name: String,
+    /// The line of the panel to which alone it belongs, and whose colour it has; none where it belongs to all.
+    pub of: Option<usize>,
     /// Its points; one for a place.
     pub points: Vec<(f64, f64)>,
 }

@@ -61,27 +61,35 @@ function NtgMap(place, chart, { colour, dash, number }) {
     return found;
   };
   // A name beside a point, moved as far as it takes to lie within the frame.
-  const named = (f, kind, name, [x, y, anchor], parent) => {
+  const named = (f, kind, name, [x, y, anchor], parent, tone) => {
     const text = make("text", { class: `${kind}name`, y: Math.min(Math.max(y, margin.top + 12), margin.top + f.h - 4) }, parent);
     text.textContent = name;
+    if (tone) text.style.fill = tone;
     const size = text.getComputedTextLength(), share = { start: 0, middle: 0.5, end: 1 }[anchor];
     text.setAttribute("x", Math.max(Math.min(x - share * size, margin.left + f.w - 4 - size), margin.left + 4));
   };
+  // A shape in the colour of its line; only areas are filled.
+  const painted = (shape, tone, filled) => {
+    if (tone) { shape.style.stroke = tone; shape.style.fill = filled ? tone : "none"; }
+    return shape;
+  };
   // Beneath the tracks: areas and borders that limit them, lines of equal height, the ground, and places.
   const beneath = (f, inside, names) => {
-    for (const [kind, name, x, y] of chart.shapes) {
+    for (const [kind, name, x, y, of] of chart.shapes) {
+      // What belongs to one line alone has its colour.
+      const tone = of == null ? undefined : colour(of);
       if (kind === "place") {
         const [px, py] = [f.px(x[0]), f.py(y[0])];
-        make("path", { class: "place", d: `M${px} ${py - 5}l4.5 8h-9z` }, inside);
+        painted(make("path", { class: "place", d: `M${px} ${py - 5}l4.5 8h-9z` }, inside), tone);
         // Before its mark where the picture ends too soon.
         const ends = px + 10 + 6.5 * name.length > margin.left + f.w;
         const within = px > margin.left && px < margin.left + f.w && py > margin.top && py < margin.top + f.h;
-        if (within) named(f, kind, name, [px + (ends ? -7 : 7), py + 4, ends ? "end" : "start"], names);
+        if (within) named(f, kind, name, [px + (ends ? -7 : 7), py + 4, ends ? "end" : "start"], names, tone);
         continue;
       }
       let d = path({ x, y }, f);
-      if (kind === "ground") d += `V${margin.top + f.h}H${f.px(x[0])}Z`;
-      const shape = make("path", { class: kind, d }, inside);
+      if (kind === "ground" && of == null) d += `V${margin.top + f.h}H${f.px(x[0])}Z`;
+      const shape = painted(make("path", { class: kind, d }, inside), tone, kind === "area");
       make("title", {}, shape).textContent = name;
       if (!name || kind === "ground") continue;
       // In the middle of an area; of other lines, at a point that is in the picture.
@@ -89,8 +97,10 @@ function NtgMap(place, chart, { colour, dash, number }) {
       if (!seen.length || (kind === "contour" && seen.length < 6)) continue;
       const middle = (k) => seen.reduce((sum, p) => sum + p[k], 0) / seen.length;
       // An area's name is above its middle, where a place may have its own.
-      const [px, py] = kind === "area" ? [middle(0), middle(1) - 14] : seen[Math.floor(seen.length / 3)];
-      named(f, kind, name, [px, py, kind === "area" ? "middle" : "start"], names);
+      const top = seen.reduce((a, b) => (b[1] < a[1] ? b : a));
+      // Areas of several lines may have one middle, and have their tops apart.
+      const [px, py] = kind !== "area" ? seen[Math.floor(seen.length / 3)] : of == null ? [middle(0), middle(1) - 14] : [top[0], top[1] + 15];
+      named(f, kind, name, [px, py, kind === "area" ? "middle" : "start"], names, tone);
     }
   };
   const path = (line, f) => {

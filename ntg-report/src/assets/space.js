@@ -94,6 +94,8 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
     return found;
   };
 
+  // What belongs to one line alone has its colour.
+  const tone = (of, name) => (of == null ? css(name) : colour(of));
   // The floor with its grid and numbers, and the height at the corner that is furthest to the left.
   const frame = (project) => {
     const [[x0, x1], [y0, y1], [z0, z1]] = box;
@@ -148,7 +150,7 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
   // Surfaces and walls as faces, the furthest first.
   const faces = (project) => {
     const [, , [z0, z1]] = box, found = [];
-    const face = (points, tone, edge) => { if (points.every(finite)) found.push({ points, tone, edge, depth: points.reduce((sum, p) => sum + project(p)[2], 0) / points.length }); };
+    const face = (points, light, edge, of) => { if (points.every(finite)) found.push({ points, light, edge, of, depth: points.reduce((sum, p) => sum + project(p)[2], 0) / points.length }); };
     for (const surface of chart.surfaces) {
       const ny = surface.y.length;
       const at = (i, j) => [surface.x[i], surface.y[j], surface.z[i * ny + j]];
@@ -159,35 +161,37 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
         if (seen.length < 3) continue;
         // Lit from one side: slopes are to be seen.
         const rise = ((points[1][2] - points[0][2]) * stretch) / (points[1][0] - points[0][0] || 1);
-        face(seen, Math.max(-1, Math.min(1, rise)), surface.floor ? "--ground" : "--limit");
+        face(seen, Math.max(-1, Math.min(1, rise)), surface.floor ? "--ground" : "--limit", surface.of);
       }
     }
     for (const outline of chart.outlines.filter((o) => o.out)) for (const line of outline.lines) {
       for (let i = 0; i + 1 < line.length; i++) {
         const [[ax, ay], [bx, by]] = [line[i], line[i + 1]];
         const wall = clipped([[ax, ay, z0], [bx, by, z0], [bx, by, z1], [ax, ay, z1]], true);
-        if (wall.length > 2) face(wall, 0, "--limit");
+        if (wall.length > 2) face(wall, 0, "--limit", outline.of);
       }
     }
     found.sort((a, b) => b.depth - a.depth);
-    for (const { points, tone, edge } of found) {
-      context.globalAlpha = edge === "--ground" ? 0.3 + 0.14 * tone : 0.07;
-      stroke(project, [...points, points[0]], css(edge), edge === "--ground" ? 0.4 : 0, [], css(edge));
+    for (const { points, light, edge, of } of found) {
+      context.globalAlpha = edge === "--ground" ? 0.3 + 0.14 * light : 0.07;
+      stroke(project, [...points, points[0]], tone(of, edge), edge === "--ground" ? 0.4 : 0, [], tone(of, edge));
     }
     context.globalAlpha = 1;
   };
   const limits = (project) => {
-    const red = css("--limit"), [, , [z0, z1]] = box;
+    const [, , [z0, z1]] = box;
     for (const outline of chart.outlines) for (const line of outline.lines) {
+      const red = tone(outline.of, "--limit");
       for (const [z, lineWidth] of outline.out ? [[z0, 1.3], [z1, 0.6]] : [[z0, 1.3]]) {
         for (let i = 0; i + 1 < line.length; i++) stroke(project, clipped([[...line[i], z], [...line[i + 1], z]], false), red, lineWidth, outline.out ? [] : [6, 4]);
       }
     }
     for (const outline of chart.outlines.filter((o) => o.out)) {
       const middle = [0, 1].map((k) => outline.lines[0].reduce((sum, p) => sum + p[k], 0) / outline.lines[0].length);
-      if (clipped([[...middle, z1], [...middle, z1]], false).length) words(outline.name, project([...middle, z1]), red, "center");
+      if (clipped([[...middle, z1], [...middle, z1]], false).length) words(outline.name, project([...middle, z1]), tone(outline.of, "--limit"), "center");
     }
     for (const ball of chart.balls) {
+      const red = tone(ball.of, "--limit");
       // Its shadow in the picture: the ellipse of the half axes' images.
       const [cx, cy] = project(ball.centre), images = ball.half.map((half) => { const [x, y] = project(ball.centre.map((c, k) => c + half[k])); return [x - cx, y - cy]; });
       const sum = (i, j) => images.reduce((total, image) => total + image[i] * image[j], 0);
@@ -200,14 +204,14 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
       context.globalAlpha = 1;
       words(ball.name, [cx, cy - Math.hypot(b, c) - 9], red, "center");
     }
-    for (const [name, at] of chart.places) {
+    for (const [name, at, of] of chart.places) {
       if (!near(at)) continue;
       // A place of unknown height stands on the ground.
       const ground = chart.surfaces.filter((s) => s.floor).map((s) => height(s, at[0], at[1])).filter((z) => z != null && z >= z0 && z <= z1);
       const [x, y] = project([at[0], at[1], at[2] == null ? Math.max(z0, ...ground) : at[2]]);
-      context.fillStyle = css("--ink");
+      context.fillStyle = tone(of, "--ink");
       context.beginPath(); context.moveTo(x, y - 5); context.lineTo(x + 4.5, y + 3); context.lineTo(x - 4.5, y + 3); context.fill();
-      words(name, [x + 8, y], css("--quiet"));
+      words(name, [x + 8, y], tone(of, "--quiet"));
     }
   };
 

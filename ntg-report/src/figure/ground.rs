@@ -23,19 +23,19 @@ pub(super) fn plan(scene: &Scene) -> Vec<Shape> {
         };
         for (number, line) in outline.lines.iter().enumerate() {
             let name = if number == 0 { outline.name.clone() } else { String::new() };
-            shapes.push(Shape { kind, name, points: line.iter().map(|[x, y]| (*x, *y)).collect() });
+            shapes.push(Shape { kind, name, of: None, points: line.iter().map(|[x, y]| (*x, *y)).collect() });
         }
     }
     for ball in &scene.balls {
         let kind = if ball.keep_out { Kind::Area } else { Kind::Border };
         let points = ellipse(ball.centre, &shadow(&ball.half_axes, plane), plane);
         let points = points.into_iter().map(|[x, y]| (x, y)).collect();
-        shapes.push(Shape { kind, name: ball.name.clone(), points });
+        shapes.push(Shape { kind, name: ball.name.clone(), of: None, points });
     }
     for place in &scene.places {
         let [x, y] = plane.map(|axis| place.at.get(axis).copied().unwrap_or(f64::NAN));
         if x.is_finite() && y.is_finite() {
-            shapes.push(Shape { kind: Kind::Place, name: place.name.clone(), points: vec![(x, y)] });
+            shapes.push(Shape { kind: Kind::Place, name: place.name.clone(), of: None, points: vec![(x, y)] });
         }
     }
     shapes
@@ -67,7 +67,7 @@ fn contours(surface: &Surface, shapes: &mut Vec<Shape>) {
 fn contour_line(value: f64, line: &[[f64; 2]]) -> Shape {
     // Round numbers are multiples of their step but for rounding.
     let name = format!("{}", format!("{value:.9e}").parse::<f64>().unwrap_or(value));
-    Shape { kind: Kind::Contour, name, points: line.iter().map(|[x, y]| (*x, *y)).collect() }
+    Shape { kind: Kind::Contour, name, of: None, points: line.iter().map(|[x, y]| (*x, *y)).collect() }
 }
 
 /// The height of a surface between its grid lines; NaN beside them.

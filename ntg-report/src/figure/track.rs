@@ -2,7 +2,8 @@
 //!
 //! Takes runs; gives panels whose lines have times, with what lies beneath them.
 
-use super::{Kind, Line, Panel, Runs, Shape, base, ground, label, with_unit};
+use super::section::{self, Seen};
+use super::{Line, Panel, Runs, Shape, base, ground, label, own, with_unit};
 use crate::run::{Run, Scene, Series};
 
 /// Tracks in space. The third coordinate points up.
@@ -18,6 +19,8 @@ pub struct Space {
     pub lines: Vec<SpaceLine>,
     /// What lies there.
     pub scene: Scene,
+    /// What lies there for some lines alone: the first of them, and what it passes.
+    pub own: Vec<(usize, Scene)>,
     /// Which coordinate of the scene is which of these.
     pub order: [usize; 3],
 }
@@ -41,22 +44,26 @@ fn series<'r>(run: &'r Run, path: &str) -> Option<&'r Series> {
     run.outputs.get(path).or_else(|| run.lets.get(path)).filter(|series| !series.t.is_empty())
 }
 
-/// The scene that is drawn: of the first run that has one.
-fn scene<'r>(runs: &Runs<'r>) -> Option<&'r Scene> {
-    runs.iter().map(|(_, run)| &run.scene).find(|scene| !scene.is_empty())
+/// Zones, borders, places and heights beneath a map of all lines: what all runs have, and what is one's own.
+fn plan(panel: &mut Panel, common: &Scene, own: &[(usize, Scene)]) {
+    panel.shapes = ground::plan(common);
+    for (run, scene) in own {
+        let Some(first) = panel.lines.iter().position(|line| line.run == *run) else { continue };
+        panel.shapes.extend(ground::plan(scene).into_iter().map(|shape| Shape { of: Some(first), ..shape }));
+    }
 }
 
 /// A map of positions, if there are any.
 pub fn tracks(runs: &Runs<'_>) -> Option<Panel> {
-    let scene = scene(runs)?;
+    let (scene, own) = own::split(runs)?;
     let [a, b] = scene.plane();
-    let title = format!("{} over {}", scene.axes[b].name, scene.axes[a].name);
+    let view = if scene.axes.len() > 2 { ", from above" } else { "" };
+    let title = format!("{} over {}{view}", scene.axes[b].name, scene.axes[a].name);
     let mut panel = Panel {
         title,
         x: with_unit(&scene.axes[a].name, &scene.axes[a].unit),
         y: with_unit(&scene.axes[b].name, &scene.axes[b].unit),
         equal: scene.axes[a].unit == scene.axes[b].unit,
-        shapes: ground::plan(scene),
         ..Panel::default()
     };
     for (index, (_, run)) in runs.iter().enumerate() {
@@ -65,6 +72,7 @@ pub fn tracks(runs: &Runs<'_>) -> Option<Panel> {
             panel.lines.push(line(run, label(runs, index, &track.name), index, (across, up)));
         }
     }
+    plan(&mut panel, &scene, &own);
     (!panel.lines.is_empty()).then_some(panel)
 }
 
@@ -88,8 +96,8 @@ fn order(scene: &Scene) -> Option<[usize; 3]> {
 
 /// Heights over the distance along the ground, if positions have three coordinates.
 pub fn side(runs: &Runs<'_>) -> Option<Panel> {
-    let scene = scene(runs)?;
-    let order = order(scene)?;
+    let (scene, own) = own::split(runs)?;
+    let order = order(&scene)?;
     let [a, _, up] = order.map(|axis| &scene.axes[axis]);
     let mut panel = Panel {
         title: format!("{} from the side", up.name),
@@ -98,19 +106,18 @@ pub fn side(runs: &Runs<'_>) -> Option<Panel> {
         equal: scene.axes.iter().all(|axis| axis.unit == a.unit),
         ..Panel::default()
     };
+    let tracks = runs.iter().map(|(_, run)| run.scene.tracks.len()).sum();
     for (index, (_, run)) in runs.iter().enumerate() {
         for track in &run.scene.tracks {
             let Some((times, points)) = positions(run, track, order) else { continue };
             let along = distances(&points);
-            let own = along.iter().zip(&points).map(|(distance, at)| (*distance, at[2]));
+            let drawn = along.iter().zip(&points).map(|(distance, at)| (*distance, at[2]));
             let events = events(run, &times).into_iter().map(|k| (along[k], points[k][2])).collect();
             let name = label(runs, index, &track.name);
-            // Under several tracks the ground is another one for each.
-            if panel.lines.is_empty() {
-                let alone = runs.len() == 1 && run.scene.tracks.len() == 1;
-                panel.shapes = beneath(scene, &along, &points, alone);
-            }
-            panel.lines.push(Line { name, run: index, points: own.collect(), times, events });
+            let seen = Seen { along: &along, points: &points, order };
+            let beside = own.iter().filter(|(run, _)| *run == index).map(|(_, scene)| scene);
+            beneath(&mut panel, (&scene, beside), &seen, tracks);
+            panel.lines.push(Line { name, run: index, points: drawn.collect(), times, events });
         }
     }
     // A long flat flight would be a line with one scale for both, and heights over angles one without units.
@@ -135,33 +142,45 @@ fn distances(points: &[[f64; 3]]) -> Vec<f64> {
         .collect()
 }
 
-/// Limits of height along a track; for several tracks those that are as high everywhere.
-fn beneath(scene: &Scene, along: &[f64], points: &[[f64; 3]], alone: bool) -> Vec<Shape> {
-    let flat = |surface: &&crate::run::Surface| {
-        surface.z.iter().all(|z| (z - surface.z[0]).abs() <= 1e-9 * surface.z[0].abs().max(1e-9))
-    };
-    let shown = scene.surfaces.iter().filter(|surface| alone || flat(surface));
-    let shapes = shown.map(|surface| {
-        let heights = points.iter().map(|at| ground::height(surface, at[0], at[1]));
-        let points = along.iter().copied().zip(heights).filter(|(_, z)| z.is_finite()).collect();
-        // What limits heights from above is a line; only a ground is filled.
-        let kind = if surface.is_ground() { Kind::Ground } else { Kind::Border };
-        Shape { kind, name: surface.name.clone(), points }
-    });
-    shapes.filter(|shape| shape.points.len() > 1).collect()
+/// What lies under and over the next track of a panel: what is as high everywhere and belongs to all stands there once.
+fn beneath<'s>(
+    panel: &mut Panel,
+    (common, beside): (&'s Scene, impl Iterator<Item = &'s Scene>),
+    seen: &Seen<'_>,
+    tracks: usize,
+) {
+    /// Tracks that have a ground each: more of them cannot be told apart.
+    const MOST: usize = 4;
+    let number = panel.lines.len();
+    if number == 0 {
+        panel.shapes = section::heights(common.surfaces.iter().filter(|s| section::is_level(s)), seen);
+    }
+    if tracks > MOST {
+        return;
+    }
+    let beside: Vec<&Scene> = beside.collect();
+    let changing = common.surfaces.iter().filter(|surface| !section::is_level(surface));
+    let surfaces = changing.chain(beside.iter().flat_map(|scene| &scene.surfaces));
+    let mut shapes = section::heights(surfaces, seen);
+    for scene in std::iter::once(common).chain(beside) {
+        shapes.extend(section::balls(scene, seen));
+    }
+    let of = (tracks > 1).then_some(number);
+    panel.shapes.extend(shapes.into_iter().map(|shape| Shape { of, ..shape }));
 }
 
 /// Tracks in space, if positions have three coordinates.
 pub fn space(runs: &Runs<'_>) -> Option<Space> {
-    let scene = scene(runs)?;
-    let order = order(scene)?;
+    let (scene, own) = own::split(runs)?;
+    let order = order(&scene)?;
     let axes = order.map(|axis| with_unit(&scene.axes[axis].name, &scene.axes[axis].unit));
     let mut space = Space {
         title: "in space".to_owned(),
         axes,
         equal: scene.axes.iter().all(|axis| axis.unit == scene.axes[0].unit),
         lines: vec![],
-        scene: scene.clone(),
+        scene,
+        own: vec![],
         order,
     };
     for (index, (_, run)) in runs.iter().enumerate() {
@@ -172,6 +191,9 @@ pub fn space(runs: &Runs<'_>) -> Option<Space> {
             space.lines.push(SpaceLine { name, run: index, points, times, events });
         }
     }
+    let lines = &space.lines;
+    let first = |run: usize| lines.iter().position(|line| line.run == run);
+    space.own = own.into_iter().filter_map(|(run, scene)| Some((first(run)?, scene))).collect();
     (!space.lines.is_empty()).then_some(space)
 }
 
@@ -201,10 +223,10 @@ pub fn track(runs: &Runs<'_>, x: &str, y: &str) -> Result<Panel, String> {
         return Err(unknown(runs, x, y));
     }
     panel.title = format!("{y} over {x}");
-    if let Some(scene) = scene(runs) {
+    if let Some((scene, own)) = own::split(runs) {
         let [a, b] = scene.plane().map(|axis| scene.axes[axis].name.as_str());
         if (x, y) == (a, b) {
-            panel.shapes = ground::plan(scene);
+            plan(&mut panel, &scene, &own);
         }
     }
     Ok(panel)

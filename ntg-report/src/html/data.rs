@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::Page;
 use crate::figure::{self, Kind, Line, Panel, Runs, Shape, Space};
+use crate::run::{Outline, Surface};
 
 /// Numbers that all charts together may hold, so that a page stays below a megabyte.
 const BUDGET: usize = 60_000;
@@ -89,7 +90,7 @@ fn chart(panel: &Panel, points: usize) -> Value {
     })
 }
 
-/// Kind, name, abscissas, ordinates.
+/// Kind, name, abscissas, ordinates, and the line to which alone it belongs.
 fn shape(shape: &Shape) -> Value {
     let kind = match shape.kind {
         Kind::Area => "area",
@@ -100,7 +101,7 @@ fn shape(shape: &Shape) -> Value {
     };
     let keep = kept(shape.points.len(), MOST);
     let of = |pick: fn(&(f64, f64)) -> f64| keep.iter().map(|i| short(pick(&shape.points[*i]))).collect::<Vec<_>>();
-    json!([kind, shape.name, of(|p| p.0), of(|p| p.1)])
+    json!([kind, shape.name, of(|p| p.0), of(|p| p.1), shape.of])
 }
 
 /// Tracks in space with what lies there, the third coordinate up.
@@ -120,28 +121,36 @@ fn space(space: &Space, points: usize) -> Value {
             "events": line.events.iter().map(|at| at.map(short)).collect::<Vec<_>>(),
         })
     });
-    let many = |values: &[f64]| values.iter().map(|value| short(*value)).collect::<Vec<_>>();
-    let scene = &space.scene;
+    let scenes = || std::iter::once((None, &space.scene)).chain(space.own.iter().map(|(of, scene)| (Some(*of), scene)));
     json!({
         "kind": "space",
         "title": space.title,
         "axes": space.axes,
         "equal": space.equal,
         "lines": lines.collect::<Vec<_>>(),
-        "places": scene.places.iter().map(|place| json!([place.name, turned(&place.at)])).collect::<Vec<_>>(),
-        "surfaces": scene.surfaces.iter().map(|surface| json!({
-            "name": surface.name, "floor": surface.is_ground(),
-            "x": many(&surface.x), "y": many(&surface.y), "z": many(&surface.z),
+        "places": scenes().flat_map(|(of, scene)| scene.places.iter().map(move |place| {
+            json!([place.name, turned(&place.at), of])
         })).collect::<Vec<_>>(),
-        "outlines": scene.outlines.iter().map(|outline| json!({
-            "name": outline.name, "out": outline.keep_out,
-            "lines": outline.lines.iter().map(|line| line.iter().map(|at| at.map(short)).collect::<Vec<_>>()).collect::<Vec<_>>(),
-        })).collect::<Vec<_>>(),
-        "balls": scene.balls.iter().map(|ball| json!({
-            "name": ball.name, "out": ball.keep_out, "centre": turned(&ball.centre),
+        "surfaces": scenes().flat_map(|(of, scene)| scene.surfaces.iter().map(move |s| surface(s, of))).collect::<Vec<_>>(),
+        "outlines": scenes().flat_map(|(of, scene)| scene.outlines.iter().map(move |o| outline(o, of))).collect::<Vec<_>>(),
+        "balls": scenes().flat_map(|(of, scene)| scene.balls.iter().map(move |ball| json!({
+            "name": ball.name, "out": ball.keep_out, "of": of, "centre": turned(&ball.centre),
             "half": ball.half_axes.iter().map(|half| turned(half)).collect::<Vec<_>>(),
-        })).collect::<Vec<_>>(),
+        }))).collect::<Vec<_>>(),
     })
+}
+
+fn surface(surface: &Surface, of: Option<usize>) -> Value {
+    let many = |values: &[f64]| values.iter().map(|value| short(*value)).collect::<Vec<_>>();
+    json!({
+        "name": surface.name, "floor": surface.is_ground(), "of": of,
+        "x": many(&surface.x), "y": many(&surface.y), "z": many(&surface.z),
+    })
+}
+
+fn outline(outline: &Outline, of: Option<usize>) -> Value {
+    let points = |line: &Vec<[f64; 2]>| line.iter().map(|at| at.map(short)).collect::<Vec<_>>();
+    json!({ "name": outline.name, "out": outline.keep_out, "of": of, "lines": outline.lines.iter().map(points).collect::<Vec<_>>() })
 }
 
 fn line(line: &Line, points: usize) -> Value {
