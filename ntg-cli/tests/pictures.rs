@@ -320,3 +320,72 @@ fn runs_that_are_compared_have_their_own_zones_in_their_own_colours() {
     let cut = [of("ground", "glide_slope", Value::Null), of("area", "clear", Value::Null)];
     assert_eq!(beneath(&one, "r[3] from the side"), cut);
 }
+
+#[test]
+fn what_was_measured_is_drawn_beside_the_curves_and_as_residuals() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    let spec = "problem Line {
+    param seen[3] = (0.1, 0.9, 2.1) [m];
+    const time[3] = (0, 1, 2) [s];
+    duration T = 2 [s];
+    state p[2] [m];
+    collocation gauss(points = 2, intervals = 2);
+    variable speed [m/s];
+    dynamics { der(p) == (speed, 0 [m/s]); }
+    let half [cm] = p[1] / 2;
+    measure {
+        for i in 1 .. 3 { tape: at(time[i], p[1]) == seen[i] sigma 10 [cm]; }
+        ruler: 60 [cm] == at(1 [s], half) sigma 2 [cm];
+        plane: initial(p) == (0, 0) [m] sigma 1 [m];
+        twice: 2 * final(p[1]) == 4.2 [m] sigma 1 [m];
+        speed == 1 [m/s] sigma 1 [m/s];
+    }
+}
+";
+    fs::write(folder.join("line.ntg"), spec).expect("a spec");
+    done(folder, &["solve", "line.ntg", "--save", "line.json"]);
+    let run: Value = serde_json::from_str(&read(folder, "line.json")).expect("JSON");
+    let measured = run["estimate"]["measurements"].as_array().expect("measurements");
+    let told = |residual: &Value| (residual["of"].as_str().map(str::to_owned), residual["t"].as_f64());
+    let all: Vec<_> = measured.iter().flat_map(|m| m["residuals"].as_array().expect("residuals")).collect();
+    let of = |of: &str, t: f64| (Some(of.to_owned()), Some(t));
+    assert_eq!(
+        all.iter().map(|residual| told(residual)).collect::<Vec<_>>(),
+        [
+            of("p[1]", 0.0),
+            of("p[1]", 1.0),
+            of("p[1]", 2.0),
+            of("half", 1.0),
+            of("p[1]", 0.0),
+            of("p[2]", 0.0),
+            (None, Some(2.0)),
+            (None, None)
+        ]
+    );
+    // What was measured, and its deviation, in the unit of the quantity, whichever side it stands on.
+    let expected = [(0.1, 0.1), (0.9, 0.1), (2.1, 0.1), (60.0, 2.0), (0.0, 1.0)];
+    for (residual, (measured, sigma)) in all.iter().zip(expected) {
+        assert!((number(&residual["measured"]) - measured).abs() < 1e-6, "{residual}");
+        assert!((number(&residual["sigma"]) - sigma).abs() < 1e-6, "{residual}");
+    }
+    done(folder, &["report", "line.json", "-o", "line.html"]);
+    let page = read(folder, "line.html");
+    let charts = charts(&page);
+    let lines = |title: &str| -> Vec<(String, Value, usize)> {
+        let all = charts.as_array().expect("charts").iter().find(|chart| chart["title"] == title).expect(title);
+        let name = |line: &Value| line["name"].as_str().unwrap_or_default().to_owned();
+        let bars = |line: &Value| line["sigma"].as_array().map_or(0, Vec::len);
+        let lines = all["lines"].as_array().expect("lines").iter();
+        lines.map(|line| (name(line), line["like"].clone(), bars(line))).collect()
+    };
+    let curve = |name: &str| (name.to_owned(), Value::Null, 0);
+    let points = |name: &str, like: usize, count: usize| (name.to_owned(), Value::from(like), count);
+    let p = [curve("p[1]"), curve("p[2]"), points("tape: p[1]", 0, 3), points("plane: p[1]", 0, 1)];
+    assert_eq!(lines("p")[..4], p);
+    assert_eq!(lines("half"), [curve("half"), points("ruler: half", 0, 1)]);
+    assert_eq!(lines("tape"), [("p[1]".to_owned(), Value::Null, 3)]);
+    assert!(page.contains("<h2>Residuals</h2>") && lines("twice").len() == 1);
+    done(folder, &["plot", "line.json", "--show", "p", "-o", "line.svg"]);
+    assert!(read(folder, "line.svg").contains("tape: p[1]"));
+}

@@ -234,8 +234,12 @@ fn within(at: Pixel, offset: Pixel, size: Pixel, (least, most): (Pixel, Pixel)) 
 }
 
 fn draw_line(chart: &mut Chart<'_>, index: usize, line: &Line) -> Drawn {
+    let index = line.like.unwrap_or(index);
     let colour = COLOURS[index % COLOURS.len()];
     let (style, dashes) = (colour.stroke_width(40), dashes(index, line.run)?);
+    if !line.sigmas.is_empty() {
+        return draw_measured(chart, line, colour);
+    }
     // A gap where a quantity does not exist.
     for stretch in line.points.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let points = stretch.iter().copied();
@@ -248,6 +252,16 @@ fn draw_line(chart: &mut Chart<'_>, index: usize, line: &Line) -> Drawn {
     if let (false, Some(start)) = (line.times.is_empty(), line.points.first()) {
         chart.draw_series([Circle::new(*start, 90, style)])?;
     }
+    Ok(())
+}
+
+/// Points with their standard deviations to both sides.
+fn draw_measured(chart: &mut Chart<'_>, line: &Line, colour: RGBColor) -> Drawn {
+    let finite = || line.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+    chart.draw_series(finite().map(|at| Circle::new(*at, 50, colour.filled())))?;
+    let bars = line.points.iter().zip(&line.sigmas).filter(|((x, y), sigma)| (x + y + *sigma).is_finite());
+    let bars = bars.map(|((x, y), sigma)| vec![(*x, y - sigma), (*x, y + sigma)]);
+    chart.draw_series(bars.map(|ends| PathElement::new(ends, colour.stroke_width(20))))?;
     Ok(())
 }
 
@@ -280,8 +294,11 @@ fn legend<'a>(area: &Area<'a>, lines: &[Line]) -> Drawn<Area<'a>> {
             break;
         }
         let ends = [(x, y + 140), (x + 560, y + 140)];
-        let style = COLOURS[index % COLOURS.len()].stroke_width(40);
-        match dashes(index, line.run)? {
+        let like = line.like.unwrap_or(index);
+        let colour = COLOURS[like % COLOURS.len()];
+        let style = colour.stroke_width(40);
+        match dashes(like, line.run)? {
+            _ if !line.sigmas.is_empty() => area.draw(&Circle::new((x + 280, y + 140), 50, colour.filled()))?,
             None => area.draw(&PathElement::new(ends, style))?,
             Some((long, gap)) => area.draw(&DashedPathElement::new(ends, long, gap, style))?,
         }

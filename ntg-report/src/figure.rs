@@ -4,10 +4,12 @@
 //! quantity of several agents and runs share axes.
 
 mod ground;
+mod measured;
 mod own;
 mod section;
 mod track;
 
+pub use measured::residuals;
 pub use track::{Space, side, space, track, tracks};
 
 use crate::run::{Constraint, Run, Series};
@@ -33,6 +35,8 @@ pub struct Panel {
     pub marks: Vec<(f64, String)>,
     /// What lies beneath the lines of a map.
     pub shapes: Vec<Shape>,
+    /// What the ordinate spans at least, where the lines themselves do not tell.
+    pub least: f64,
 }
 
 /// A horizontal limit.
@@ -87,6 +91,10 @@ pub struct Line {
     pub times: Vec<f64>,
     /// Places where one phase follows another, for tracks.
     pub events: Vec<(f64, f64)>,
+    /// What was measured: points that are not joined, each with its standard deviation.
+    pub sigmas: Vec<f64>,
+    /// The line of the panel whose colour it has; none where it has its own.
+    pub like: Option<usize>,
 }
 
 /// Runs that are drawn together, each with its name.
@@ -136,6 +144,8 @@ pub fn quantity(runs: &Runs<'_>, path: &str) -> Vec<Panel> {
 
 fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a Series)>) -> Vec<Panel> {
     let mut panels: Vec<Panel> = vec![];
+    // Panel, line, run and path: what was measured follows all curves, whose colours it leaves as they are.
+    let mut curves: Vec<(usize, usize, usize, &String)> = vec![];
     for (index, (_, run)) in runs.iter().enumerate() {
         for (path, series) in of(run) {
             if series.t.is_empty() {
@@ -148,19 +158,20 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
                 points: series.t.iter().copied().zip(unwrapped(series)).collect(),
                 ..Line::default()
             };
-            let lines = std::iter::once(line).chain(bands(runs, index, (path, series)));
-            match panels.iter_mut().find(|panel| panel.y == y) {
-                Some(panel) => panel.lines.extend(lines),
-                None => panels.push(Panel {
-                    title: name.to_owned(),
-                    x: run.independent.heading(),
-                    y,
-                    lines: lines.collect(),
-                    marks: marks(runs),
-                    ..Panel::default()
-                }),
-            }
+            let known = panels.iter().position(|panel| panel.y == y).unwrap_or_else(|| {
+                let (title, x) = (name.to_owned(), run.independent.heading());
+                panels.push(Panel { title, x, y, marks: marks(runs), ..Panel::default() });
+                panels.len() - 1
+            });
+            let lines = &mut panels[known].lines;
+            curves.push((known, lines.len(), index, path));
+            lines.push(line);
+            lines.extend(bands(runs, index, (path, series)));
         }
+    }
+    for (panel, like, run, path) in curves {
+        let measured = measured::of(runs, run, path).into_iter().map(|line| Line { like: Some(like), ..line });
+        panels[panel].lines.extend(measured);
     }
     panels
 }
@@ -195,7 +206,16 @@ pub fn unwrapped(series: &Series) -> Vec<f64> {
 /// what changes by less than a part in 10^4 is constant but for what a solve leaves of it.
 pub fn least_span(panel: &Panel) -> f64 {
     let values = panel.lines.iter().flat_map(|line| &line.points).map(|(_, y)| y.abs());
-    1e-4 * values.filter(|size| size.is_finite()).fold(0.0, f64::max)
+    panel.least.max(1e-4 * values.filter(|size| size.is_finite()).fold(0.0, f64::max))
+}
+
+/// What an equation's misses are drawn over at least. They have a size in the equation's sides: a part in 10^6 of it is
+/// no miss that one is to look for.
+fn least_miss(constraint: &Constraint) -> f64 {
+    let worst = [&constraint.points, &constraint.between].into_iter().flatten();
+    let sizes = worst.map(|worst| worst.violation / worst.relative).filter(|size| size.is_finite());
+    let is_equation = constraint.members.iter().all(|member| member.lower.is_some() && member.lower == member.upper);
+    if is_equation { 1e-6 * sizes.fold(0.0, f64::max) } else { 0.0 }
 }
 
 /// What is proved of a quantity: a line that no value is below, and one that none is above.
@@ -269,6 +289,7 @@ fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize
                     &mut panels[last]
                 }
             };
+            panel.least = panel.least.max(least_miss(constraint));
             panel.lines.extend(lines.into_iter().filter(|line| line.points.len() > 1));
             for limit in limits {
                 if !panel.limits.contains(&limit) {
@@ -358,6 +379,7 @@ pub fn convergence(runs: &Runs<'_>) -> Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::{Member, Worst};
 
     #[test]
     fn what_is_nearly_constant_has_a_least_span_and_other_curves_their_own() {
@@ -367,6 +389,18 @@ mod tests {
         let panel = Panel { lines: vec![line(&[-0.5, 1.0]), line(&[0.0])], ..Panel::default() };
         assert_eq!(least_span(&panel), 1e-4);
         assert_eq!(least_span(&Panel::default()), 0.0);
+        assert_eq!(least_span(&Panel { least: 0.5, ..panel }), 0.5);
+    }
+
+    #[test]
+    fn the_misses_of_an_equation_are_drawn_beside_the_size_of_its_sides() {
+        let equation = |lower: f64, upper: f64| {
+            let member = Member { lower: Some(lower), upper: Some(upper), ..Member::default() };
+            let between = Some(Worst { violation: 3e-14, relative: 1e-14, ..Worst::default() });
+            Constraint { members: vec![member], between, ..Constraint::default() }
+        };
+        assert!((least_miss(&equation(0.0, 0.0)) - 3e-6).abs() < 1e-18);
+        assert_eq!((least_miss(&equation(0.0, 1.0)), least_miss(&Constraint::default())), (0.0, 0.0));
     }
 
     #[test]

@@ -87,6 +87,7 @@
   // Limits that are near enough to the values belong into the picture.
   const spanned = (chart) => (u, low, high) => {
     if (low == null) return [0, 1];
+    for (const line of chart.lines) if (line.sigma) line.y.forEach((y, i) => { if (y != null && line.sigma[i] != null) { low = Math.min(low, y - line.sigma[i]); high = Math.max(high, y + line.sigma[i]); } });
     const flat = high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high));
     // What is nearly constant is drawn so: its last digits are no signal.
     const lack = flat ? 0 : Math.max(0, chart.least - (high - low)) / 2;
@@ -120,12 +121,31 @@
   const room = (u, values) => 22 + 7 * Math.max(4, ...(values || []).map((text) => (text || "").length));
   const whole = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
 
+  // Measured points with a deviation to both sides.
+  const deviations = (chart, shade) => (u) => {
+    const { ctx } = u, px = devicePixelRatio;
+    chart.lines.forEach((line, l) => {
+      if (!line.sigma || !u.series[l + 1].show) return;
+      ctx.save();
+      ctx.beginPath(); ctx.rect(u.bbox.left - 4 * px, u.bbox.top, u.bbox.width + 8 * px, u.bbox.height); ctx.clip();
+      ctx.strokeStyle = shade(l); ctx.lineWidth = 1.2 * px; ctx.beginPath();
+      line.x.forEach((at, i) => {
+        if (line.y[i] == null || line.sigma[i] == null) return;
+        const x = u.valToPos(at, "x", true), [low, high] = [-1, 1].map((side) => u.valToPos(line.y[i] + side * line.sigma[i], "y", true));
+        ctx.moveTo(x, low); ctx.lineTo(x, high);
+        for (const y of [low, high]) { ctx.moveTo(x - 3 * px, y); ctx.lineTo(x + 3 * px, y); }
+      });
+      ctx.stroke(); ctx.restore();
+    });
+  };
+
   const time = (place, chart) => {
-    const log = chart.kind === "log";
+    const log = chart.kind === "log", shade = (i) => colour(chart.lines[i].like ?? i);
     const width = () => Math.max(place.clientWidth - 14, 240);
     const series = chart.lines.map((line, i) => ({
-      label: line.name || chart.title, stroke: () => colour(i), width: 2, pxAlign: 0, dash: dash(line.run, i), spanGaps: false,
-      value: (u, v) => number(v), points: { show: (log || (chart.y.startsWith("dJ*") && !line.x.some((x, k) => k && x === line.x[k - 1]))) && line.x.length < 100, size: 5, fill: () => colour(i) },
+      label: line.name || chart.title, stroke: () => shade(i), width: line.sigma ? 0 : 2, pxAlign: 0, dash: dash(line.run, line.like ?? i), spanGaps: false,
+      ...(line.sigma ? { paths: () => null } : {}),
+      value: (u, v) => number(v), points: { show: !!line.sigma || (log || (chart.y.startsWith("dJ*") && !line.x.some((x, k) => k && x === line.x[k - 1]))) && line.x.length < 100, size: 5, fill: () => shade(i), stroke: () => shade(i) },
     }));
     const u = new uPlot({
       width: width(), height: 270, series: [{ label: chart.x, value: (u, v) => number(v) }, ...series],
@@ -138,7 +158,7 @@
         },
       ],
       cursor: { sync: log ? undefined : { key: "t" }, drag: { x: true, y: false } },
-      legend: { live: true }, hooks: { draw: [marks(chart)] },
+      legend: { live: true }, hooks: { draw: [marks(chart), deviations(chart, shade)] },
     }, joined(chart.lines), place);
     const resize = () => u.setSize({ width: width(), height: 270 });
     new ResizeObserver(resize).observe(place);

@@ -117,7 +117,7 @@ pub fn side(runs: &Runs<'_>) -> Option<Panel> {
             let seen = Seen { along: &along, points: &points, order };
             let beside = own.iter().filter(|(run, _)| *run == index).map(|(_, scene)| scene);
             beneath(&mut panel, (&scene, beside), &seen, tracks);
-            panel.lines.push(Line { name, run: index, points: drawn.collect(), times, events });
+            panel.lines.push(Line { name, run: index, points: drawn.collect(), times, events, ..Line::default() });
         }
     }
     // A long flat flight would be a line with one scale for both, and heights over angles one without units.
@@ -247,7 +247,7 @@ fn replace_base(path: &str, x: &str, y: &str) -> String {
 fn line(run: &Run, name: String, index: usize, (across, up): (&Series, &Series)) -> Line {
     let points: Vec<(f64, f64)> = across.value.iter().copied().zip(up.value.iter().copied()).collect();
     let events = events(run, &across.t).into_iter().map(|at| points[at]).collect();
-    Line { name, run: index, times: across.t.clone(), events, points }
+    Line { name, run: index, times: across.t.clone(), events, points, ..Line::default() }
 }
 
 /// The samples at which one phase follows another.

@@ -24,6 +24,7 @@ pub(super) struct Charts {
     pub(super) constraints: Vec<usize>,
     pub(super) multipliers: Vec<usize>,
     pub(super) convergence: Vec<usize>,
+    pub(super) residuals: Vec<usize>,
     /// A JSON array of charts, safe inside a `script` element.
     pub(super) json: String,
 }
@@ -47,6 +48,7 @@ pub(super) fn charts(runs: &Runs<'_>, page: &Page) -> Result<Charts, String> {
         figure::constraints(runs),
         figure::multipliers(runs),
         convergence,
+        figure::residuals(runs),
     ];
     let space = figure::space(runs);
     let lines: usize = sections.iter().flatten().map(|panel| panel.lines.len()).sum();
@@ -64,8 +66,8 @@ pub(super) fn charts(runs: &Runs<'_>, page: &Page) -> Result<Charts, String> {
     }
     // `</script>` in a name would end the element.
     let json = Value::Array(all).to_string().replace('<', "\\u003c");
-    let [tracks, outputs, lets, constraints, multipliers, convergence] = ids;
-    Ok(Charts { tracks, outputs, lets, constraints, multipliers, convergence, json })
+    let [tracks, outputs, lets, constraints, multipliers, convergence, residuals] = ids;
+    Ok(Charts { tracks, outputs, lets, constraints, multipliers, convergence, residuals, json })
 }
 
 fn chart(panel: &Panel, points: usize) -> Value {
@@ -163,6 +165,12 @@ fn line(line: &Line, points: usize) -> Value {
         "x": of(&|i| line.points[i].0),
         "y": keep.iter().map(|i| rounded(line.points[*i].1, digits)).collect::<Vec<_>>(),
     });
+    if let Some(like) = line.like {
+        value["like"] = json!(like);
+    }
+    if !line.sigmas.is_empty() {
+        value["sigma"] = json!(keep.iter().map(|i| short(line.sigmas[*i])).collect::<Vec<_>>());
+    }
     if !line.times.is_empty() {
         value["t"] = json!(of(&|i| line.times[i]));
         value["events"] = json!(line.events.iter().map(|(x, y)| [short(*x), short(*y)]).collect::<Vec<_>>());

@@ -60,6 +60,7 @@ pub fn page(runs: &figure::Runs<'_>, page: &Page) -> Result<String, String> {
                     (study::explanation(first))
                     (study::minima(first))
                     (estimate::section(first))
+                    (charts("residuals", "Residuals", &data.residuals, &first.independent))
                     @if runs.len() > 1 { (tables::comparison(runs)) }
                     (charts("tracks", "Tracks", &data.tracks, &first.independent))
                     (extremes::section(runs, page.all))
@@ -157,6 +158,9 @@ fn charts(anchor: &str, title: &str, ids: &[usize], independent: &Independent) -
                 h2 { (title) }
                 @if anchor == "multipliers" { p.quiet {
                     "Of limits along a trajectory: densities, the mean of each interval. Their integral is dJ*/d(bound) of the table below."
+                } }
+                @if anchor == "residuals" { p.quiet {
+                    "The model without what was measured, with the standard deviation to both sides: two of three bars should reach across zero."
                 } }
                 @if anchor == "tracks" { div #clock data-name=(independent.name) data-unit=(independent.unit) {} }
                 div.charts { @for id in ids { figure.chart data-chart=(id) {} } }

@@ -56,6 +56,18 @@ pub struct Residual {
     /// The same as a multiple of the standard deviation.
     #[serde(with = "numbers::one")]
     pub ratio: f64,
+    /// When it was measured; none where that is no one time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub t: Option<f64>,
+    /// The path of the output or named expression that was measured; empty where it is no single one.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub of: String,
+    /// What was measured of it, in its unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<f64>,
+    /// The standard deviation, in the same unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma: Option<f64>,
 }
 
 /// A variable with its standard deviation.
@@ -104,6 +116,7 @@ impl From<&report::MeasurementReport> for Measurement {
             indices: residual.indices.clone(),
             value: residual.value,
             ratio: residual.ratio,
+            ..Residual::default()
         });
         Self {
             name: found.name.clone(),

@@ -5,6 +5,7 @@
 
 mod estimate;
 mod layout;
+mod measured;
 mod numbers;
 pub(crate) mod reading;
 mod record;

@@ -7,6 +7,8 @@ use indexmap::IndexMap;
 use ntg_compiler::source::Source;
 use ntg_compiler::syntax::{self, ast};
 
+use super::measured::{self, Sides};
+
 /// What was read.
 #[derive(Debug, Default)]
 pub(crate) struct Reading {
@@ -16,16 +18,19 @@ pub(crate) struct Reading {
     pub(crate) lists: BTreeSet<String>,
     /// Named expressions that nobody asked to see: without documentation and unit, and in no constraint or objective.
     pub(crate) helpers: BTreeSet<String>,
+    /// The statements of `measure`.
+    pub(crate) measured: Vec<Sides>,
 }
 
 /// Reads a spec; nothing where it cannot be read.
 pub(crate) fn read(source: &Source) -> Reading {
     let Ok(spec) = syntax::parse(source) else { return Reading::default() };
     let mut found = Found::default();
-    found.items(&spec.problem.items, &source.text);
+    found.items(&spec.problem.items, source);
     let helpers = found.plain.iter().filter(|name| !found.wanted.contains(*name)).cloned().collect();
     let is_list = |name: &String| !is_used_whole(&source.text, name);
-    Reading { vectors: found.vectors, helpers, lists: found.parameters.into_iter().filter(is_list).collect() }
+    let lists = found.parameters.into_iter().filter(is_list).collect();
+    Reading { vectors: found.vectors, helpers, lists, measured: found.measured }
 }
 
 /// Whether a name stands somewhere without an index behind it. Its declaration has its size there.
@@ -49,10 +54,11 @@ struct Found {
     parameters: BTreeSet<String>,
     /// Words of constraints and objectives.
     wanted: BTreeSet<String>,
+    measured: Vec<Sides>,
 }
 
 impl Found {
-    fn items(&mut self, items: &[ast::Item], text: &str) {
+    fn items(&mut self, items: &[ast::Item], source: &Source) {
         for item in items {
             match &item.kind {
                 ast::ItemKind::Output(output) => {
@@ -74,10 +80,15 @@ impl Found {
                         self.plain.insert(declared.name.text.clone());
                     }
                 }
-                ast::ItemKind::Agent(agent) => self.items(&agent.items, text),
-                ast::ItemKind::Phase(phase) => self.items(&phase.items, text),
+                ast::ItemKind::Agent(agent) => self.items(&agent.items, source),
+                ast::ItemKind::Phase(phase) => self.items(&phase.items, source),
                 ast::ItemKind::Objective(_) | ast::ItemKind::Block(_) | ast::ItemKind::At(_) => {
-                    let words = text.get(item.span.start as usize..item.span.end as usize).unwrap_or_default();
+                    if let ast::ItemKind::Block(block) = &item.kind
+                        && block.place == ast::BlockPlace::Measure
+                    {
+                        measured::sides(&block.statements, source, &mut self.measured);
+                    }
+                    let words = source.text.get(item.span.start as usize..item.span.end as usize).unwrap_or_default();
                     let words = words.split(|c: char| !(c.is_alphanumeric() || c == '_'));
                     self.wanted.extend(words.filter(|word| !word.is_empty()).map(str::to_owned));
                 }

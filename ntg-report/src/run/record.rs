@@ -10,7 +10,7 @@ use ntg_runtime::structure::{Block, Points, Structure, Unit};
 
 use super::{
     Constraint, Discretisation, FORMAT, Finding, Grid, Independent, Iteration, Member, Multiplier, Phase, Quantity,
-    Run, Scene, Series, Spec, Step, Term, VERSION, Values, Violation, Worst, layout, reading,
+    Run, Scene, Series, Spec, Step, Term, VERSION, Values, Violation, Worst, layout, measured, reading,
 };
 
 /// Samples of each output and named expression.
@@ -42,7 +42,7 @@ impl Recording<'_> {
     /// Everything about the solve as plain data.
     pub fn run(&self) -> Run {
         let reading = reading::read(self.source);
-        let mut run = self.numbers();
+        let mut run = self.numbers(&reading);
         for (path, series) in &mut run.lets {
             series.helper = !series.t.is_empty() && reading.helpers.contains(crate::figure::base(path));
         }
@@ -50,7 +50,7 @@ impl Recording<'_> {
         run
     }
 
-    fn numbers(&self) -> Run {
+    fn numbers(&self, reading: &reading::Reading) -> Run {
         let (report, solution) = (self.report, &self.report.solution);
         let structure = solution.structure();
         let independent = &structure.independent;
@@ -100,6 +100,7 @@ impl Recording<'_> {
                 findings: self.notes.iter().map(|note| finding(note, self.source)).collect(),
             }),
         };
+        measured::fill(&mut run, solution, &reading.measured);
         in_units_of_time(&mut run);
         run
     }
@@ -179,6 +180,8 @@ impl Recording<'_> {
 fn in_units_of_time(run: &mut Run) {
     let factor = run.independent.factor;
     let shown = |time: &mut f64| *time /= factor;
+    let measurements = run.estimate.iter_mut().flat_map(|estimate| &mut estimate.measurements);
+    measurements.flat_map(|m| &mut m.residuals).filter_map(|residual| residual.t.as_mut()).for_each(shown);
     run.times.values_mut().for_each(shown);
     run.phases.iter_mut().flat_map(|phase| [&mut phase.start, &mut phase.end]).for_each(shown);
     run.outputs.values_mut().chain(run.lets.values_mut()).flat_map(|series| &mut series.t).for_each(shown);
