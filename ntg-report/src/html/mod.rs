@@ -119,8 +119,9 @@ fn summary(run: &Run) -> Markup {
                 (card("finely integrated", &tables::with_unit(run.objective_fine, unit), "closer to what following it would cost"))
                 (card("violation at points", &tables::small(run.violation.points), "largest, relative to the bounds"))
                 (card("between points", &tables::small(run.violation.between), "largest, on a finer grid"))
+                @if let Some(last) = run.convergence.last() { (card("stationarity", &tables::small(last.dual), "largest part of the Lagrangian's gradient at the reported point, scaled")) }
                 (card("iterations", &run.iterations.to_string(), "over all steps"))
-                (card("time", &tables::seconds(run.seconds), "of the solve"))
+                (card("computing time", &tables::seconds(run.seconds), "of the solve"))
             }
             @if run.terms.len() > 1 { (tables::terms(run)) }
         }

@@ -130,7 +130,7 @@ fn tip(constraint: &Constraint, run: &Run) -> Markup {
             @if let Some(worst) = constraint.points.iter().chain(&constraint.between).find(|w| w.relative > VIOLATED) {
                 span.row { "missed by " (with_unit(worst.violation, &constraint.unit)) (place_words(worst.t, &worst.phase, independent)) }
             }
-            @if let Some(multiplier) = &constraint.multiplier {
+            @if let Some(multiplier) = &constraint.largest_multiplier() {
                 span.row { "largest multiplier " (multiplier_words(multiplier, independent)) (place_words(multiplier.t, "", independent)) }
                 @if constraint.sensitivity.is_finite() {
                     span.row { "dJ*/d(bound) " (number(constraint.sensitivity)) }

@@ -111,16 +111,21 @@ pub(super) fn constraints(run: &Run) -> Markup {
                             @if proved { td { @if let Some(proof) = &constraint.proof {
                                 mark.equality[proof.holds()].violated[!proof.holds()] title=(proof.words) { (proof.verdict) }
                             } } }
-                            @if let Some(multiplier) = &constraint.multiplier {
-                                td.n { (multiplier_words(multiplier, &run.independent)) }
+                            @if let Some(multiplier) = &constraint.largest_multiplier() {
+                                @let vague = !run.is_priced(constraint);
+                                td.n.vague[vague] { (multiplier_words(multiplier, &run.independent)) }
                                 td.n { @if let Some(t) = multiplier.t { (number(t)) } }
-                                td.n { (number(constraint.sensitivity)) }
+                                td.n.vague[vague] { (number(constraint.sensitivity)) @if vague { " ?" } }
                             } @else { td {} td {} td {} }
                             td { (constraint.unit) }
                         }
                     } }
                 } }
-                p.quiet { "Violations are relative to the size of the bounds. Multipliers are dJ*/d(bound) in units of the objective per unit of the constraint; along a trajectory they are densities over time." }
+                p.quiet { "Violations are relative to the size of the bounds. Multipliers are dJ*/d(bound) in units of the objective per unit of the constraint; along a trajectory the largest mean over an interval, a density over time." }
+                @if run.constraints.iter().any(|constraint| !run.is_priced(constraint)) { p.quiet {
+                    "A question mark: a bound that moves by a thousandth of its size would change the objective by more than all of it. "
+                    "Most often several constraints hold one and the same thing there, as a limit at a fixed end does; then their multipliers are not unique, and only their sum means anything."
+                } }
                 @if proved { p.quiet { "For all times: `proved` and `within` hold between the points, too, in real arithmetic; the words appear under the pointer." } }
             }
         }

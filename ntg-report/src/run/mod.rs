@@ -6,6 +6,7 @@
 mod estimate;
 mod layout;
 mod measured;
+mod multipliers;
 mod numbers;
 pub(crate) mod reading;
 mod record;

@@ -296,7 +296,7 @@ fn step(step: &ntg_runtime::report::StepReport) -> Step {
 }
 
 /// Iterations with the step of the continuation that each belongs to: counting begins anew in
-/// every step. The point at which the last step ended follows, if it was not seen.
+/// every step. The point that is reported follows, if it was not seen: what comes after the iterations may better it.
 fn iterations(seen: &[Progress], report: &Report) -> Vec<Iteration> {
     let mut step = 0;
     let mut found = vec![];
@@ -314,17 +314,25 @@ fn iterations(seen: &[Progress], report: &Report) -> Vec<Iteration> {
         });
     }
     let made = report.history.last().map_or(0, |step| step.iterations);
-    if found.last().is_some_and(|last| last.iteration < made) {
+    let reported = report.residuals.scaled;
+    let is_reported = |last: &Iteration| last.primal == reported.primal && last.dual == reported.dual;
+    if found.last().is_some_and(|last| last.iteration < made || !is_reported(last)) {
         found.push(Iteration {
             step,
             iteration: made,
-            objective: report.objective,
-            primal: report.residuals.scaled.primal,
-            dual: report.residuals.scaled.dual,
+            objective: minimised(report),
+            primal: reported.primal,
+            dual: reported.dual,
             length: f64::NAN,
         });
     }
     found
+}
+
+/// The objective as iterations have it: SI, and smaller is better.
+fn minimised(report: &Report) -> f64 {
+    let sign = if report.solution.structure().maximize { -1.0 } else { 1.0 };
+    sign * report.objective * report.objective_unit.factor
 }
 
 fn finding(finding: &Diagnostic, source: &Source) -> Finding {
