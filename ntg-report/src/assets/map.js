@@ -60,13 +60,19 @@ function NtgMap(place, chart, { colour, dash, number }) {
     for (let v = Math.ceil(low / step) * step; v <= high; v += step) found.push(Math.abs(v) < step * 1e-9 ? 0 : v);
     return found;
   };
+  let taken = [];
   // A name beside a point, moved as far as it takes to lie within the frame.
   const named = (f, kind, name, [x, y, anchor], parent, tone) => {
     const text = make("text", { class: `${kind}name`, y: Math.min(Math.max(y, margin.top + 12), margin.top + f.h - 4) }, parent);
     text.textContent = name;
     if (tone) text.style.fill = tone;
     const size = text.getComputedTextLength(), share = { start: 0, middle: 0.5, end: 1 }[anchor];
-    text.setAttribute("x", Math.max(Math.min(x - share * size, margin.left + f.w - 4 - size), margin.left + 4));
+    const left = Math.max(Math.min(x - share * size, margin.left + f.w - 4 - size), margin.left + 4), base = +text.getAttribute("y");
+    text.setAttribute("x", left);
+    // A place's name that would lie over another one is left out; the pointer tells it.
+    const own = [left, base - 11, left + size, base + 3];
+    if (kind === "place" && taken.some((other) => own[0] < other[2] && other[0] < own[2] && own[1] < other[3] && other[1] < own[3])) text.remove();
+    else taken.push(own);
   };
   // A shape in the colour of its line; only areas are filled.
   const painted = (shape, tone, filled) => {
@@ -80,7 +86,8 @@ function NtgMap(place, chart, { colour, dash, number }) {
       const tone = of == null ? undefined : colour(of);
       if (kind === "place") {
         const [px, py] = [f.px(x[0]), f.py(y[0])];
-        painted(make("path", { class: "place", d: `M${px} ${py - 5}l4.5 8h-9z` }, inside), tone);
+        const mark = painted(make("path", { class: "place", d: `M${px} ${py - 5}l4.5 8h-9z` }, inside), tone);
+        make("title", {}, mark).textContent = name;
         // Before its mark where the picture ends too soon.
         const ends = px + 10 + 6.5 * name.length > margin.left + f.w;
         const within = px > margin.left && px < margin.left + f.w && py > margin.top && py < margin.top + f.h;
@@ -139,6 +146,7 @@ function NtgMap(place, chart, { colour, dash, number }) {
     side.textContent = chart.y;
     const inside = make("g", { "clip-path": `url(#clip${place.dataset.chart})` }, svg);
     const names = make("g", { "clip-path": `url(#clip${place.dataset.chart})` }, svg);
+    taken = [];
     beneath(f, inside, names);
     svg.append(inside, names);
     legend.replaceChildren();

@@ -69,7 +69,10 @@
       const y = u.valToPos(at, "y", true), [x0, x1] = [Math.max(left, u.valToPos(from, "x", true)), Math.min(left + width, u.valToPos(to, "x", true))];
       if (x1 < x0) continue;
       ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x1, y); ctx.stroke();
-      ctx.fillText(name, x0 + 6 * px, y - 4 * px);
+      // Events have their names at the top, so near it a limit that begins with one has its own at its other end.
+      const begins = chart.marks.some(([mark]) => Math.abs(u.valToPos(mark, "x", true) - x0) < 4 * px) && y < top + 64 * px;
+      ctx.textAlign = begins ? "right" : "left";
+      ctx.fillText(name, begins ? x1 - 6 * px : x0 + 6 * px, y - 4 * px);
     }
     ctx.strokeStyle = css("--quiet"); ctx.lineWidth = px; ctx.setLineDash([7 * px, 5 * px]);
     chart.marks.forEach(([at, name], i) => {
@@ -96,6 +99,15 @@
     for (const [at] of chart.limits) if (at > low - reach && at < high + reach) { low = Math.min(low, at); high = Math.max(high, at); }
     const pad = high > low && !(flat && high - low <= chart.least) ? 0.06 * (high - low) : Math.max(0.1 * Math.abs(low), 1e-3);
     return [low - pad, high + pad];
+  };
+
+  // Limits that are too far away for the picture, each once.
+  const far = (chart) => {
+    const values = chart.lines.flatMap((line) => line.y).filter((y) => y != null);
+    if (!values.length) return [];
+    const least = (pick) => values.reduce((a, b) => pick(a, b)), [min, max] = spanned(chart)(null, least(Math.min), least(Math.max));
+    const outside = chart.limits.filter(([at]) => at < min || at > max);
+    return [...new Set(outside.map(([at, name]) => `${name} ${number(at)}`))];
   };
 
   const axis = (label) => ({
@@ -139,11 +151,16 @@
     });
   };
 
+  // A long title stands above; its line's value has a short name below.
+  const named = (line, chart) => line.name || (chart.title.length > 24 ? "value" : chart.title);
+
   const time = (place, chart) => {
     const log = chart.kind === "log", shade = (i) => colour(chart.lines[i].like ?? i);
     const width = () => Math.max(place.clientWidth - 14, 240);
+    // How the frame of a square in the legend tells the dashes of its line.
+    const looks = (i) => { const gaps = dash(chart.lines[i].run, chart.lines[i].like ?? i); return !gaps ? "solid" : gaps.length > 2 ? "double" : gaps[0] < 4 ? "dotted" : "dashed"; };
     const series = chart.lines.map((line, i) => ({
-      label: line.name || chart.title, stroke: () => shade(i), width: line.sigma ? 0 : 2, pxAlign: 0, dash: dash(line.run, line.like ?? i), spanGaps: false,
+      label: named(line, chart), stroke: () => shade(i), width: line.sigma ? 0 : 2, pxAlign: 0, dash: dash(line.run, line.like ?? i), spanGaps: false,
       ...(line.sigma ? { paths: () => null } : {}),
       value: (u, v) => number(v), points: { show: !!line.sigma || (log || (chart.y.startsWith("dJ*") && !line.x.some((x, k) => k && x === line.x[k - 1]))) && line.x.length < 100, size: 5, fill: () => shade(i), stroke: () => shade(i) },
     }));
@@ -151,15 +168,20 @@
       width: width(), height: 270, series: [{ label: chart.x, value: (u, v) => number(v) }, ...series],
       scales: { x: { time: false }, y: log ? { distr: 3 } : { range: spanned(chart) } },
       axes: [
-        { ...axis(chart.x), ...(log ? { incrs: whole } : {}) },
+        { ...axis(chart.x), ...(log ? { incrs: whole } : {}), values: (u, ticks) => told(ticks) },
         {
           ...axis(chart.y), size: room, ...(log ? { splits: decades, filter: (u, splits) => splits } : {}),
           values: (u, ticks) => (log ? ticks.map((v) => `1e${Math.round(Math.log10(v))}`) : told(ticks)),
         },
       ],
       cursor: { sync: log ? undefined : { key: "t" }, drag: { x: true, y: false } },
-      legend: { live: true }, hooks: { draw: [marks(chart), deviations(chart, shade)] },
+      legend: { live: true, markers: { width: 2, dash: (u, s) => looks(s - 1), fill: (u, s) => (chart.lines[s - 1].sigma ? shade(s - 1) : null) } }, hooks: { draw: [marks(chart), deviations(chart, shade)] },
     }, joined(chart.lines), place);
+    const beyond = log ? [] : far(chart);
+    if (beyond.length) {
+      const note = place.appendChild(document.createElement("p"));
+      note.className = "beyond"; note.textContent = `beyond the picture: ${beyond.join(", ")}`;
+    }
     const resize = () => u.setSize({ width: width(), height: 270 });
     new ResizeObserver(resize).observe(place);
     // The clock moves the cursor of all charts over time.

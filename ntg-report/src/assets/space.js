@@ -204,6 +204,8 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
       context.globalAlpha = 1;
       words(ball.name, [cx, cy - Math.hypot(b, c) - 9], red, "center");
     }
+    // A name that would lie over another one is left out.
+    const taken = [];
     for (const [name, at, of] of chart.places) {
       if (!near(at)) continue;
       // A place of unknown height stands on the ground.
@@ -211,6 +213,10 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
       const [x, y] = project([at[0], at[1], at[2] == null ? Math.max(z0, ...ground) : at[2]]);
       context.fillStyle = tone(of, "--ink");
       context.beginPath(); context.moveTo(x, y - 5); context.lineTo(x + 4.5, y + 3); context.lineTo(x - 4.5, y + 3); context.fill();
+      context.font = "12px system-ui, sans-serif";
+      const own = [x + 8, y - 6, x + 8 + context.measureText(name).width, y + 6];
+      if (taken.some((other) => own[0] < other[2] && other[0] < own[2] && own[1] < other[3] && other[1] < own[3])) continue;
+      taken.push(own);
       words(name, [x + 8, y], tone(of, "--quiet"));
     }
   };

@@ -92,7 +92,7 @@ pub(super) fn missed(run: &Run) -> Markup {
                     (missed.len()) " constraints are missed between the points, most of all " code { (worst.name) }
                 }
                 @if let Some(between) = &worst.between {
-                    " by " (with_unit(between.violation, &worst.unit))
+                    " by " (with_unit(between.violation, &worst.unit)) " (" (share(between.relative)) " of its size)"
                     (place_words(between.t, &between.phase, &run.independent))
                 }
                 ". " code { (command(run)) " --between refine --between-tolerance " (tolerance(relative(worst))) }
@@ -100,6 +100,13 @@ pub(super) fn missed(run: &Run) -> Markup {
             }
         }
     }
+}
+
+/// A part of a size in per cent, to two digits.
+fn share(relative: f64) -> String {
+    let percent = 100.0 * relative;
+    let digits = 10_f64.powf(1.0 - percent.log10().floor());
+    format!("{} %", number((percent * digits).round() / digits))
 }
 
 /// A tolerance that what was found does not meet: a tenth of it, rounded down to a power of ten; at most what holds

@@ -60,7 +60,7 @@ pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
                     "Of equally spaced samples; of what has limits, also of the two finer grids on which "
                     "limits are drawn and checked. Violations elsewhere on this page are those of the check alone, "
                     "and may be a little smaller. "
-                    "Angles are unwrapped, but for their limits."
+                    "An angle goes on beyond a full turn here; beside its limits it is shown as it is."
                 }
             }
         }
@@ -103,11 +103,21 @@ fn nearest(row: &Extremes) -> Markup {
         mark class=(limit.state.class()) {
             @match limit.state {
                 State::Violated | State::Between => { (with_unit(-limit.room, &row.unit)) " beyond" }
+                State::Active if is_missed(row, limit) => { "reached, to within " (with_unit(-limit.room, &row.unit)) }
                 State::Active => { "reached" }
                 _ => { (with_unit(limit.room, &row.unit)) " away" }
             }
         }
     }
+}
+
+/// Whether a limit that counts as reached is missed by what the numbers beside it show.
+fn is_missed(row: &Extremes, limit: &Limit) -> bool {
+    /// Digits of the numbers.
+    const SHOWN: f64 = 1e-6;
+    let bounds = [limit.lower, limit.upper].into_iter().flatten();
+    let size = bounds.chain([row.least.0, row.most.0]).fold(0.0_f64, |size, value| size.max(value.abs()));
+    -limit.room > SHOWN * size
 }
 
 fn extremes(run: &Run, all: bool) -> Vec<Extremes> {
@@ -257,6 +267,20 @@ mod tests {
         let rows = extremes(&run, false);
         assert_eq!(words(&rows[0]), ("≤ 6 in run".to_owned(), "inactive: 1 away".to_owned()));
         assert_eq!((rows.len(), rows[1].name.as_str()), (2, "v <= polar(heading) run"));
+    }
+
+    #[test]
+    fn what_is_beyond_a_limit_that_counts_as_reached_is_told() {
+        let mut run = Run::default();
+        let upper = |value: &[f64]| {
+            let between = Worst { violation: 294.9, relative: 3.2e-7, ..Worst::default() };
+            let declared = about("slope <= 0", vec![member(value, None, Some(0.0))]);
+            Constraint { between: Some(between), ..declared }
+        };
+        run.constraints = vec![upper(&[-4e8, 294.9])];
+        assert_eq!(words(&extremes(&run, false)[0]).1, "active: reached");
+        run.constraints = vec![upper(&[-4e6, 294.9])];
+        assert_eq!(words(&extremes(&run, false)[0]).1, "active: reached, to within 294.9");
     }
 
     #[test]

@@ -184,6 +184,18 @@ mod tests {
     }
 
     #[test]
+    fn nothing_is_left_out_without_a_word() {
+        assert!(PROGRAM.contains("`beyond the picture: ${beyond.join"), "limits far from the values");
+        for selector in [".scroll {", ".scroll.tall, .chart.crowded .u-legend {"] {
+            let rule = STYLE.rsplit(selector).next().and_then(|rest| rest.split('}').next());
+            assert!(rule.is_some_and(|rule| rule.contains("no-repeat local")), "{selector} has a shadow: {rule:?}");
+        }
+        for picture in [MAP, SPACE] {
+            assert!(picture.contains("taken.some((other) =>"), "names of places do not lie over each other");
+        }
+    }
+
+    #[test]
     fn the_buttons_of_the_clock_need_no_signs_of_a_font() {
         assert!(!CLOCK.contains(['▶', '⏸']) && CLOCK.contains("<svg"));
     }

@@ -183,12 +183,25 @@ pub(super) fn quantities(run: &Run) -> Markup {
                     div.scroll { table {
                         thead { tr { th { "parameter" } th.n { "value" } th { "unit" } } }
                         tbody { @for (name, v) in &run.parameters {
-                            tr { td { (name) } td.n { (v.value.iter().map(|v| number(*v)).collect::<Vec<_>>().join(", ")) } td { (v.unit) } }
+                            tr { td { (name) } td.n { (several(&v.value)) } td { (v.unit) } }
                         } }
                     } }
                 }
             }
         }
+    }
+}
+
+/// Numbers one after another; of many the first ones, the last, and how many there are.
+fn several(values: &[f64]) -> String {
+    /// So many stand on a line.
+    const MOST: usize = 8;
+    let all = |values: &[f64]| values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(", ");
+    match values {
+        [.., last] if values.len() > MOST => {
+            format!("{}, ..., {} ({} numbers)", all(&values[..MOST / 2]), number(*last), values.len())
+        }
+        _ => all(values),
     }
 }
 
@@ -275,6 +288,14 @@ pub(super) fn comparison(runs: &Runs<'_>) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_long_array_has_its_ends_and_its_length() {
+        assert_eq!(several(&[1.0, 2.5]), "1, 2.5");
+        let long: Vec<f64> = (1..=93).map(f64::from).collect();
+        assert_eq!(several(&long), "1, 2, 3, 4, ..., 93 (93 numbers)");
+        assert_eq!(several(&[]), "");
+    }
 
     #[test]
     fn code_stands_between_backticks_and_a_lone_one_stays() {

@@ -58,6 +58,7 @@ pub(crate) fn find(run: &Run, problem: &dyn Problem, reading: &Reading) -> Scene
     if levels.is_empty() && found.surfaces.is_empty() {
         levels = charts::levels(&charts, (view.core, view.rectangle));
     }
+    found.name_members();
     terrain::ground(&charts, &mut found);
     let mut places = places::find(run, &scene, &found.bound, &reading.lists);
     let near = |a: &Place, b: &Place| {
@@ -145,6 +146,23 @@ struct Found {
     seen: BTreeSet<Vec<u64>>,
     /// Coordinates to which positions are bound: axis and value in its unit.
     bound: Vec<(usize, f64)>,
+    /// The indices of each outline, surface and ball.
+    members: [Vec<Vec<i64>>; 3],
+}
+
+/// Adds to names that occur several times those indices in which their members differ.
+fn indexed(mut names: Vec<&mut String>, members: &[Vec<i64>]) {
+    let all: Vec<String> = names.iter().map(|name| (**name).clone()).collect();
+    for (number, name) in names.iter_mut().enumerate() {
+        let alike: Vec<&Vec<i64>> =
+            members.iter().zip(&all).filter(|(_, own)| **own == **name).map(|(m, _)| m).collect();
+        let own = &members[number];
+        let differs = |k: &usize| alike.iter().any(|other| other.get(*k) != own.get(*k));
+        let index: Vec<String> = (0..own.len()).filter(differs).map(|k| own[k].to_string()).collect();
+        if !index.is_empty() {
+            **name = format!("{}[{}]", all[number], index.join(", "));
+        }
+    }
 }
 
 /// One bound of one constraint.
@@ -169,9 +187,19 @@ impl Found {
                 let Some(field) = space.field(&group.call, limit.row, indices.clone()) else { continue };
                 if self.seen.insert(signature(view, &field, &limit)) {
                     self.limit(space, view, &field, &limit);
+                    let counts = [self.outlines.len(), self.surfaces.len(), self.balls.len()];
+                    self.members.iter_mut().zip(counts).for_each(|(own, count)| own.resize(count, indices.clone()));
                 }
             }
         }
+    }
+
+    /// Members of a family that draw several things have their index: `no_fly[2]`.
+    fn name_members(&mut self) {
+        let [outlines, surfaces, balls] = &self.members;
+        indexed(self.outlines.iter_mut().map(|outline| &mut outline.name).collect(), outlines);
+        indexed(self.surfaces.iter_mut().map(|surface| &mut surface.name).collect(), surfaces);
+        indexed(self.balls.iter_mut().map(|ball| &mut ball.name).collect(), balls);
     }
 
     fn limit(&mut self, space: &Space<'_>, view: &View, field: &Field<'_>, limit: &Limit) {
@@ -356,4 +384,17 @@ fn equal_values(view: &View, row: impl Fn(&[[f64; 3]]) -> Vec<f64>, (name, facto
     let grid = Grid::new(view.rectangle, function);
     let level = |value: f64| Level { name: name.to_owned(), value, lines: grid.lines(value, function) };
     grid.levels(&view.core).into_iter().map(level).filter(|level| !level.lines.is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_that_draw_several_things_have_the_indices_in_which_they_differ() {
+        let mut names = ["no_fly", "no_fly", "hill", "near", "near"].map(str::to_owned);
+        let members = [vec![1, 1], vec![1, 2], vec![1], vec![2, 1, 3], vec![2, 4, 5]];
+        indexed(names.iter_mut().collect(), &members);
+        assert_eq!(names, ["no_fly[1]", "no_fly[2]", "hill", "near[1, 3]", "near[4, 5]"]);
+    }
 }
