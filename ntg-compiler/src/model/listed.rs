@@ -1,8 +1,9 @@
 //! Units in lists of names: which unit a name takes that has none of its own.
 //!
 //! Takes a declaration whose names have got their units. A name without one took the next to its right, else the last
-//! of the list (`syntax::parse`). Finds: names that take another unit than they did before version 2, names for which a
-//! reader may take the unit in the bounds of another name, and names for which a reader may take these bounds.
+//! of the list (`syntax::parse`). Finds: names that take another unit than they did before version 2, names behind the last
+//! unit, names for which a reader may take the unit in the bounds of another name, and names for which a reader may take
+//! these bounds.
 
 use ntg_structure::Unit;
 
@@ -38,7 +39,12 @@ impl Elaborator<'_> {
         self.note_sizes(names);
         let mut in_doubt = vec![];
         for (i, name) in names.iter().enumerate() {
-            let Some(rival) = rival(names, i) else { continue };
+            let Some(rival) = rival(names, i) else {
+                if self.stands_behind(name) {
+                    in_doubt.push(i);
+                }
+                continue;
+            };
             let ((Some(own), unit), (Some(other), bounds)) = (&measured[i], &measured[rival]) else { continue };
             if own == other && unit == bounds {
                 continue;
@@ -60,6 +66,23 @@ impl Elaborator<'_> {
             self.note_unbounded(names);
         }
         in_doubt
+    }
+
+    /// Refuses a name behind the last unit of its list: a pure number looks the same.
+    fn stands_behind(&mut self, name: &DeclaredName) -> bool {
+        let Some(unit) = name.unit.as_ref().filter(|unit| is_bare(name) && unit.span.end <= name.span.start) else {
+            return false;
+        };
+        let (text, last) = (&name.name.text, self.text(unit.span));
+        if last == "[1]" {
+            return false;
+        }
+        let message = format!("the unit of `{text}` can be read two ways: {last} or [1]");
+        let finding = Diagnostic::new(Code::UnitInDoubt, name.name.span, message)
+            .label(unit.span, "the last unit of the list")
+            .label(name.name.span, "behind it, without one of its own");
+        self.report(finding.help(format!("write the unit that is meant: `{text} {last}`, or `{text} [1]`")));
+        true
     }
 
     /// Notes a unit of one symbol that is also the name of a whole number, once in each list: it looks like a size.

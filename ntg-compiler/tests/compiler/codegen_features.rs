@@ -223,5 +223,5 @@ fn size_grows_with_formulas_and_not_with_intervals_or_members() {
         .split_whitespace()
         .count()
     };
-    assert_eq!(of_size(8, 5), of_size(800, 500));
+    assert_eq!(of_size(8, 5), of_size(80, 500));
 }
