@@ -22,7 +22,7 @@ pub(crate) struct BesideSpec {
 impl Loader for BesideSpec {
     fn load(&self, path: &str) -> Result<String, String> {
         let path = self.folder.join(path);
-        std::fs::read_to_string(&path).map_err(|error| format!("cannot read `{}`: {error}", path.display()))
+        std::fs::read_to_string(&path).map_err(|error| reason(&path, &error, &self.folder))
     }
 }
 
@@ -85,7 +85,6 @@ fn below(path: &Path) -> Result<Vec<PathBuf>, String> {
 
 /// Why a file could not be read, and which one may be meant.
 pub(crate) fn unread(path: &Path, error: &std::io::Error) -> String {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let shown = path.display();
     if path.is_dir() {
         return match nearest(path, Path::new("")) {
@@ -93,15 +92,23 @@ pub(crate) fn unread(path: &Path, error: &std::io::Error) -> String {
             None => format!("`{shown}` is a folder; name a file"),
         };
     }
-    if error.kind() != std::io::ErrorKind::NotFound {
-        return format!("cannot read `{shown}`: {error}");
-    }
-    if !folder.is_dir() {
-        return format!("cannot read `{shown}`: there is no folder `{}`", folder.display());
-    }
-    match nearest(folder, path) {
-        Some(near) => format!("cannot read `{shown}`: there is no such file; did you mean `{}`?", near.display()),
-        None => format!("cannot read `{shown}`: there is no such file"),
+    format!("cannot read `{shown}`: {}", reason(path, error, Path::new("")))
+}
+
+/// The same without the name of the file; other files are named as seen from a folder.
+fn reason(path: &Path, error: &std::io::Error, from: &Path) -> String {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match error.kind() {
+        std::io::ErrorKind::InvalidData => "it is not UTF-8 text; save it in the encoding UTF-8".to_owned(),
+        std::io::ErrorKind::NotFound if !folder.is_dir() => format!("there is no folder `{}`", folder.display()),
+        std::io::ErrorKind::NotFound => match nearest(folder, path) {
+            Some(near) => {
+                let near = near.strip_prefix(from).unwrap_or(&near);
+                format!("there is no such file; did you mean `{}`?", near.display())
+            }
+            None => "there is no such file".to_owned(),
+        },
+        _ => error.to_string(),
     }
 }
 

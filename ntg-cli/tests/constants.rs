@@ -122,3 +122,19 @@ fn saved_runs_and_reports_hold_the_estimate() {
     let page = std::fs::read_to_string(folder.path().join("plain.html")).expect("the page");
     assert!(!page.contains("id=\"estimate\""));
 }
+
+#[test]
+fn a_file_of_numbers_that_cannot_be_read_says_why_and_which_may_be_meant() {
+    let folder = folder();
+    let spec = SPEC.replace("data/run.csv", "data/rnu.csv");
+    std::fs::write(folder.path().join("slip.ntg"), spec).expect("a file can be written");
+    let (_, err) = said(&ntg(folder.path(), &["check", "slip.ntg"]), 2);
+    let words = "`data/rnu.csv` cannot be read: there is no such file; did you mean `data/run.csv`?";
+    assert!(err.contains(words), "{err}");
+    std::fs::write(folder.path().join("data/run.csv"), b"0, \xe9\n").expect("a file can be written");
+    let (_, err) = said(&ntg(folder.path(), &["check", "spec.ntg"]), 2);
+    assert!(
+        err.contains("`data/run.csv` cannot be read: it is not UTF-8 text; save it in the encoding UTF-8"),
+        "{err}"
+    );
+}

@@ -186,9 +186,17 @@ const HABITS: &[(&str, &str)] = &[
     ("kilogram", "kg"),
     ("kilograms", "kg"),
     ("newton", "N"),
+    ("newtons", "N"),
+    ("Newton", "N"),
+    ("Newtons", "N"),
     ("joule", "J"),
+    ("Joule", "J"),
     ("watt", "W"),
+    ("Watt", "W"),
     ("volt", "V"),
+    ("Volt", "V"),
+    ("mile", "mi"),
+    ("miles", "mi"),
     ("lbs", "lb"),
 ];
 

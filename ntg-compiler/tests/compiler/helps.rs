@@ -52,6 +52,9 @@ fn a_unit_keeps_its_prefix() {
         ("hours", "h"),
         ("minutes", "min"),
         ("days", "day"),
+        ("Newton", "N"),
+        ("miles", "mi"),
+        ("Watt", "W"),
     ];
     for (written, meant) in pairs {
         let text = format!("{MOVING}\n    param a = 3 [{written}];");
@@ -286,4 +289,36 @@ fn nodes_are_told_as_they_are_written() {
     assert!(second.contains("`a` is even") && second.contains("--- the first node"), "{second}");
     let open = of_day("table f(a periodic [h]) [km] = linear { 0: 1;  12: 3;  24: 2; }");
     assert!(open.contains("but they are 1 [km] and 2 [km]") && open.contains("the last node"), "{open}");
+}
+
+#[test]
+fn words_and_quotes_of_other_languages_are_led_to_ours() {
+    let begins = [
+        ("measurements { x == 1 [m] sigma 1 [m]; }", "what was measured stands in `measure { }`"),
+        ("use std::rotation;", "libraries stand before the problem: `use std::constants::*;`"),
+    ];
+    for (text, help) in begins {
+        let found = told(&format!("{MOVING}\n    {text}"));
+        assert!(found.contains(&format!("= help: {help}")), "{found}");
+    }
+    let quoted = told(&format!("{MOVING}\n    param seen[2] [m] from 'tank.csv' column 2;"));
+    says(
+        &quoted,
+        "error[E008]: `'` is not part of the language",
+        "spec.ntg:5:28",
+        "a string stands in double quotes: `\"tank.csv\"`",
+    );
+    assert_eq!(errors(&quoted), 1, "{quoted}");
+    // A prime behind a name is a derivative still.
+    let prime = told(&format!("{MOVING}\n    initial {{ x' == 0 [m/s]; }}  final {{ x' == 0 [m/s]; }}"));
+    assert!(prime.contains("write `der(x)` for the derivative"), "{prime}");
+}
+
+#[test]
+fn characters_that_nobody_sees_are_named_and_to_be_removed() {
+    for (c, name) in [('\0', "U+0000"), ('\u{200b}', "U+200B"), ('\u{feff}', "U+FEFF"), ('\u{202e}', "U+202E")] {
+        let found = told(&format!("{MOVING}\n    {c}param a = 1;"));
+        let message = format!("error[E008]: the character {name} is not part of the language");
+        says(&found, &message, "spec.ntg:5:5", "remove it");
+    }
 }

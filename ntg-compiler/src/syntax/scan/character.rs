@@ -9,15 +9,19 @@ impl Scanner<'_> {
         let start = self.pos;
         // A run of the same character is one mistake.
         let count = self.rest().chars().take_while(|next| *next == c).count();
-        let length = count * c.len_utf8();
+        let mut length = count * c.len_utf8();
         let (instead, mut help) = advice(c);
         if c == '\'' {
             help = self.prime(count);
+            if let Some(quoted) = self.quoted() {
+                help = format!("a string stands in double quotes: `\"{quoted}\"`");
+                length = quoted.len() + 2;
+            }
         }
         if c == '@' {
             help = self.at_sign().map_or(help, str::to_owned);
         }
-        let name = if c.is_control() || c.is_whitespace() || c == '\u{feff}' {
+        let name = if c.is_control() || c.is_whitespace() || is_unseen(c) {
             format!("the character U+{:04X}", c as u32)
         } else {
             format!("`{}`", c.to_string().repeat(count.min(8)))
@@ -46,6 +50,13 @@ impl Scanner<'_> {
         })
     }
 
+    /// What stands between two primes of a line, the first of which follows no name.
+    fn quoted(&self) -> Option<&str> {
+        let follows = self.text[..self.pos].ends_with(|c| unicode_ident::is_xid_continue(c) || matches!(c, ')' | ']'));
+        let line = self.text[self.pos + 1..].lines().next().filter(|_| !follows)?;
+        line.split_once('\'').map(|(quoted, _)| quoted).filter(|quoted| !quoted.is_empty())
+    }
+
     /// Primes after a name mean a derivative to every engineer.
     fn prime(&self, count: usize) -> String {
         let before = self.text[..self.pos].rsplit(|c| !unicode_ident::is_xid_continue(c)).next();
@@ -58,6 +69,11 @@ impl Scanner<'_> {
             (None, _) => "derivatives are written `der(x)`, strings in double quotes".into(),
         }
     }
+}
+
+/// Whether a character has neither a sign nor a width: marks of order, joiners, soft hyphens.
+fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2064}' | '\u{feff}')
 }
 
 /// What to put into the clean text, never longer than the character, and what to tell. A sign or a power is
@@ -99,7 +115,7 @@ fn advice(c: char) -> (&'static str, String) {
         '?' => ("", "write `if a <= b { ... } else { ... }`"),
         '&' => ("", "write two statements: all of them hold"),
         '|' => ("", "write `abs(x)` for a magnitude"),
-        _ if c.is_whitespace() || c.is_control() => ("", "write an ordinary blank"),
+        _ if c.is_whitespace() => ("", "write an ordinary blank"),
         _ => ("", "remove it"),
     };
     (instead, help.into())
