@@ -3,6 +3,9 @@
 use super::{Limit, Line, Panel, Runs, label, with_unit};
 use crate::run::Measurement;
 
+/// When, what, and with which standard deviation.
+type Measured = (f64, f64, f64);
+
 /// The points that were measured of a quantity, a line for each statement.
 pub(super) fn of(runs: &Runs<'_>, run: usize, path: &str) -> Vec<Line> {
     let Some(estimate) = &runs[run].1.estimate else { return vec![] };
@@ -21,7 +24,7 @@ pub fn residuals(runs: &Runs<'_>) -> Vec<Panel> {
     let mut panels: Vec<Panel> = vec![];
     for (index, (_, run)) in runs.iter().enumerate() {
         for measurement in run.estimate.iter().flat_map(|estimate| &estimate.measurements) {
-            let mut groups: Vec<(&str, Vec<(f64, f64, f64)>)> = vec![];
+            let mut groups: Vec<(&str, Vec<Measured>)> = vec![];
             for residual in &measurement.residuals {
                 let Some(t) = residual.t else { continue };
                 let point = (t, residual.value, (residual.value / residual.ratio).abs());
@@ -58,7 +61,7 @@ fn name(measurement: &Measurement) -> &str {
 }
 
 /// Points in order of time.
-fn line(name: String, run: usize, mut points: Vec<(f64, f64, f64)>) -> Line {
+fn line(name: String, run: usize, mut points: Vec<Measured>) -> Line {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let sigmas = points.iter().map(|point| point.2).collect();
     Line { name, run, points: points.into_iter().map(|(t, value, _)| (t, value)).collect(), sigmas, ..Line::default() }

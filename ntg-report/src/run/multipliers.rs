@@ -31,7 +31,7 @@ impl Run {
         let cost = terms.max(self.objective.abs());
         let change = SHIFT * constraint.size() * constraint.sensitivity.abs();
         // NaN, of what was not saved, is no answer.
-        !(change > cost)
+        change.is_nan() || cost.is_nan() || change <= cost
     }
 }
 
