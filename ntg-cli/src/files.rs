@@ -128,6 +128,11 @@ fn nearest(folder: &Path, wanted: &Path) -> Option<PathBuf> {
 /// Reads a spec from a file, or from standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
     let name = if is_standard_input(path) { "<stdin>".to_owned() } else { path.display().to_string() };
+    if path.extension().is_some_and(|extension| extension == "csv") {
+        let message =
+            format!("`{name}` is a table of numbers; name a spec, which may read it: `from \"...\" column 1`");
+        return Err(Failure::Unread { name, message });
+    }
     let bytes = if is_standard_input(path) {
         let mut bytes = vec![];
         std::io::stdin().read_to_end(&mut bytes).map(|_| bytes)

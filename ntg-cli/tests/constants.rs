@@ -138,3 +138,12 @@ fn a_file_of_numbers_that_cannot_be_read_says_why_and_which_may_be_meant() {
         "{err}"
     );
 }
+
+#[test]
+fn a_table_of_numbers_is_no_spec() {
+    let folder = folder();
+    for command in [&["check"][..], &["solve"], &["report", "-o", "page.html"]] {
+        let (_, err) = said(&ntg(folder.path(), &[command, &["data/run.csv"]].concat()), 2);
+        assert!(err.contains("`data/run.csv` is a table of numbers; name a spec"), "{command:?}: {err}");
+    }
+}
