@@ -149,11 +149,9 @@ fn operation(name: &str, args: &[Jet]) -> Jet {
         ("sin", [x]) => x.sine_and_cosine().0,
         ("cos", [x]) => x.sine_and_cosine().1,
         ("tan", [x]) => x.sine_and_cosine().0.over(&x.sine_and_cosine().1),
-        ("asin", [x]) => x.atan2(&((one - *x) * (one + *x)).sqrt()).narrowed(x.c[0].asin()),
-        ("acos", [x]) => {
-            let value = pi().scaled(-1) - x.c[0].asin();
-            ((one - *x) * (one + *x)).sqrt().atan2(x).narrowed(value)
-        }
+        // Twice the angle of half the arc: what is above the line and what is below it rise and fall together.
+        ("asin", [x]) => (one + one) * x.over(&(one + (one - x.power(2)).sqrt())).atan(),
+        ("acos", [_]) => Jet::constant(pi().scaled(-1)) - operation("asin", args),
         ("atan", [x]) => x.atan(),
         ("sinh", [x]) => (x.exp() - (-*x).exp()) * half,
         ("cosh", [x]) => (x.exp() + (-*x).exp()) * half,

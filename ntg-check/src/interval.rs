@@ -145,21 +145,6 @@ impl Interval {
         self.rising(atan).meet(pi().scaled(-1).hull(-pi().scaled(-1)))
     }
 
-    /// Arc sine of what lies from -1 to 1.
-    pub(crate) fn asin(self) -> Self {
-        let half = pi().scaled(-1);
-        let one = Self::whole(1);
-        let inside = self.meet(-one.hull(-one));
-        inside.rising(|x| {
-            let root = ((one - x) * (one + x)).sqrt().0;
-            match x {
-                x if x.is_positive() => half - root.over(x).atan(),
-                x if (-x).is_positive() => root.over(-x).atan() - half,
-                x => x.over(root).atan(),
-            }
-        })
-    }
-
     /// Sine.
     pub(crate) fn sin(self) -> Self {
         (self - pi().scaled(-1)).cos()
@@ -324,21 +309,6 @@ mod tests {
     fn near(found: Interval, expected: f64) {
         let slack = number(expected.abs().max(0.05) * 4e-16);
         assert!(give_or_take(number(expected), slack).encloses(found), "{found:?} is not near {expected}");
-    }
-
-    /// The arc sine rises: over an interval it is between those at the ends, near 1 too, and no wider.
-    #[test]
-    fn the_arc_sine_of_an_interval_is_as_wide_as_its_ends_are_apart() {
-        for (low, high) in [(-1.0, 1.0), (0.5, 0.999_999), (0.999, 1.0), (-0.3, 0.2), (0.0, 0.0)] {
-            let (Some((a, b)), [below, above]) =
-                (number(low).hull(number(high)).asin().ends, [low, high].map(f64::asin))
-            else {
-                panic!("no ends")
-            };
-            near(Interval::point(a), below);
-            near(Interval::point(b), above);
-        }
-        assert!(Interval::whole(2).asin().ends.is_some());
     }
 
     #[test]

@@ -154,12 +154,6 @@ impl Jet {
         self.through((self.c[0].atan(), true), &Self::one().over(&(Self::one() + self.power(2))))
     }
 
-    /// The same with a value that is known to lie in another interval, too.
-    pub(crate) fn narrowed(mut self, value: Interval) -> Self {
-        self.c[0] = self.c[0].meet(value);
-        self
-    }
-
     /// The angle of the point with ordinate `self` and abscissa `x`: of two zeros it is some angle.
     pub(crate) fn atan2(&self, x: &Self) -> Self {
         let (left, right) = (Self::constant(-pi()), Self::constant(pi()));

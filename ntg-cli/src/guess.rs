@@ -14,7 +14,7 @@ use crate::runs::SAVED;
 /// Reads a saved solution as a guess for a problem: its unknowns where the splines are the same,
 /// its sampled outputs, durations and variables otherwise.
 pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> {
-    Ok(of(&saved(path)?, problem))
+    of(&saved(path)?, path, problem)
 }
 
 /// As [`read`], with the multipliers of the rows where the splines are the same; none in files from before they were saved.
@@ -22,7 +22,7 @@ pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, O
     let saved = saved(path)?;
     let is_same = saved["layout"] == layout(&problem.structure());
     let multipliers = numbers(&saved["row_multipliers"]).filter(|multipliers| is_same && !multipliers.is_empty());
-    Ok((of(&saved, problem), multipliers))
+    Ok((of(&saved, path, problem)?, multipliers))
 }
 
 /// The text of a saved solution of this version.
@@ -40,18 +40,35 @@ fn saved(path: &Path) -> Result<Value, String> {
     Ok(saved)
 }
 
-fn of(saved: &Value, problem: &Interpreted) -> Guess {
+/// The guess that a saved solution is. That of a problem without a common output is none.
+fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String> {
     let structure = problem.structure();
     if saved["layout"] == layout(&structure)
         && let Some(unknowns) = numbers(&saved["unknowns"])
     {
-        return Guess::raw(unknowns);
+        return Ok(Guess::raw(unknowns));
     }
     let mut guess = Guess::new();
-    let known: Vec<&str> = structure.phases.iter().flat_map(|p| &p.outputs).map(|o| o.name.as_str()).collect();
-    for (name, output) in saved["outputs"].as_object().into_iter().flatten() {
+    let own = structure.phases.iter().flat_map(|p| &p.outputs).filter(|output| !output.is_helper());
+    let known: Vec<&str> = own.map(|output| output.name.as_str()).collect();
+    let base = |name: &str| {
         let last = name.rsplit('.').next().unwrap_or(name);
-        let base = last.split('[').next().unwrap_or(last);
+        last.split('[').next().unwrap_or(last).to_owned()
+    };
+    let saved_outputs = || saved["outputs"].as_object().into_iter().flatten();
+    if !known.is_empty() && !saved_outputs().any(|(name, _)| known.contains(&base(name).as_str())) {
+        let mut theirs: Vec<String> = saved_outputs().map(|(name, _)| format!("`{}`", base(name))).collect();
+        theirs.dedup();
+        return Err(format!(
+            "`{}` is the solution of another problem: it has {}, and none of the outputs of `{}`",
+            path.display(),
+            if theirs.is_empty() { "no outputs".to_owned() } else { theirs.join(", ") },
+            problem.structure().name
+        ));
+    }
+    for (name, output) in saved_outputs() {
+        let base = base(name);
+        let base = base.as_str();
         let samples = (numbers(&output["t"]), numbers(&output["value"]));
         if let ((Some(t), Some(value)), true) = (samples, known.contains(&base)) {
             guess = guess.output(name, move |tau| interpolate(&t, &value, tau));
@@ -75,7 +92,7 @@ fn of(saved: &Value, problem: &Interpreted) -> Guess {
             guess = guess.variable(&variable.name, value);
         }
     }
-    guess
+    Ok(guess)
 }
 
 fn numbers(list: &Value) -> Option<Vec<f64>> {

@@ -163,6 +163,10 @@ fn a_saved_solution_is_a_guess_and_is_never_overwritten_silently() {
     // The same outputs on other points: the file is a guess there too.
     let other = json(&["solve", "van_der_pol_gauss.ntg", "--guess", path]);
     assert_eq!(other["status"], "solved");
+    let foreign = ntg(&["solve", "kinematic_car.ntg", "--guess", path]);
+    let said = String::from_utf8_lossy(&foreign.stderr);
+    assert_eq!(foreign.status.code(), Some(2), "{said}");
+    assert!(said.contains("is the solution of another problem: it has `z`, and none of the outputs of"), "{said}");
 
     let refused = ntg(&["solve", "van_der_pol.ntg", "--save", path]);
     assert_eq!(refused.status.code(), Some(2));

@@ -221,6 +221,7 @@ fn residual_by<N: Nlp>(nlp: &N, sizes: &[f64], end: &Outcome, options: &Options)
     at.blocks.iter_mut().flat_map(|block| &mut block.hessian).for_each(|entry| *entry *= scales.objective);
     let largest_term = residuals::largest_term((blocks, &at), (|j| end.x[j], y), &scales, &mut slot_terms(blocks));
     let point = Point {
+        objective: at.objective,
         x: &end.x,
         rows: &at.rows,
         lagrangian: &lagrangian,

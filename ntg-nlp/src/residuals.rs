@@ -46,6 +46,11 @@ pub fn divisor(sum: f64, count: f64) -> f64 {
 /// within 2e-6 of their optima.
 pub(crate) const GAP: f64 = 1000.0;
 
+/// What a gap is relative to, for a scaled objective.
+pub(crate) fn gap_unit(objective: f64) -> f64 {
+    objective.abs().max(1.0)
+}
+
 /// How far a point is from a solution, measured in one way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residual {
@@ -55,7 +60,8 @@ pub struct Residual {
     pub dual: f64,
     /// Largest product of an inequality's multiplier and the distance to the bound that it belongs to.
     pub complementarity: f64,
-    /// Sum of all these products: how far the objective of a convex program is from its optimum at most.
+    /// Sum of all these products, relative to the objective where that is more than its variation: how far the objective of a
+    /// convex program is from its optimum at most.
     pub gap: f64,
     /// Largest product of an equality's multiplier and its residual: what the residual is worth.
     pub worth: f64,
@@ -76,6 +82,8 @@ pub struct Residuals {
 /// A point, its multipliers, and the first derivatives there, all in the program's own units.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<'a> {
+    /// The objective.
+    pub objective: f64,
     /// The variables.
     pub x: &'a [f64],
     /// The rows.
@@ -272,6 +280,8 @@ pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residua
             None => found.dual(lambda, scales.objective / factor),
         }
     }
+    found.unscaled.gap /= gap_unit(point.objective);
+    found.scaled.gap /= gap_unit(scales.objective * point.objective);
     found.scaled.rounding = ROUNDING * point.largest_term;
     found.scaled = found.scaled.relative_to(s_d);
     found
@@ -413,6 +423,7 @@ mod tests {
             lagrangian: &[0.0],
             row_multipliers: &[1e14],
             bound_multipliers: &[0.0],
+            objective: 0.0,
             largest_term: 0.0,
             terms: &[0.0],
         };
@@ -445,6 +456,7 @@ mod tests {
             lagrangian: &[0.0, 0.01],
             row_multipliers: &[1e14],
             bound_multipliers: &[0.0, 0.0],
+            objective: 0.0,
             largest_term: 0.0,
             terms: &[0.0, 0.0],
         };

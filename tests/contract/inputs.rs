@@ -88,7 +88,7 @@ fn find(structure: &Structure, kernel: usize) -> Option<&Call> {
         call.reductions.iter().find_map(|r| inside(&r.body, kernel))
     }
     use ntg::runtime::structure::{Duration, GuessKind, Start};
-    let groups = structure.groups.iter().flat_map(|g| g.bounds.iter().chain([&g.call]));
+    let groups = structure.groups.iter().chain(&structure.shown).flat_map(|g| g.bounds.iter().chain([&g.call]));
     let named = structure.named.iter().map(|n| &n.call);
     let durations = structure.phases.iter().filter_map(|p| match &p.duration {
         Duration::Fixed(call) => Some(call),

@@ -73,3 +73,32 @@ fn beyond_a_conjugate_point_there_is_no_minimum() {
         assert_eq!(report.status, expected, "{report}");
     }
 }
+
+/// The guess is a saddle at the ends, and so the barrier falls at once: the last matrix had all of its curvature.
+#[test]
+fn a_product_of_two_ends_is_least_at_a_corner() {
+    solved(
+        "problem Ends {
+            duration T = 1 [s];
+            state x, y [m];
+            input u, w in -1 .. 1 [m/s];
+            collocation gauss(points = 3, intervals = 10);
+            minimize final(x) * final(y) / 1 [m^2];
+            dynamics { der(x) == u;  der(y) == w; }
+            initial { x == 0;  y == 0; }
+        }",
+        -1.0,
+    );
+    solved(
+        "problem Factors {
+            duration T = 1;
+            variable a, b in -2 .. 2;
+            state x;
+            collocation gauss(points = 2, intervals = 2);
+            minimize b * final(x);
+            dynamics { der(x) == 0; }
+            initial { x == a; }
+        }",
+        -4.0,
+    );
+}

@@ -309,7 +309,7 @@ fn a_limit_that_contradicts_a_target_stands_beside_it_at_the_top() {
             collocation gauss(points = 3);
             minimize integral(der(v)^2);
             initial { x == 0; y == 0; v == 1 [m/s]; }
-            trajectory { east: der(x) == v * cos(0.1 * y / 1 [m]); north: der(y) == 0; fast: v <= 2 [m/s]; }
+            trajectory { east: der(x) == v * cos(0.1 * y / 1 [m]); north: der(y) == 0; fast: v in -2 .. 2 [m/s]; }
             final { goal: x * x == 100 [m^2]; }
             guess { x = 10 [m] * tau; v = 3 [m/s]; }
         }",

@@ -236,3 +236,22 @@ fn the_best_round_is_one_whose_objective_its_own_integral_bears_out() {
     let warned = report.warnings().iter().any(|warning| warning.message.contains("finely integrated"));
     assert!(warned, "{report}");
 }
+
+/// Four holds of a force from rest to rest over 1 in 1: the least `int u^2` of a double integrator with samples, 12.8. With
+/// every finer mesh it was that of a higher rate, down to 12.
+#[test]
+fn the_rate_of_a_sampled_input_stays() {
+    let text = "problem Sampled {
+        duration T = 1;
+        state x, v;
+        input u: held;
+        collocation gauss(points = 3, intervals = 4);
+        minimize integral(u^2);
+        dynamics { der(x) == v;  der(v) == u * (1 + 0.01 * sin(40 * x)) / (1 + 0.01 * sin(40 * x)); }
+        initial { x == 0;  v == 0; }
+        final { x == 1;  v == 0; }
+    }";
+    let (report, refined) = to(&Shipped::text(text), 1e-6);
+    assert!(refined.is_met(), "{report}");
+    assert!((report.objective - 12.8).abs() < 1e-5, "{report}");
+}

@@ -203,6 +203,7 @@ impl<'a, N: Nlp> State<'a, N> {
         let mut terms = vec![0.0; x.len()];
         residuals::terms_by_variable((self.nlp.blocks(), latest), |i| rows[i], &self.system.scales, &mut terms);
         let point = residuals::Point {
+            objective: latest.objective,
             terms: &terms,
             x,
             rows: &latest.rows,

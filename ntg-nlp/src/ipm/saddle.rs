@@ -8,6 +8,7 @@
 use super::state::State;
 use super::step::LEAST_PROXIMAL;
 use crate::contract::Nlp;
+use crate::outcome::IterationRecord;
 
 /// Steps of the power method. A law: the direction need not be the best one, and where two are as good, any of both will do.
 const STEPS: usize = 20;
@@ -17,6 +18,8 @@ const SHIFT: f64 = 0.01;
 /// The curvature is negative beyond doubt where it is at least this part of what convexification adds. A law: singular
 /// arcs have a curvature of 0, which rounding makes 1e-6 of either sign.
 const CERTAIN: f64 = 1e-3;
+/// Barrier parameters that have fallen by more than this since the last matrix add curvature that is gone. A choice.
+const HIDES: f64 = 100.0;
 /// The part of the decrease promised by the curvature that a trial point must have.
 const ARMIJO: f64 = 0.1;
 /// How often the distance of the trial point is halved.
@@ -41,8 +44,9 @@ impl<N: Nlp> State<'_, N> {
     /// A point beside the present one, in the program's own units, at which the Lagrangian is less than at the present
     /// one; none where the present one is a minimum. Precondition: the present point is a solution by its residuals.
     pub(super) fn below_saddle(&mut self) -> Option<Vec<f64>> {
-        // The last matrix was one of a point close by.
-        if !self.history.last().is_none_or(|last| last.is_corrected()) {
+        // The last matrix was one of a point close by, unless the barrier has hidden there what is curved.
+        let is_told = |last: &IterationRecord| !last.is_corrected() && last.barrier <= HIDES * self.mu;
+        if self.history.last().is_some_and(is_told) {
             return None;
         }
         let descent = self.descent()?;

@@ -16,7 +16,7 @@ use crate::options::Options;
 use crate::outcome::IterationRecord;
 use crate::reductions::{largest, sum};
 use crate::remeasure::Measure;
-use crate::residuals::{ACCEPTABLE, Residual, Residuals, SlotTerms, divisor};
+use crate::residuals::{ACCEPTABLE, Residual, Residuals, SlotTerms, divisor, gap_unit};
 use crate::status::Status;
 use crate::stopping::Stage;
 use std::time::Instant;
@@ -216,7 +216,7 @@ impl<N: Nlp> State<'_, N> {
             primal: self.slacks.violation(&self.values),
             dual: self.dual_residual(),
             complementarity: self.slacks.complementarity(),
-            gap: self.slacks.gap(),
+            gap: self.slacks.gap() / gap_unit(self.values[self.system.objective()]),
             worth: self.slacks.worth(&self.values),
             rounding: 0.0,
         };

@@ -151,6 +151,7 @@ impl<'a, N: Nlp> Program<'a, N> {
         let mut terms = vec![0.0; self.x.len()];
         residuals::terms_by_variable((self.nlp.blocks(), &self.at), |i| self.weights[i], &self.scales, &mut terms);
         let point = residuals::Point {
+            objective: self.at.objective,
             terms: &terms,
             x: &self.x,
             rows: &self.at.rows,

@@ -1,6 +1,6 @@
 //! What is made finer in each phase, and the structure that comes of it.
 
-use ntg_structure::{Points, Structure};
+use ntg_structure::{Output, Points, Structure};
 
 /// New breakpoints and finer rules of one phase.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,10 +18,24 @@ impl Marks {
     }
 }
 
-/// More breakpoints; `marks` holds one entry a declared phase.
+/// Whether an output has one value in each of its intervals although there are several points in each: a sampled input, whose
+/// rate is part of the problem and none of its discretisation.
+fn is_held(output: &Output, points: &[Points]) -> bool {
+    let has_several = |points: &Points| match points {
+        Points::Gauss { points } => *points > 1,
+        Points::Uniform { .. } => true,
+        Points::Breakpoints | Points::LeftLimits => false,
+    };
+    output.spline.order == 1 && !output.is_helper() && points.iter().any(has_several)
+}
+
+/// More breakpoints, but for inputs that are held; `marks` holds one entry a declared phase.
 pub(super) fn split(structure: &mut Structure, marks: &[Marks]) {
     for (phase, marks) in structure.phases.iter_mut().zip(marks) {
         for output in &mut phase.outputs {
+            if is_held(output, &phase.points) {
+                continue;
+            }
             let is_helper = output.is_helper();
             let breakpoints = &mut output.spline.breakpoints;
             breakpoints.extend(&marks.at);
