@@ -81,7 +81,7 @@ fn a_product_of_two_ends_is_least_at_a_corner() {
         "problem Ends {
             duration T = 1 [s];
             state x, y [m];
-            input u, w in -1 .. 1 [m/s];
+            input u in -1 .. 1 [m/s], w in -1 .. 1 [m/s];
             collocation gauss(points = 3, intervals = 10);
             minimize final(x) * final(y) / 1 [m^2];
             dynamics { der(x) == u;  der(y) == w; }
