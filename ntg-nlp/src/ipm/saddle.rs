@@ -20,6 +20,9 @@ const SHIFT: f64 = 0.01;
 const CERTAIN: f64 = 1e-3;
 /// Barrier parameters that have fallen by more than this since the last matrix add curvature that is gone. A choice.
 const HIDES: f64 = 100.0;
+/// Choices of signs by which the size of `C` is measured. A choice: two variables are alike in all of them for one pair in
+/// thirty.
+const SIGNS: usize = 6;
 /// The part of the decrease promised by the curvature that a trial point must have.
 const ARMIJO: f64 = 0.1;
 /// How often the distance of the trial point is halved.
@@ -75,8 +78,14 @@ impl<N: Nlp> State<'_, N> {
         self.system.convexify(&self.step.sigma);
         let n = self.x.len() - 1;
         let mut product = vec![0.0; n + 1];
-        self.system.convexification_product(&vec![1.0; n + 1], &mut product);
-        let size = product.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
+        let mut size = 0.0_f64;
+        // What is added to a product `x y` is `(x - y)^2 / 2`, which vanishes where both are alike: several signs.
+        for signs in 0..SIGNS {
+            let side = |j: usize| if (GOLDEN * (signs * j) as f64).fract() < 0.5 { 1.0 } else { -1.0 };
+            let sides: Vec<f64> = (1..=n + 1).map(side).collect();
+            self.system.convexification_product(&sides, &mut product);
+            size = product.iter().fold(size, |most, entry| most.max(entry.abs()));
+        }
         let shift = SHIFT * size;
         if !(size > 0.0 && size.is_finite() && self.system.factorise(1.0, shift)) {
             return None;
