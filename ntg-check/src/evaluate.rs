@@ -1,6 +1,6 @@
 //! The functions of a certificate on boxes of time.
 
-use crate::interval::{Interval, pi};
+use crate::interval::Interval;
 use crate::jet::{Jet, binomial};
 use crate::read::{Axis, Certificate, Flat, Input, Node, Table};
 use crate::real::Real;
@@ -149,9 +149,8 @@ fn operation(name: &str, args: &[Jet]) -> Jet {
         ("sin", [x]) => x.sine_and_cosine().0,
         ("cos", [x]) => x.sine_and_cosine().1,
         ("tan", [x]) => x.sine_and_cosine().0.over(&x.sine_and_cosine().1),
-        // Twice the angle of half the arc: what is above the line and what is below it rise and fall together.
-        ("asin", [x]) => (one + one) * x.over(&(one + (one - x.power(2)).sqrt())).atan(),
-        ("acos", [_]) => Jet::constant(pi().scaled(-1)) - operation("asin", args),
+        ("asin", [x]) => x.atan2(&((one - *x) * (one + *x)).sqrt()),
+        ("acos", [x]) => ((one - *x) * (one + *x)).sqrt().atan2(x),
         ("atan", [x]) => x.atan(),
         ("sinh", [x]) => (x.exp() - (-*x).exp()) * half,
         ("cosh", [x]) => (x.exp() + (-*x).exp()) * half,

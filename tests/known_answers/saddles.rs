@@ -92,7 +92,7 @@ fn a_product_of_two_ends_is_least_at_a_corner() {
     solved(
         "problem Factors {
             duration T = 1;
-            variable a, b in -2 .. 2;
+            variable a in -2 .. 2, b in -2 .. 2;
             state x;
             collocation gauss(points = 2, intervals = 2);
             minimize b * final(x);
