@@ -259,3 +259,20 @@ fn a_limit_with_corners_is_its_rows_bit_for_bit() {
     assert!(corner.is_solved() && corner.iterations == rows.iterations, "{corner}{rows}");
     assert!((corner.objective - rows.objective).abs() <= 1e-12 * rows.objective, "{corner}{rows}");
 }
+
+/// A limit whose corners stay asks nothing of its weights.
+#[test]
+fn a_weight_of_corners_that_stay_may_be_below_0() {
+    let text = |sides: &str| {
+        format!(
+            "problem P {{ {BLOCK} param w = 1; collocation gauss(points = 3, intervals = 12); \
+             minimize integral(u^2) + integral(abs(u)); trajectory {{ w * ({sides}) <= 9; }} }}"
+        )
+    };
+    let many = "abs(u) + abs(v) + abs(x) + abs(u - v) + abs(u + v)";
+    for (sides, is_set) in [("abs(u) + abs(v)", false), (many, true)] {
+        let mut problem = compiled(&text(sides));
+        problem.assign("w", "-1").expect("a parameter");
+        assert_eq!(solve(&problem, &Settings::default()).is_ok(), is_set, "{sides}");
+    }
+}

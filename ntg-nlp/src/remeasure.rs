@@ -37,7 +37,8 @@ pub(crate) const UNSEEN: f64 = 0.5;
 pub(crate) const OUTGROWN: f64 = 100.0;
 /// By how much the new size of what has outgrown its typical size exceeds what it is.
 const MARGIN: f64 = 10.0;
-/// Below so many typical sizes the terms of an objective have their digits. A law: a tenth of what the double format has.
+/// Below so many typical sizes the rounding of an objective's terms, 2e-10 of what it varies by, is nothing beside a gap of
+/// 1e-5. A choice.
 const FAR: f64 = 1e6;
 /// Variables within so many typical sizes, and an objective that varies by at least this part of what it did at the
 /// start, are measured well enough.

@@ -60,8 +60,8 @@ pub struct Residual {
     pub dual: f64,
     /// Largest product of an inequality's multiplier and the distance to the bound that it belongs to.
     pub complementarity: f64,
-    /// Sum of all these products, relative to the objective where that is more than its variation: how far the objective of a
-    /// convex program is from its optimum at most.
+    /// Sum of all these products: how far the objective of a convex program is from its optimum at most. Scaled, it is
+    /// relative to the objective where that is more than its variation.
     pub gap: f64,
     /// Largest product of an equality's multiplier and its residual: what the residual is worth.
     pub worth: f64,
@@ -280,7 +280,6 @@ pub fn residuals(limits: &Limits, scales: &Scales, point: &Point<'_>) -> Residua
             None => found.dual(lambda, scales.objective / factor),
         }
     }
-    found.unscaled.gap /= gap_unit(point.objective);
     found.scaled.gap /= gap_unit(scales.objective * point.objective);
     found.scaled.rounding = ROUNDING * point.largest_term;
     found.scaled = found.scaled.relative_to(s_d);

@@ -1,8 +1,9 @@
 //! Corners of constraints: `abs`, `max`, `min` where they are limited (docs/maths.md, section 18).
 //!
-//! Takes constraints with one bound; in integrals helpers stand for their corners (`epigraph.rs`). Elsewhere, where a corner enters so that the bound limits it on the side of its corner, as in
-//! `max(a, b) <= c`, the constraint has a member for each side of the corner in its place: `a <= c` and `b <= c`. That
-//! is exact at every point, needs no convexity, and no gradient jumps.
+//! Takes constraints with one bound; in integrals helpers stand for their corners (`epigraph.rs`). Elsewhere, where the
+//! bound limits a corner on the side of its corner, as in `max(a, b) <= c`, the constraint has a member for each side of
+//! it: `a <= c` and `b <= c`. That is exact at every point, needs no convexity, and no gradient jumps.
+//! Corners inside sums over an index stay: they have two sides for each member.
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
@@ -39,8 +40,12 @@ impl Elaborator<'_> {
             if !pass.has_corners(own.body) {
                 continue;
             }
-            if own.domain != Domain::Mission || !self.by_helpers(pass, number, growing) {
-                self.by_sides(pass, number, growing);
+            let (is_mission, relied) = (own.domain == Domain::Mission, pass.signs.relied.len());
+            let is_smooth =
+                (is_mission && self.by_helpers(pass, number, growing)) || self.by_sides(pass, number, growing);
+            if !is_smooth {
+                // Nothing rests on the signs that were asked for.
+                pass.signs.relied.truncate(relied);
             }
         }
     }
@@ -60,14 +65,14 @@ impl Elaborator<'_> {
         true
     }
 
-    /// Gives a constraint a member for each side of its corners.
-    fn by_sides(&mut self, pass: &mut Corners, number: usize, growing: bool) {
+    /// Whether a constraint has a member for each side of its corners now.
+    fn by_sides(&mut self, pass: &mut Corners, number: usize, growing: bool) -> bool {
         let own = &self.problem.constraints[number];
         let (body, span) = (own.body, own.span);
         let mut sides = Sides { count: 1, ..Sides::default() };
         let smooth = self.side(pass, &mut sides, body, growing, 0);
         if smooth == body || sides.count > MOST_SIDES {
-            return;
+            return false;
         }
         self.origin(smooth, span);
         pass.treated.extend(sides.treated);
@@ -75,6 +80,7 @@ impl Elaborator<'_> {
         own.body = smooth;
         own.sides = sides.loops.len();
         own.loops.extend(sides.loops);
+        true
     }
 
     /// A node in which one side stands for each corner.

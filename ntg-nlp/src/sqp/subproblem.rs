@@ -16,7 +16,7 @@ use crate::contract::Limits;
 use crate::sparse::Csc;
 
 /// Smallest size by which a row is divided, of rows whose slopes were 1 at the start: a row that hardly depends on anything
-/// here must not outweigh the others. A fit to 350 specs: of 1e-8 and 1e-2 the latter solves more (258 for 254).
+/// here must not outweigh the others. A fit to the specs of the repository: 1e-2 solves 139 of 179, 1e-8 138.
 const SMALLEST_SLOPE: f64 = 1e-2;
 
 /// Which kind of bound it is.

@@ -127,14 +127,9 @@ impl Session {
         }
         let mut seems_infeasible = misses(&outcome) || outcome.status == Status::SubproblemFailed;
         if settings.method != Method::Auto {
-            let beside = match seems_infeasible {
-                true => self.attempt(Attempt::Beside, nlp, task, x, &outcome, budget)?,
-                false => None,
-            };
-            outcome = match beside {
-                Some(next) => better(outcome, next),
-                None => outcome,
-            };
+            if seems_infeasible && let Some(next) = self.attempt(Attempt::Beside, nlp, task, x, &outcome, budget)? {
+                outcome = better(outcome, next);
+            }
         } else {
             for attempt in ATTEMPTS {
                 let is_believed = is_infeasible(&outcome) && (is_guess || nlp.is_linear());
