@@ -8,8 +8,10 @@
 //! begins again with larger ones.
 
 use crate::contract::{Evaluation, Nlp};
+#[cfg(feature = "sqp")]
+use crate::ipm;
 use crate::options::Options;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Start};
 use crate::residuals::{self, GAP, Point, Residual, slot_terms, violation};
 use crate::scaling::{Scales, Slopes, steepest_of_relations, variation};
 use crate::sizes::{Resized, multiples};
@@ -45,6 +47,13 @@ const FAR: f64 = 1e6;
 const NEAR_SIZE: f64 = 10.0;
 const NEAR_VARIATION: f64 = 1e-2;
 
+/// An objective is known well enough where the gap is at most so many times what it may be, as a part of the objective
+/// itself. A choice: solves that end close to what they may need no other one.
+const WIDE: f64 = 2.0;
+/// By how much tolerances are lowered for a small objective at most. A law: a product of 1e-13, a tenth of the lowered
+/// default tolerance, is still beyond the rounding of what has the size 1.
+const LEAST_OBJECTIVE: f64 = 1e-4;
+
 /// What the end of a solve says of the scales that it had.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) enum Measure {
@@ -63,8 +72,8 @@ pub(crate) enum Measure {
 
 /// One of several solves in a row.
 pub(crate) struct Round<'a> {
-    /// Where it starts, if it is not the first point.
-    pub(crate) start: Option<&'a [f64]>,
+    /// Where it starts, if it is not the first point, and what is known about that.
+    pub(crate) start: Option<(&'a [f64], Start<'a>)>,
     /// Whether it may end where variables have outgrown their sizes.
     pub(crate) may_outgrow: bool,
     /// Whether slacks with nothing on their other sides are damped.
@@ -83,14 +92,23 @@ pub(crate) fn until_measured<N: Nlp>(
     let (mut iterations, mut rounds, mut restarts, mut saddles) = (0, 0, 0, 0);
     let mut left_saddle: Option<Outcome> = None;
     let mut undamped: Option<Outcome> = None;
+    let mut wide: Option<(Outcome, f64)> = None;
     loop {
         let left = options.max_iterations.saturating_sub(iterations);
         let is_damped = undamped.is_some();
-        let round = Round { start: start.as_deref(), may_outgrow: restarts < RESTARTS, is_damped };
-        let options = Options { max_iterations: left, ..options.after(began.elapsed()) };
+        let from = match &wide {
+            Some((wide, _)) => Some((wide.x.as_slice(), Start::Warm(wide.multipliers()))),
+            None => start.as_deref().map(|start| (start, Start::Cold)),
+        };
+        let round = Round { start: from, may_outgrow: restarts < RESTARTS, is_damped };
+        let tolerance = options.tolerance * wide.as_ref().map_or(1.0, |(_, objective)| *objective);
+        let options = Options { max_iterations: left, tolerance, ..options.after(began.elapsed()) };
         let (mut outcome, measure) = solve(&resized, round, &options);
         iterations += outcome.iterations;
         (outcome.iterations, outcome.seconds) = (iterations, began.elapsed().as_secs_f64());
+        if let Some((wide, _)) = wide {
+            return unless_worse(left_saddle, narrower(wide, outcome));
+        }
         // Sizes that were outgrown may have become too large.
         let measure = match measure {
             Measure::Holds if resized.is_resized() && outcome.status.has_solution() => {
@@ -104,11 +122,13 @@ pub(crate) fn until_measured<N: Nlp>(
                 continue;
             }
             Measure::Holds => {
-                let end = match undamped {
+                let end = match undamped.take() {
                     Some(undamped) if !outcome.status.has_solution() => Outcome { iterations, ..undamped },
                     _ => outcome,
                 };
-                return unless_worse(left_saddle, end);
+                let Some(objective) = small_objective(&end, &options) else { return unless_worse(left_saddle, end) };
+                wide = Some((end, objective.max(LEAST_OBJECTIVE)));
+                continue;
             }
             Measure::Saddle(_) if saddles == SADDLES => {
                 return unless_worse(left_saddle, Outcome { is_saddle: true, ..outcome });
@@ -145,6 +165,25 @@ fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
         return end;
     }
     Outcome { iterations: end.iterations, seconds: end.seconds, ..saddle }
+}
+
+/// The scaled objective of a solution, where it is so small beside what it varies by that the gap, which is within the
+/// tolerances, is not small beside the objective itself. An objective within the tolerance of 0 is none.
+fn small_objective(end: &Outcome, options: &Options) -> Option<f64> {
+    let beside = end.residuals.unscaled.gap / end.objective.abs();
+    let objective = end.residuals.scaled.gap / beside;
+    let is_small = end.status == Status::Solved && beside > WIDE * GAP * options.tolerance;
+    (is_small && objective > options.tolerance && objective < 1.0).then_some(objective)
+}
+
+/// The end of a solve with lower tolerances for a small objective; where that is none, the end from which it went on, whose
+/// objective is acceptable and no more.
+fn narrower(wide: Outcome, end: Outcome) -> Outcome {
+    let (iterations, seconds) = (end.iterations, end.seconds);
+    match end.status {
+        Status::Solved | Status::Cancelled | Status::TimeLimit => end,
+        _ => Outcome { status: Status::Acceptable, iterations, seconds, ..wide },
+    }
 }
 
 /// Larger sizes of what has outgrown its own at a point: of the scaled variables beyond their limits, and of those that
@@ -268,5 +307,8 @@ pub(crate) fn measure_at_end<N: Nlp>(nlp: &N, outcome: &Outcome, options: &Optio
     if !rows_hold(nlp, &at.rows, &mut slopes, options) {
         return Measure::Rows;
     }
-    sizes_at_end(nlp, outcome, options).map_or(Measure::Holds, Measure::Sizes)
+    if let Some(sizes) = sizes_at_end(nlp, outcome, options) {
+        return Measure::Sizes(sizes);
+    }
+    ipm::below_saddle(nlp, outcome, options).map_or(Measure::Holds, Measure::Saddle)
 }

@@ -101,6 +101,7 @@ impl<'a, N: Nlp> State<'a, N> {
             begin,
             size_limits: vec![],
             is_damped: false,
+            is_warm: matches!(from, Start::Warm(_)),
             x,
             slacks,
             system,

@@ -49,6 +49,8 @@ use crate::remeasure::{Measure, until_measured};
 use crate::squares::Squares;
 use crate::status::Status;
 use line_search::SearchOutcome;
+#[cfg(feature = "sqp")]
+pub(crate) use saddle::below_saddle;
 pub use state::Analysis;
 use state::State;
 
@@ -93,7 +95,7 @@ fn solve_posed<N: Nlp>(
     options: &Options,
 ) -> Outcome {
     until_measured(nlp, options, |nlp, round, options| {
-        let (start, from) = round.start.map_or((start, from), |start| (start, Start::Cold));
+        let (start, from) = round.start.unwrap_or((start, from));
         let outcome = match initial(nlp, start, from, options, analysis) {
             Ok(mut state) => {
                 if round.may_outgrow {

@@ -7,8 +7,10 @@
 
 use super::state::State;
 use super::step::LEAST_PROXIMAL;
+use super::state::Analysis;
 use crate::contract::Nlp;
-use crate::outcome::IterationRecord;
+use crate::options::Options;
+use crate::outcome::{IterationRecord, Outcome, Start};
 
 /// Steps of the power method. A law: the direction need not be the best one, and where two are as good, any of both will do.
 const STEPS: usize = 20;
@@ -34,6 +36,12 @@ const TO_BOUND: f64 = 0.99;
 /// symmetry of the program is one of the first direction. The share is a choice.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const UNEVEN: f64 = 0.2;
+/// How far from a point the Lagrangian is looked at for a corner, and by how much it must be less on both sides as a part of
+/// itself, and of 1. Choices: what is less by a hundred tolerances is beyond rounding.
+const NEAR: f64 = 0.1;
+const LOWER: f64 = 1e-6;
+/// The shift of a matrix that is singular, because what it is of is flat.
+const FLAT: f64 = 1e-8;
 
 /// A direction along which the Lagrangian falls at second order; its largest entry is 1 or -1.
 struct Descent {
@@ -43,16 +51,30 @@ struct Descent {
     curvature: f64,
 }
 
+/// A point beside the end of another method, as [`State::below_saddle`].
+#[cfg(feature = "sqp")]
+pub(crate) fn below_saddle<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<Vec<f64>> {
+    let mut analysis = Analysis::default();
+    let state = State::new(nlp, &end.x, Start::Warm(end.multipliers()), options, &mut analysis);
+    state.ok()?.below_saddle()
+}
+
 impl<N: Nlp> State<'_, N> {
     /// A point beside the present one, in the program's own units, at which the Lagrangian is less than at the present
     /// one; none where the present one is a minimum. Precondition: the present point is a solution by its residuals.
     pub(super) fn below_saddle(&mut self) -> Option<Vec<f64>> {
         // The last matrix was one of a point close by, unless the barrier has hidden there what is curved.
         let is_told = |last: &IterationRecord| !last.is_corrected() && last.barrier <= HIDES * self.mu;
-        if self.history.last().is_some_and(is_told) {
-            return None;
+        let is_told = self.history.last().is_some_and(is_told);
+        let descent = if is_told { None } else { self.descent() };
+        match descent {
+            Some(descent) => self.below_curvature(&descent),
+            None if is_told && self.is_warm => None,
+            None => self.below_corner(),
         }
-        let descent = self.descent()?;
+    }
+
+    fn below_curvature(&mut self, descent: &Descent) -> Option<Vec<f64>> {
         let farthest = self.distance_to_inactive_bounds(&descent.along).min(1.0);
         let here = self.lagrangian()?;
         (0..HALVINGS).map(|halvings| farthest * 0.5_f64.powi(halvings as i32)).find_map(|distance| {
@@ -62,6 +84,31 @@ impl<N: Nlp> State<'_, N> {
             let (sign, change) = if one <= other { (1.0, one) } else { (-1.0, other) };
             (change <= enough).then(|| self.beside(&descent.along, sign * distance))
         })
+    }
+
+    /// A point beside the present one at which the Lagrangian is less although no second derivative says so; none where
+    /// it is no less on one side. Such are corners of what is maximised, `abs(x)` at 0, and `-x^4`.
+    fn below_corner(&mut self) -> Option<Vec<f64>> {
+        let n = self.x.len() - 1;
+        let mut along: Vec<f64> = nearly_one(n).collect();
+        let mut border = vec![0.0; self.step.border.len()];
+        self.system.solve(&mut along, &mut border);
+        let largest = along.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
+        if !(largest > 0.0 && largest.is_finite()) {
+            return None;
+        }
+        along.iter_mut().for_each(|entry| *entry /= largest);
+        along.push(0.0);
+        let distance = self.distance_to_inactive_bounds(&along).min(NEAR);
+        let here = self.lagrangian()?;
+        let enough = LOWER * here.abs().max(1.0);
+        if distance * self.cost_of_active_bounds() > ARMIJO * enough {
+            return None;
+        }
+        let [one, other] = [1.0, -1.0].map(|sign| self.lagrangian_beside(&along, sign * distance));
+        let (one, other) = (one?, other?);
+        let sign = if one <= other { 1.0 } else { -1.0 };
+        (one.max(other) < here - enough).then(|| self.beside(&along, sign * distance))
     }
 
     /// The direction of the most negative curvature by scaled variables, as far as equalities leave it free; none where no
@@ -88,9 +135,10 @@ impl<N: Nlp> State<'_, N> {
         }
         let shift = SHIFT * size;
         if !(size > 0.0 && size.is_finite() && self.system.factorise(1.0, shift)) {
+            self.system.factorise(0.0, FLAT);
             return None;
         }
-        let mut along: Vec<f64> = (1..=n).map(|j| 1.0 + UNEVEN * (GOLDEN * j as f64).fract()).collect();
+        let mut along: Vec<f64> = nearly_one(n).collect();
         along.push(0.0);
         let mut curvature = 0.0;
         let mut added = 0.0;
@@ -122,6 +170,13 @@ impl<N: Nlp> State<'_, N> {
         TO_BOUND / nearest
     }
 
+    /// What a motion along the direction whose product is at hand costs at the active bounds that it does not leave as they are.
+    fn cost_of_active_bounds(&self) -> f64 {
+        let slacks = &self.slacks;
+        let active = slacks.inequalities.iter().zip(slacks.s.iter().zip(&slacks.z)).filter(|(_, (s, z))| s <= z);
+        active.map(|(of, (_, z))| z * self.step.jacobian_x[of.function].abs()).sum()
+    }
+
     /// The Lagrangian at the present point, whose values are known, with the present multipliers.
     fn lagrangian(&self) -> Option<f64> {
         self.lagrangian_of(&self.values)
@@ -151,6 +206,11 @@ impl<N: Nlp> State<'_, N> {
         let scaled: Vec<f64> = self.x.iter().zip(along).map(|(x, d)| x + distance * d).collect();
         self.system.unscaled(self.nlp, &scaled).to_vec()
     }
+}
+
+/// So many numbers near 1, no two of which are alike.
+fn nearly_one(n: usize) -> impl Iterator<Item = f64> {
+    (1..=n).map(|j| 1.0 + UNEVEN * (GOLDEN * j as f64).fract())
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

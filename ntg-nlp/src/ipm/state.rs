@@ -91,6 +91,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) size_limits: Vec<f64>,
     /// Whether slacks with nothing on their other sides are damped.
     pub(super) is_damped: bool,
+    /// Whether the solve began at a solution nearby, with its multipliers.
+    pub(super) is_warm: bool,
 }
 
 /// What one solve leaves to the next: the scaled system with its symbolic analysis. `W` is the program's workspace.

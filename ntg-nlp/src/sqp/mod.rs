@@ -55,7 +55,7 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>,
 /// As [`solve_from`]; norms are as they are.
 fn solve_posed<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
     until_measured(nlp, options, |nlp, round, options| {
-        let (start, from) = round.start.map_or((start, from), |start| (start, None));
+        let (start, from) = round.start.map_or((start, from), |(start, from)| (start, from.multipliers(nlp)));
         let outcome = solve_with_first_scales(nlp, start, from, options);
         let measure = measure_at_end(nlp, &outcome, options);
         (outcome, measure)

@@ -8,9 +8,9 @@ fn end(method: Method, program: &Program, start: &[f64]) -> Outcome {
     solve(program, start, &Options { method, ..Options::default() })
 }
 
-/// Both methods that solve barrier problems, from a stationary start.
-fn objectives(program: &Program, start: &[f64]) -> [f64; 2] {
-    [Method::InteriorPoint, Method::AugmentedLagrangian].map(|method| {
+/// All methods, from a stationary start.
+fn objectives(program: &Program, start: &[f64]) -> [f64; 3] {
+    [Method::InteriorPoint, Method::AugmentedLagrangian, Method::Sqp].map(|method| {
         let found = end(method, program, start);
         assert_eq!(found.status, Status::Solved, "{method:?}");
         assert!(!found.is_saddle, "{method:?} at {:?}", found.x);
@@ -18,7 +18,7 @@ fn objectives(program: &Program, start: &[f64]) -> [f64; 2] {
     })
 }
 
-fn near(found: [f64; 2], known: f64) {
+fn near(found: [f64; 3], known: f64) {
     found.iter().for_each(|found| assert!((found - known).abs() < 1e-6, "{found}, but {known} is known"));
 }
 
@@ -60,4 +60,19 @@ fn flat_valleys_are_minima() {
 fn an_objective_without_a_lower_bound_is_seen_from_its_saddle() {
     let p = dense(&[FREE; 2], &[], |x| vec![x[0].powi(2) - x[1].powi(2)]);
     assert_eq!(end(Method::InteriorPoint, &p, &[0.0, 0.0]).status, Status::Unbounded);
+}
+
+#[test]
+fn a_corner_of_what_is_maximised_is_left() {
+    let p = dense(&[(-1.0, 1.0), FREE], &[(0.0, 0.0)], |x| vec![-x[0].abs(), x[0] - x[1]]);
+    near(objectives(&p, &[0.0, 0.0]), -1.0);
+    // By an equation.
+    let p = dense(&[(-1.0, 1.0), FREE], &[(0.0, 0.0)], |x| vec![-x[1], x[1] - x[0].abs()]);
+    near(objectives(&p, &[0.0, 0.0]), -1.0);
+}
+
+#[test]
+fn a_corner_of_what_is_minimised_is_a_minimum() {
+    let p = dense(&[(-1.0, 1.0), FREE], &[(0.0, 0.0)], |x| vec![x[0].abs() + x[1] * x[1], x[0] - x[1]]);
+    near(objectives(&p, &[0.0, 0.0]), 0.0);
 }

@@ -158,11 +158,12 @@ pub(super) fn have_zero_bounds(nlp: &Transcription) -> bool {
     limits.row_lower.iter().zip(&limits.row_upper).any(is_zero)
 }
 
-/// A bound that is smaller than this part of the size of its terms is what rounding left of 0: `sin(pi)` is 1.2e-16.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// A bound that is smaller than this part of the size of its terms is no other bound than 0: `sin(pi)` is 1.2e-16, and
+/// `-1e-6 [m]` of a height of a kilometre. A law: the tolerance, within which terms are known.
+const NEXT_TO_ZERO: f64 = 1e-8;
 
 /// The larger finite bound, or the size of the terms where both are zero or missing (equation 9.3).
 pub(super) fn scale(lower: f64, upper: f64, size: f64) -> f64 {
     let largest = bound_size((lower, upper));
-    if largest > ROUNDING * size { largest } else { size }
+    if largest > NEXT_TO_ZERO * size { largest } else { size }
 }

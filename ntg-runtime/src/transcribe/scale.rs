@@ -16,6 +16,13 @@ use std::ops::Range;
 /// by as much. A law: that of the acceptable end (1e-6) to the default tolerance.
 const TOO_LARGE: f64 = 1e-2;
 
+/// A guess below this part of one of the same kind is what rounding leaves of 0, as `50 * cos(90 [deg])` beside
+/// `50 * sin(90 [deg])`. A law: a hundred roundings.
+const ROUNDING: f64 = 1e-14;
+/// An inferred size that is so many times as large or as small as those of its kind is that of a function that is singular or
+/// flat at the guess, as a distance is where two vehicles meet. A choice: such sizes are off by 1e-16 or 1e16.
+const OTHER_KIND: f64 = 1e6;
+
 /// An output in all phases of an agent.
 struct WholeOutput<'a> {
     name: &'a str,
@@ -63,14 +70,21 @@ impl Transcription<'_> {
     /// Equation 5.5: the largest guessed coefficient or guess; else what balances constraints; else the unit.
     fn automatic(&self, guess: &[f64], scale: &mut [f64]) {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
-        let mut outputs = vec![];
-        for agent in &layout.agents {
-            for output in self.outputs_of(agent.phases.clone()) {
-                let guessed = output.coefficients.iter().map(|v| guess[*v as usize].abs());
-                let size = usable(guessed.fold(0.0, f64::max), output.unit);
-                output.coefficients.iter().for_each(|v| scale[*v as usize] = size);
-                outputs.push(output.coefficients);
+        let agents = layout.agents.iter();
+        let outputs: Vec<WholeOutput> = agents.flat_map(|agent| self.outputs_of(agent.phases.clone())).collect();
+        let mut guess = guess.to_vec();
+        let largest = |output: &WholeOutput, of: &[f64]| {
+            output.coefficients.iter().map(|v| of[*v as usize].abs()).fold(0.0, f64::max)
+        };
+        let mut guessed: Vec<f64> = outputs.iter().map(|output| largest(output, &guess)).collect();
+        let most: Vec<f64> = outputs.iter().map(|output| of_kind(&outputs, &guessed, output, f64::max)).collect();
+        for ((output, guessed), most) in outputs.iter().zip(&mut guessed).zip(most) {
+            if *guessed < ROUNDING * most {
+                *guessed = 0.0;
+                output.coefficients.iter().for_each(|v| guess[*v as usize] = 0.0);
             }
+            let size = usable(*guessed, output.unit);
+            output.coefficients.iter().for_each(|v| scale[*v as usize] = size);
         }
         let size = |variable: usize, unit: &Unit| match guess[variable].abs() {
             0.0 => usable(bound_size((self.limits.lower[variable], self.limits.upper[variable])), unit),
@@ -84,7 +98,17 @@ impl Transcription<'_> {
                 scale[variable] = size(variable, &declared.unit);
             }
         }
-        self.balance_sizes(&outputs, (guess, guess), scale);
+        let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
+        self.balance_sizes(&groups, (&guess, &guess), scale);
+        for (output, own) in outputs.iter().zip(&guessed) {
+            let least = of_kind(&outputs, &guessed, output, f64::min);
+            let most = of_kind(&outputs, &guessed, output, f64::max);
+            let size = largest(output, scale);
+            if size != *own && most > 0.0 && (size * OTHER_KIND < least || size > OTHER_KIND * most) {
+                let size = size.clamp(least, most);
+                output.coefficients.iter().for_each(|v| scale[*v as usize] = size);
+            }
+        }
     }
 
     /// Replaces sizes that a point shows to be too large, if it is a solution (docs/maths.md, section 11.12): what a solution
@@ -118,8 +142,7 @@ impl Transcription<'_> {
         let mut balanced = vec![0.0; scale.len()];
         let variables: Vec<Vec<u32>> = groups.iter().map(|(group, _)| group.clone()).collect();
         self.balance_sizes(&variables, (x, &known), &mut balanced);
-        let mut units = vec![1.0; scale.len()];
-        groups.iter().for_each(|(group, unit)| group.iter().for_each(|v| units[*v as usize] = *unit));
+        let units = self.units();
         let smaller = |v: usize| {
             let size = balanced[v].max(largest[v]);
             let least = match bound_size((self.limits.lower[v], self.limits.upper[v])) {
@@ -138,6 +161,18 @@ impl Transcription<'_> {
         let agents = self.model.layout.agents.iter();
         let outputs = agents.flat_map(|agent| self.outputs_of(agent.phases.clone()));
         outputs.map(|output| (output.coefficients, output.unit.factor)).collect()
+    }
+
+    /// The unit of each variable: that of its output or declaration.
+    pub(super) fn units(&self) -> Vec<f64> {
+        let mut units = vec![1.0; self.limits.lower.len()];
+        self.groups().into_iter().for_each(|(group, unit)| group.iter().for_each(|v| units[*v as usize] = unit));
+        let (structure, layout) = (&self.model.structure, &self.model.layout);
+        for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
+            let own = units.iter_mut().skip(*first as usize).take(family_len(declared.family));
+            own.for_each(|unit| *unit = declared.unit.factor);
+        }
+        units
     }
 
     /// The number of the size of each variable: the coefficients of one output in one agent share theirs.
@@ -229,6 +264,19 @@ impl Transcription<'_> {
         }
         if found { Ok(()) } else { Err(names::unknown("a typical size", name, structure)) }
     }
+}
+
+/// The least or largest guess that is not 0 of other outputs of the kind of one: members of one array, or outputs with one unit.
+/// 0 where there is none.
+fn of_kind(outputs: &[WholeOutput], guessed: &[f64], kind: &WholeOutput, which: fn(f64, f64) -> f64) -> f64 {
+    let is_of_kind = |output: &WholeOutput| {
+        if output.coefficients == kind.coefficients {
+            return false;
+        }
+        output.name == kind.name || (!kind.unit.symbol.is_empty() && output.unit.symbol == kind.unit.symbol)
+    };
+    let own = outputs.iter().zip(guessed).filter(|(output, guessed)| **guessed > 0.0 && is_of_kind(output));
+    own.map(|(_, guessed)| *guessed).reduce(which).unwrap_or(0.0)
 }
 
 /// A size that can be divided by: the given one if it is positive and finite, else the unit.

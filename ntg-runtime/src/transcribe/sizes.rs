@@ -15,6 +15,12 @@ use std::ops::Range;
 /// Sizes below this fraction of what balances their constraints are rounding.
 const ROUNDING: f64 = 1e-10;
 
+/// A guess and a bound that are so small beside the unit may be rounding, as `10 * cos(90 [deg])` is: whether they are, other
+/// constraints tell. A choice: what they tell does not hang on it.
+const DOUBTFUL: f64 = 1e-6;
+/// A bound below this part of a size that other constraints tell is met anyway, and tells no size. A law: the tolerance.
+const MET: f64 = 1e-8;
+
 /// An integral whose value is less than the first fraction of its value beside the point is as large as that fraction of it;
 /// less than the second, it is stationary at the point but for rounding. Those of the objective (5.3).
 const LEAST_AT_POINT: f64 = 1e-2;
@@ -22,7 +28,7 @@ const STATIONARY: f64 = 1e-6;
 
 /// What shares a size (an output in all phases of an agent, a variable, a duration), and all constraints in which it
 /// stands. Every member of a constraint counts as one of its own: members may differ in size by any factor.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Balance {
     /// The group of each variable.
     group: Vec<usize>,
@@ -32,6 +38,8 @@ pub(super) struct Balance {
     is_integral: Vec<bool>,
     /// A bound of the group's own variables; 0 where there is none.
     own_bound: Vec<f64>,
+    /// Bounds of each group alone that are not above this tell no size.
+    nothing: Vec<f64>,
     /// For each group the constraints in which it stands, with the largest slope by a slot of the group.
     constraints: Vec<Vec<(usize, f64)>>,
     /// For each constraint the groups in it, with slopes.
@@ -72,21 +80,62 @@ impl Transcription<'_> {
             return;
         }
         self.collect_slopes(&at, &mut balance);
+        let guessed = balance.size.clone();
+        let units = self.units();
+        self.forget_doubtful((x, scale, &units), &at, &mut balance);
         balance.forget_rounding();
         let known = balance.size.clone();
+        self.find_sizes((x, scale), &at, &mut balance);
+        for ((scale, unit), &group) in scale.iter_mut().zip(units).zip(&balance.group) {
+            match balance.size[group] {
+                Some(size) if known[group].is_none() => *scale = size,
+                None if guessed[group].is_some() => *scale = unit,
+                _ => {}
+            }
+        }
+    }
+
+    /// Sizes of what has none. `scale` has those that are taken until then.
+    fn find_sizes(&self, (x, scale): (&[f64], &[f64]), at: &Evaluation, balance: &mut Balance) {
         balance.propagate(&[Balance::balanced]);
-        self.size_integrals(x, scale, &mut balance);
+        self.size_integrals(x, scale, balance);
         balance.propagate(&[Balance::balanced]);
         if balance.size.contains(&None) {
-            balance.objective = self.objective_size(&at, &balance);
-            balance.curvature = self.curvatures(x, &balance);
+            balance.objective = self.objective_size(at, balance);
+            balance.curvature = self.curvatures(x, balance);
             balance.propagate(&[Balance::balanced, Balance::curved, Balance::partly_balanced]);
         }
-        for (scale, group) in scale.iter_mut().zip(&balance.group) {
-            if known[*group].is_none()
-                && let Some(size) = balance.size[*group]
-            {
-                *scale = size;
+    }
+
+    /// Forgets what the guess and bounds say of groups where other constraints tell sizes beside which that is rounding; and
+    /// where none does, but the objective varies by rounding alone.
+    fn forget_doubtful(&self, (x, scale, units): (&[f64], &[f64], &[f64]), at: &Evaluation, balance: &mut Balance) {
+        let mut unit = vec![1.0; balance.size.len()];
+        units.iter().zip(&balance.group).for_each(|(own, group)| unit[*group] = *own);
+        let mut trial = balance.clone();
+        trial.nothing = unit.iter().map(|unit| DOUBTFUL * unit).collect();
+        let is_small = |size: Option<f64>, group: usize| size.is_some_and(|size| size < trial.nothing[group]);
+        let doubtful: Vec<usize> = (0..unit.len())
+            .filter(|&group| is_small(balance.size[group].or_else(|| balance.least_own_size(group)), group))
+            .collect();
+        if doubtful.is_empty() {
+            return;
+        }
+        doubtful.iter().for_each(|group| trial.size[*group] = None);
+        self.find_sizes((x, scale), at, &mut trial);
+let size = self.objective_size(at, balance).max(at.objective.abs());
+        for group in doubtful {
+            let own = balance.size[group];
+            match trial.size[group] {
+                Some(told) => {
+                    balance.nothing[group] = MET * told;
+                    balance.size[group] = own.filter(|own| *own >= MET * told);
+                }
+                None if self.objective_size(at, &balance.alone(group)) < DOUBTFUL * size => {
+                    balance.nothing[group] = trial.nothing[group];
+                    balance.size[group] = None;
+                }
+                None => {}
             }
         }
     }
@@ -107,6 +156,7 @@ impl Transcription<'_> {
                 bound_size((self.limits.lower[v], self.limits.upper[v]))
             });
             balance.own_bound.push(bounds.filter(|bound| bound.is_finite()).fold(0.0, f64::max));
+            balance.nothing.push(0.0);
             balance.size.push(is_known.then_some(largest));
             balance.is_integral.push(variables[0] as usize >= integrals);
         }
@@ -247,6 +297,13 @@ impl Balance {
         .collect()
     }
 
+    /// The sizes of one group alone.
+    fn alone(&self, group: usize) -> Self {
+        let mut size = vec![None; self.size.len()];
+        size[group] = self.size[group];
+        Self { size, group: self.group.clone(), ..Self::default() }
+    }
+
     /// The size of a group, if it is known.
     pub(super) fn size_of(&self, group: usize) -> Option<f64> {
         self.size[group]
@@ -285,11 +342,18 @@ impl Balance {
         self.is_inequality[constraint] && term > 0.0 && term < ROUNDING * self.bound[constraint]
     }
 
+    /// The least size that a bound of a group alone tells.
+    fn least_own_size(&self, group: usize) -> Option<f64> {
+        let alone = self.constraints[group].iter().filter(|(constraint, _)| self.groups[*constraint].len() == 1);
+        let sizes = alone.map(|&(constraint, slope)| self.known_size(constraint, 0.0) / slope);
+        sizes.chain([self.own_bound[group]]).filter(|size| *size > 0.0).reduce(f64::min)
+    }
+
     /// The least size with which a group balances one of its constraints or reaches its own bound: a larger one would
     /// make it the largest term of that constraint. `partly`: of constraints in which other groups have no size either
     /// the known terms count.
     fn candidate(&self, group: usize, partly: bool) -> Option<f64> {
-        let own = Some(self.own_bound[group]).filter(|bound| *bound > 0.0);
+        let own = Some(self.own_bound[group]).filter(|bound| *bound > self.nothing[group]);
         let balanced = self.constraints[group].iter().filter_map(|&(constraint, slope)| {
             let mut others = self.groups[constraint].iter().filter(|(other, _)| *other != group);
             if !partly && others.any(|(other, _)| self.size[*other].is_none()) {
@@ -297,7 +361,8 @@ impl Balance {
             }
             let term = self.largest_term(constraint, group);
             let size = self.known_size(constraint, term) / slope;
-            (size.is_normal() && !self.is_flat(constraint, term)).then_some(size)
+            let is_told = self.groups[constraint].len() > 1 || size > self.nothing[group];
+            (size.is_normal() && is_told && !self.is_flat(constraint, term)).then_some(size)
         });
         own.into_iter().chain(balanced).reduce(f64::min)
     }

@@ -80,6 +80,12 @@ impl Jet {
         self.chain(self.v.powf(k), k * self.v.powf(k - 1.0), k * (k - 1.0) * self.v.powf(k - 2.0))
     }
 
+    /// With the derivative 0 at the corner.
+    pub fn abs(&self) -> Self {
+        let slope = if self.v == 0.0 { 0.0 } else { self.v.signum() };
+        self.chain(self.v.abs(), slope, 0.0)
+    }
+
     pub fn sqrt(&self) -> Self {
         self.powf(0.5)
     }
