@@ -146,7 +146,8 @@ fn no_floor_of_the_solver_knows_a_floor_above_it() {
         &["kkt", "residuals"],
         &["outcome"],
         &["remeasure", "sensitivity", "squares", "stopping"],
-        &["ipm", "sqp"],
+        &["ipm"],
+        &["sqp"],
         &["method"],
     ];
     assert_floors("ntg-nlp/src", floors);

@@ -8,8 +8,6 @@
 //! begins again with larger ones.
 
 use crate::contract::{Evaluation, Nlp};
-#[cfg(feature = "sqp")]
-use crate::ipm;
 use crate::options::Options;
 use crate::outcome::{Outcome, Start};
 use crate::residuals::{self, GAP, Point, Residual, slot_terms, violation};
@@ -307,8 +305,5 @@ pub(crate) fn measure_at_end<N: Nlp>(nlp: &N, outcome: &Outcome, options: &Optio
     if !rows_hold(nlp, &at.rows, &mut slopes, options) {
         return Measure::Rows;
     }
-    if let Some(sizes) = sizes_at_end(nlp, outcome, options) {
-        return Measure::Sizes(sizes);
-    }
-    ipm::below_saddle(nlp, outcome, options).map_or(Measure::Holds, Measure::Saddle)
+    sizes_at_end(nlp, outcome, options).map_or(Measure::Holds, Measure::Sizes)
 }

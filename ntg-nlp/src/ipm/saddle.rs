@@ -5,9 +5,9 @@
 //! valleys, Newton's method ends there although the objective is less on all sides. The matrix (11.2) with exact second
 //! derivatives tells: at a minimum it is positive definite but for the border rows.
 
+use super::state::Analysis;
 use super::state::State;
 use super::step::LEAST_PROXIMAL;
-use super::state::Analysis;
 use crate::contract::Nlp;
 use crate::options::Options;
 use crate::outcome::{IterationRecord, Outcome, Start};

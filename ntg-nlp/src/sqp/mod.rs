@@ -25,9 +25,10 @@ mod subproblem;
 
 use crate::check::refusal;
 use crate::contract::Nlp;
+use crate::ipm::below_saddle;
 use crate::options::Options;
 use crate::outcome::{Multipliers, Outcome, Start};
-use crate::remeasure::{measure_at_end, until_measured};
+use crate::remeasure::{Measure, measure_at_end, until_measured};
 use crate::squares::Squares;
 use crate::status::Status;
 use run::Run;
@@ -57,7 +58,12 @@ fn solve_posed<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, op
     until_measured(nlp, options, |nlp, round, options| {
         let (start, from) = round.start.map_or((start, from), |(start, from)| (start, from.multipliers(nlp)));
         let outcome = solve_with_first_scales(nlp, start, from, options);
-        let measure = measure_at_end(nlp, &outcome, options);
+        let measure = match measure_at_end(nlp, &outcome, options) {
+            Measure::Holds if outcome.status.has_solution() => {
+                below_saddle(nlp, &outcome, options).map_or(Measure::Holds, Measure::Saddle)
+            }
+            measure => measure,
+        };
         (outcome, measure)
     })
 }

@@ -19,12 +19,17 @@ use ntg_structure::{Degree, Domain};
 /// A miss smaller than this part of the numbers it comes from is rounding.
 const ROUNDING: f64 = 1e-7;
 
-/// Collects the linear equalities that stand at single points.
-pub(crate) fn linear_system(
-    frame: &Frame,
-    elements: &Elements,
-    bounds: &[(f64, f64)],
-) -> Result<LinearSystem, SetupError> {
+/// What boundary conditions decide.
+pub(crate) struct Decided {
+    /// The linear equalities that stand at single points.
+    pub(crate) system: LinearSystem,
+    /// The inequalities at the ends of phases whose inputs are all fixed, and that are met on a bound: with the conditions
+    /// that fix the inputs they leave no interior, and say nothing.
+    pub(crate) met: Vec<usize>,
+}
+
+/// Collects what boundary conditions decide.
+pub(crate) fn decided(frame: &Frame, elements: &Elements, bounds: &[(f64, f64)]) -> Result<Decided, SetupError> {
     let mut system = LinearSystem::default();
     for (variable, (lower, upper)) in bounds.iter().enumerate() {
         if lower == upper {
@@ -62,8 +67,8 @@ pub(crate) fn linear_system(
             check(frame, elements, (row, known.constant), known.tolerance(), Why::Conditions)?;
         }
     }
-    known_rows(frame, elements, &system)?;
-    Ok(system)
+    let met = known_rows(frame, elements, &system)?;
+    Ok(Decided { system, met })
 }
 
 /// For every row its linear combination, if it is linear and stands at a single point.
@@ -121,8 +126,9 @@ fn affine_row(block: &Block, values: &BlockValues, element: usize, row: usize) -
     sum
 }
 
-/// Checks rows at the ends of phases whose own slots are all determined.
-fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Result<(), SetupError> {
+/// Checks rows at the ends of phases whose own slots are all determined; the inequalities among them that are met on a bound.
+fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Result<Vec<usize>, SetupError> {
+    let mut met = vec![];
     for (index, group) in elements.batches.iter().enumerate() {
         let block = &elements.blocks[index];
         let mut u = vec![f64::NAN; block.slots * block.elements];
@@ -148,10 +154,22 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
             let (target, value) = (target as usize, work.values[at]);
             if elements.rows[target].maker == (index, element, row) && value.is_finite() {
                 check(frame, elements, (target, value), ROUNDING * value.abs(), Why::Conditions)?;
+                if is_on_bound(frame, elements, target, value) {
+                    met.push(target);
+                }
             }
         }
     }
-    Ok(())
+    Ok(met)
+}
+
+/// Whether a row is an inequality, and on one of its bounds but for rounding.
+fn is_on_bound(frame: &Frame, elements: &Elements, row: usize, value: f64) -> bool {
+    let (lower, upper) = (elements.lower[row], elements.upper[row]);
+    let RowKind::Constraint(constraint) = elements.rows[row].kind else { return false };
+    let unit = frame.structure.constraints[constraint].unit.factor;
+    let near = |bound: f64| (value - bound).abs() <= ROUNDING * (value.abs().max(bound.abs()) + unit);
+    lower < upper && (near(lower) || near(upper))
 }
 
 /// The slots on which a row depends.

@@ -50,6 +50,7 @@ pub use tables::interpolants;
 
 use crate::problem::Problem;
 use crate::status::NotFinite;
+use contradictions::Decided;
 use elements::Elements;
 use frame::Frame;
 use layout::Layout;
@@ -126,8 +127,8 @@ impl<'p> Transcription<'p> {
         let frame = model.frame(problem);
         let bounds = rows::variable_bounds(&frame)?;
         let elements = elements::elements(&frame)?;
-        let linear = contradictions::linear_system(&frame, &elements, &bounds)?;
-        let mut limits = limits(&model.structure, &elements, &bounds);
+        let Decided { system: linear, met } = contradictions::decided(&frame, &elements, &bounds)?;
+        let mut limits = limits(&model.structure, &elements, (&bounds, &met));
         limits.angles = angles(&model.structure, &model.layout);
         let mut transcription =
             Self { problem, model: Arc::new(model), elements, limits, has_named_size: vec![], linear };
@@ -160,9 +161,11 @@ impl<'p> Transcription<'p> {
         let frame = model.frame(self.problem);
         let bounds = rows::variable_bounds(&frame)?;
         self.elements.take_data(&frame)?;
-        self.linear = contradictions::linear_system(&frame, &self.elements, &bounds)?;
+        let decided = contradictions::decided(&frame, &self.elements, &bounds)?;
+        self.linear = decided.system;
         let Limits { alike, angles, .. } = std::mem::take(&mut self.limits);
-        self.limits = Limits { alike, angles, ..limits(&self.model.structure, &self.elements, &bounds) };
+        self.limits =
+            Limits { alike, angles, ..limits(&self.model.structure, &self.elements, (&bounds, &decided.met)) };
         self.model = Arc::new(model);
         Ok(Change::Data)
     }
@@ -301,8 +304,12 @@ fn angles(structure: &Structure, layout: &Layout) -> Vec<(u32, f64)> {
     each.flat_map(|(radian, coefficients)| coefficients.iter().map(move |variable| (*variable, radian))).collect()
 }
 
-/// Bounds without sizes.
-fn limits(structure: &Structure, elements: &Elements, bounds: &[(f64, f64)]) -> Limits {
+/// Bounds without sizes, and without those of rows that boundary conditions meet.
+fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f64)], &[usize])) -> Limits {
+    let (mut row_lower, mut row_upper) = (elements.lower.clone(), elements.upper.clone());
+    for &row in met {
+        (row_lower[row], row_upper[row]) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
     let is_norm = |row: &RowInfo| matches!(row.kind, RowKind::Constraint(c) if structure.norms.contains(&c));
     Limits {
         lower: bounds.iter().map(|b| b.0).collect(),
@@ -310,8 +317,8 @@ fn limits(structure: &Structure, elements: &Elements, bounds: &[(f64, f64)]) -> 
         scale: vec![1.0; bounds.len()],
         alike: vec![],
         relation: elements.relations.of_row.clone(),
-        row_lower: elements.lower.clone(),
-        row_upper: elements.upper.clone(),
+        row_lower,
+        row_upper,
         norms: if structure.norms.is_empty() { vec![] } else { elements.rows.iter().map(is_norm).collect() },
         angles: vec![],
         row_scale: vec![1.0; elements.rows.len()],

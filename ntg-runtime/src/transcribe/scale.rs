@@ -16,9 +16,9 @@ use std::ops::Range;
 /// by as much. A law: that of the acceptable end (1e-6) to the default tolerance.
 const TOO_LARGE: f64 = 1e-2;
 
-/// A guess below this part of one of the same kind is what rounding leaves of 0, as `50 * cos(90 [deg])` beside
-/// `50 * sin(90 [deg])`. A law: a hundred roundings.
-const ROUNDING: f64 = 1e-14;
+/// A guess that is such a part of one of the same kind is what rounding leaves of 0, as `50 * cos(90 [deg])` beside
+/// `50 * sin(90 [deg])`. A law: from a part of one rounding to a hundred of them; what is smaller is meant.
+const ROUNDING: Range<f64> = 2e-17..1e-14;
 /// An inferred size that is so many times as large or as small as those of its kind is that of a function that is singular or
 /// flat at the guess, as a distance is where two vehicles meet. A choice: such sizes are off by 1e-16 or 1e16.
 const OTHER_KIND: f64 = 1e6;
@@ -79,7 +79,7 @@ impl Transcription<'_> {
         let mut guessed: Vec<f64> = outputs.iter().map(|output| largest(output, &guess)).collect();
         let most: Vec<f64> = outputs.iter().map(|output| of_kind(&outputs, &guessed, output, f64::max)).collect();
         for ((output, guessed), most) in outputs.iter().zip(&mut guessed).zip(most) {
-            if *guessed < ROUNDING * most {
+            if most > 0.0 && ROUNDING.contains(&(*guessed / most)) {
                 *guessed = 0.0;
                 output.coefficients.iter().for_each(|v| guess[*v as usize] = 0.0);
             }

@@ -123,7 +123,7 @@ impl Transcription<'_> {
         }
         doubtful.iter().for_each(|group| trial.size[*group] = None);
         self.find_sizes((x, scale), at, &mut trial);
-let size = self.objective_size(at, balance).max(at.objective.abs());
+        let size = self.objective_size(at, balance).max(at.objective.abs());
         for group in doubtful {
             let own = balance.size[group];
             match trial.size[group] {
