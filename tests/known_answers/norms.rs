@@ -66,3 +66,31 @@ fn a_flat_output_may_have_such_a_limit() {
         close(Shipped::text(&text).solve().objective, 20f64.sqrt(), 1e-6);
     }
 }
+
+/// A glide slope down to the pad: at the end the cone is its apex, where the norm has no gradient and nothing is left to
+/// choose. As a limit and as the square of it, the same.
+#[test]
+fn a_cone_may_end_at_its_apex() {
+    let descent = |slope: &str| {
+        let text = format!(
+            "problem Descent {{
+                duration T = 10 [s];
+                state r[3] [m], v[3] [m/s];
+                input a[3] [m/s^2];
+                collocation gauss(points = 3, intervals = 12);
+                minimize integral(dot(a, a)) / 1 [m^2/s^3];
+                dynamics {{ der(r) == v;  der(v) == a; }}
+                trajectory {{ {slope} }}
+                initial {{ r == (10, 8, 6) [m];  v == (-4, 0, 0) [m/s]; }}
+                final {{ r == 0;  v == 0; }}
+            }}"
+        );
+        let report = Shipped::text(&text).solve();
+        assert!(report.iterations <= 60, "{slope}: {} iterations", report.iterations);
+        report.objective
+    };
+    let known = descent("r[1]^2 >= tan(30 [deg])^2 * dot(r[2 .. 3], r[2 .. 3]);  r[1] >= 0;");
+    close(descent("r[1] >= tan(30 [deg]) * norm(r[2 .. 3]);"), known, 1e-6);
+    close(descent("norm(r[2 .. 3]) <= r[1] / tan(30 [deg]);"), known, 1e-6);
+    close(descent("r[1] - tan(30 [deg]) * hypot(r[2], r[3]) >= 0;"), known, 1e-6);
+}

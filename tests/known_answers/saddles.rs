@@ -102,3 +102,28 @@ fn a_product_of_two_ends_is_least_at_a_corner() {
         -4.0,
     );
 }
+
+/// `maximize` of something with a corner at the guess of 0, by every method.
+fn leaves_its_corner(objective: &str, known: f64) {
+    let text = format!(
+        "problem Corner {{
+            duration T = 1;
+            state x;
+            input u in -1 .. 1;
+            collocation gauss(points = 3, intervals = 10);
+            maximize {objective};
+            dynamics {{ der(x) == u; }}
+            initial {{ x == 0; }}
+        }}"
+    );
+    for method in [Method::InteriorPoint, Method::Sqp] {
+        close(Shipped::text(&text).by(method).solve().objective, known, 1e-6);
+    }
+}
+
+#[test]
+fn a_maximum_does_not_end_at_its_least_corner() {
+    leaves_its_corner("abs(final(x))", 1.0);
+    leaves_its_corner("abs(integral(u * t))", 0.5);
+    leaves_its_corner("max(final(x), -final(x))", 1.0);
+}

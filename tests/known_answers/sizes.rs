@@ -139,3 +139,103 @@ fn bounds_of_a_duration_may_be_many_decades_apart() {
     }";
     close(Shipped::text(text).solve().objective, 1e-4, 1e-6);
 }
+
+/// A ramp that is followed by one output, which begins and ends at what may be rounding.
+fn ramp(first: &str, last: &str) -> f64 {
+    let text = format!(
+        "problem Ramp {{
+            duration T = 1;
+            output y: spline(order = 5, intervals = 6);
+            minimize integral((y - t)^2 + 1e-3 * der(y)^2);
+            initial {{ y == {first}; }}
+            final {{ y == {last}; }}
+        }}"
+    );
+    Shipped::text(&text).solve().objective
+}
+
+#[test]
+fn a_boundary_value_that_is_rounding_is_no_size() {
+    let known = ramp("0", "0");
+    close(known, 0.030_935_431_18, 1e-8);
+    let near = ["cos(90 [deg])", "sin(180 [deg])", "10 * sin(2 * pi)", "1e-300", "1e-16", "1e-13", "1e-11", "1e-9"];
+    for first in near {
+        for last in ["0", "sin(180 [deg])", "1e-12"] {
+            close(ramp(first, last), known, 1e-6);
+        }
+    }
+}
+
+#[test]
+fn a_course_may_point_anywhere() {
+    // What is flown does not hang on the direction: components that vanish do so to rounding.
+    let cost = |degrees: f64| {
+        let text = format!(
+            "problem Course {{
+                duration T = 60 [s];
+                param h = {degrees} [deg];
+                state x, y [m], vx, vy [m/s];
+                input ax, ay [m/s^2];
+                collocation gauss(points = 3, intervals = 20);
+                minimize integral((x * cos(h) + y * sin(h) - 10 [m/s] * t)^2
+                    + (y * cos(h) - x * sin(h) - 40 [m] * sin(t / 8 [s]))^2) / 1 [m^2*s]
+                    + 10 * integral(ax^2 + ay^2) / 1 [m^2/s^3];
+                dynamics {{ der(x) == vx;  der(y) == vy;  der(vx) == ax;  der(vy) == ay; }}
+                initial {{ x == 0;  y == 0;  vx == 10 [m/s] * cos(h);  vy == 10 [m/s] * sin(h); }}
+            }}"
+        );
+        Shipped::text(&text).solve().objective
+    };
+    let known = cost(33.0);
+    for degrees in [0.0, 89.0, 90.0, 180.0, 270.0, 360.0] {
+        close(cost(degrees), known, 1e-6);
+    }
+}
+
+#[test]
+fn robots_on_crossing_lines_leave_them() {
+    // Components that are 0 all along the guess have the size of the others of their array, where distances are singular:
+    // robots that meet at the crossing.
+    let text = "problem Crossing {
+        duration T in 1 .. 60 [s];
+        output p[2, 2] [m]: spline(order = 4, intervals = 12, smoothness = 2);
+        minimize T;
+        trajectory {
+            for i in 1 .. 2 { dot(der(p[i]), der(p[i])) <= 1 [m^2/s^2]; }
+            norm(p[1] - p[2]) >= 1 [m];
+        }
+        initial { p[1] == (-5, 0) [m];  p[2] == (0, -5) [m]; }
+        final { p[1] == (5, 0) [m];  p[2] == (0, 5) [m]; }
+    }";
+    let report = Shipped::text(text).solve();
+    assert!(report.objective < 10.2, "one waits for the other: {}", report.objective);
+}
+
+/// The least velocity over 1 km in 20000 s with a thrust of 20 mm/s^2: two pulses and a coast between them, whose ends are
+/// knots.
+#[test]
+fn an_objective_that_is_small_beside_what_it_may_be_is_exact() {
+    let (a, distance) = (0.02_f64, 1000.0_f64);
+    for time in [2000.0_f64, 20000.0, 60000.0] {
+        let pulse = 0.5 * (time - (time * time - 4.0 * distance / a).sqrt());
+        let first = pulse / time;
+        let coast: Vec<String> =
+            (0..=12).map(|k| format!("{}", first + (1.0 - 2.0 * first) * f64::from(k) / 12.0)).collect();
+        let text = format!(
+            "problem Transfer {{
+                duration T = {time} [s];
+                state r[2] [m], v[2] [m/s];
+                input a[2] [m/s^2];
+                collocation gauss(points = 3, knots = (0, {}, 1), inequalities = points);
+                minimize dv [m/s]: integral(norm(a));
+                dynamics {{ der(r) == v;  der(v) == a; }}
+                trajectory {{ norm(a) <= {a} [m/s^2]; }}
+                initial {{ r == 0;  v == 0; }}
+                final {{ r == (600.0, 800.0) [m];  v == 0; }}
+            }}",
+            coast.join(", ")
+        );
+        let report = Shipped::text(&text).solve();
+        close(report.objective, 2.0 * a * pulse, 1e-4);
+    }
+}

@@ -23,8 +23,8 @@ const ROUNDING: f64 = 1e-7;
 pub(crate) struct Decided {
     /// The linear equalities that stand at single points.
     pub(crate) system: LinearSystem,
-    /// The inequalities at the ends of phases whose inputs are all fixed, and that are met on a bound: with the conditions
-    /// that fix the inputs they leave no interior, and say nothing.
+    /// The inequalities at the ends of phases that are not linear, whose inputs are all fixed, and that are met on a bound:
+    /// they say nothing, and a cone at its apex has no gradient to say it with.
     pub(crate) met: Vec<usize>,
 }
 
@@ -154,7 +154,7 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
             let (target, value) = (target as usize, work.values[at]);
             if elements.rows[target].maker == (index, element, row) && value.is_finite() {
                 check(frame, elements, (target, value), ROUNDING * value.abs(), Why::Conditions)?;
-                if is_on_bound(frame, elements, target, value) {
+                if group.degree[row] > Degree::Linear && is_on_bound(frame, elements, target, value) {
                     met.push(target);
                 }
             }
