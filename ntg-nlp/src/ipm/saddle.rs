@@ -5,12 +5,16 @@
 //! valleys, Newton's method ends there although the objective is less on all sides. The matrix (11.2) with exact second
 //! derivatives tells: at a minimum it is positive definite but for the border rows.
 
+#[cfg(feature = "sqp")]
 use super::state::Analysis;
 use super::state::State;
 use super::step::LEAST_PROXIMAL;
 use crate::contract::Nlp;
+#[cfg(feature = "sqp")]
 use crate::options::Options;
-use crate::outcome::{IterationRecord, Outcome, Start};
+use crate::outcome::IterationRecord;
+#[cfg(feature = "sqp")]
+use crate::outcome::{Outcome, Start};
 
 /// Steps of the power method. A law: the direction need not be the best one, and where two are as good, any of both will do.
 const STEPS: usize = 20;
