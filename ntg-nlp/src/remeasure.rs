@@ -166,7 +166,7 @@ fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
 }
 
 /// The scaled objective of a solution, where it is so small beside what it varies by that the gap, which is within the
-/// tolerances, is not small beside the objective itself. An objective within the tolerance of 0 is none.
+/// tolerances, is not small beside the objective itself, (6.4b). An objective within the tolerance of 0 is none.
 fn small_objective(end: &Outcome, options: &Options) -> Option<f64> {
     let beside = end.residuals.unscaled.gap / end.objective.abs();
     let objective = end.residuals.scaled.gap / beside;

@@ -78,6 +78,7 @@ impl<N: Nlp> State<'_, N> {
         }
     }
 
+    /// The point along a direction of negative curvature, on the better side.
     fn below_curvature(&mut self, descent: &Descent) -> Option<Vec<f64>> {
         let farthest = self.distance_to_inactive_bounds(&descent.along).min(1.0);
         let here = self.lagrangian()?;
