@@ -154,12 +154,14 @@ pub(crate) fn until_measured<N: Nlp>(
     }
 }
 
-/// The end of a solve that went on from beside a saddle, if it did; the saddle, where that end is no solution or above it. An
-/// objective without a lower bound and a cancelled solve are ends all the same. Iterations and time are those of the end.
+/// The end of a solve that went on from beside a saddle, if it did; the saddle, where that end is no solution or above it by
+/// more than the gaps of both. An objective without a lower bound and a cancelled solve are ends all the same. Iterations
+/// and time are those of the end.
 fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
     let Some(saddle) = saddle else { return end };
-    let is_below = end.status.has_solution() && end.objective <= saddle.objective;
-    if is_below || matches!(end.status, Status::Unbounded | Status::Cancelled) {
+    let gap = end.residuals.unscaled.gap.max(saddle.residuals.unscaled.gap);
+    let is_above = !(end.objective <= saddle.objective + gap);
+    if end.status.has_solution() && !is_above || matches!(end.status, Status::Unbounded | Status::Cancelled) {
         return end;
     }
     Outcome { iterations: end.iterations, seconds: end.seconds, ..saddle }

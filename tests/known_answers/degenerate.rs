@@ -311,3 +311,30 @@ fn many_small_products_of_multipliers_and_distances_are_not_small_together() {
         close(report.objective / price.parse::<f64>().expect("a number"), 2.866039558, 1e-6);
     }
 }
+
+/// 31 points hold an equation of a state of 14 coefficients. With 40 intervals there are enough.
+#[test]
+fn more_equations_than_unknowns_are_told_where_they_cannot_be_met() {
+    let report = |intervals: usize| {
+        let text = format!(
+            "problem Oscillator {{
+                duration T = 6;
+                collocation uniform(breakpoints = 31);
+                state x, v: spline(order = 5, intervals = {intervals});
+                input u: spline(order = 2, intervals = {intervals});
+                minimize integral(u^2);
+                dynamics {{ der(x) == v;  der(v) == u - x; }}
+                initial {{ x == 1;  v == 0; }}
+                final {{ x == 0;  v == 1; }}
+            }}"
+        );
+        Shipped::text(&text).solver().solve().expect("it can be set up")
+    };
+    let few = report(10);
+    assert!(matches!(few.status, Status::Infeasible { .. }), "{few}");
+    // 2 * 31 equations of motion and 4 ends; 2 * 14 + 11 coefficients.
+    assert!(few.to_string().contains("the points pose 66 equations for 39 unknowns"), "{few}");
+    let enough = report(40);
+    assert_eq!(enough.status, Status::Solved, "{enough}");
+    assert!(!enough.to_string().contains("unknowns"), "{enough}");
+}

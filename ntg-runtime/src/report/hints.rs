@@ -7,6 +7,7 @@ use super::Estimate;
 use crate::digits::{brief, brief_in};
 use crate::transcribe::Transcription;
 use crate::transcribe::instances::family_members;
+use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, names, singular};
 use ntg_structure::Place;
 
@@ -65,6 +66,28 @@ pub(super) fn of_estimate(nlp: &Transcription, x: &[f64], estimate: Option<&Esti
 fn deviations_off(chi2: f64, freedom: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     ((chi2 / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
+}
+
+/// More equations than unknowns: splines that have fewer coefficients than the points that hold an equation of motion. They
+/// hold together only by chance, and no guess and no bound mends that.
+pub(super) fn overdetermined(nlp: &Transcription) -> Option<(String, Place)> {
+    let (structure, limits) = (&nlp.model.structure, &nlp.limits);
+    let is_fixed = |row: &usize| limits.row_lower[*row] == limits.row_upper[*row];
+    let equations = (0..limits.row_lower.len()).filter(is_fixed).count();
+    let unknowns = limits.lower.iter().zip(&limits.upper).filter(|(lower, upper)| lower < upper).count();
+    if equations <= unknowns {
+        return None;
+    }
+    let of_points = (0..limits.row_lower.len()).filter(is_fixed).find_map(|row| match nlp.elements.rows[row].kind {
+        RowKind::Constraint(number) if nlp.elements.rows[row].point.phase.is_some() => Some(number),
+        _ => None,
+    });
+    let message = format!(
+        "the points pose {equations} equations for {unknowns} unknowns, so that they hold together only by chance: take \
+         fewer points, splines with more intervals, or `collocation gauss` for equations of motion"
+    );
+    let place = of_points.map_or_else(Place::default, |number| structure.constraints[number].place.clone());
+    Some((message, place))
 }
 
 /// Outputs that have left their sizes far behind, the farthest first.

@@ -303,6 +303,9 @@ impl Report {
             true => hints::of_estimate(nlp, solution.coefficients(), estimate.as_ref()),
             false => hints::ran_off(nlp, solution.coefficients()),
         });
+        if matches!(status, Status::Infeasible { .. }) {
+            told.extend(hints::overdetermined(nlp));
+        }
         let (objective, objective_fine) = (user(nlp, outcome.objective), user(nlp, on_fine.terms.iter().sum()));
         let objective_correction = user(nlp, on_fine.correction);
         let tolerance = Settings::default().between_tolerance;
