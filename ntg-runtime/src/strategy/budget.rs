@@ -46,6 +46,12 @@ impl<'a> Budget<'a> {
         self.spent
     }
 
+    /// Which limit has been reached, where one has.
+    pub(super) fn reached(&self) -> Status {
+        let is_late = self.settings.time_limit.is_some_and(|limit| self.began.elapsed() >= limit);
+        if is_late { Status::TimeLimit } else { Status::IterationLimit }
+    }
+
     /// Settings of the first attempt; none where nothing is left. A method that the user has chosen has all that is left.
     pub(super) fn attempt(&self) -> Option<Settings> {
         if self.settings.method == Method::Auto { self.at_most(self.share(ATTEMPT)) } else { self.rest() }

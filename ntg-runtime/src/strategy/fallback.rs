@@ -105,7 +105,7 @@ impl Session {
         budget: &mut Budget<'_>,
     ) -> Result<Outcome, SetupError> {
         let Some(settings) = budget.attempt() else {
-            return Ok(Outcome::failed(nlp, first.x, Status::IterationLimit));
+            return Ok(Outcome::failed(nlp, first.x, budget.reached()));
         };
         let guessed = guessed.filter(|_| settings.method == Method::Auto);
         let spent = budget.spent();
