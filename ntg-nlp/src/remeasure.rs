@@ -160,8 +160,8 @@ pub(crate) fn until_measured<N: Nlp>(
 fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
     let Some(saddle) = saddle else { return end };
     let gap = end.residuals.unscaled.gap.max(saddle.residuals.unscaled.gap);
-    let is_above = !(end.objective <= saddle.objective + gap);
-    if end.status.has_solution() && !is_above || matches!(end.status, Status::Unbounded | Status::Cancelled) {
+    let is_below = end.status.has_solution() && end.objective <= saddle.objective + gap;
+    if is_below || matches!(end.status, Status::Unbounded | Status::Cancelled) {
         return end;
     }
     Outcome { iterations: end.iterations, seconds: end.seconds, ..saddle }
