@@ -9,7 +9,7 @@ use crate::transcribe::Transcription;
 use crate::transcribe::instances::family_members;
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, names, singular};
-use ntg_structure::Place;
+use ntg_structure::{Block, Place};
 
 /// A value this near to a bound, in sizes of the variable, is at it: the method stays inside by its last barrier parameter.
 const AT_BOUND: f64 = 1e-5;
@@ -78,16 +78,18 @@ pub(super) fn overdetermined(nlp: &Transcription) -> Option<(String, Place)> {
     if equations <= unknowns {
         return None;
     }
-    let of_points = (0..limits.row_lower.len()).filter(is_fixed).find_map(|row| match nlp.elements.rows[row].kind {
-        RowKind::Constraint(number) if nlp.elements.rows[row].point.phase.is_some() => Some(number),
-        _ => None,
-    });
+    let mut of_points =
+        nlp.elements.rows.iter().enumerate().filter(|(row, _)| is_fixed(row)).filter_map(|(_, info)| match info.kind {
+            RowKind::Constraint(number) => Some(&structure.constraints[number]),
+            _ => None,
+        });
+    // Boundary conditions alone say nothing of points.
+    let equation = of_points.find(|constraint| constraint.block == Block::Trajectory)?;
     let message = format!(
         "the points pose {equations} equations for {unknowns} unknowns, so that they hold together only by chance: take \
          fewer points, splines with more intervals, or `collocation gauss` for equations of motion"
     );
-    let place = of_points.map_or_else(Place::default, |number| structure.constraints[number].place.clone());
-    Some((message, place))
+    Some((message, equation.place.clone()))
 }
 
 /// Outputs that have left their sizes far behind, the farthest first.

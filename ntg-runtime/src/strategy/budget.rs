@@ -172,6 +172,18 @@ mod tests {
         assert_eq!(shares(Method::InteriorPoint, 5000)[0], 5000);
     }
 
+    #[test]
+    fn what_is_used_up_is_told_by_its_name() {
+        let late = Settings { time_limit: Some(std::time::Duration::ZERO), ..Settings::default() };
+        let late = Budget::new(&late);
+        assert!(late.attempt().is_none());
+        assert_eq!(late.reached(), Status::TimeLimit);
+        let none_left = Settings { max_iterations: 0, ..Settings::default() };
+        let none_left = Budget::new(&none_left);
+        assert!(none_left.attempt().is_none());
+        assert_eq!(none_left.reached(), Status::IterationLimit);
+    }
+
     /// Which of two ends is the better one: 1 or 2.
     fn better_of(first: (Status, f64, f64), second: (Status, f64, f64)) -> i32 {
         let of = |(status, _, violation): (Status, f64, f64), objective| outcome(status, objective, violation);
