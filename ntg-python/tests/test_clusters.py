@@ -71,9 +71,9 @@ def test_ray_with_a_worker_killed_on_the_way(study):
         for batch in ntg.ray.map_batches(task, batches, workers=2):
             solved.append(batch)
             if victim is None:
-                # Ray calls its processes after their actors.
+                # Ray calls its processes after what they do.
                 children = psutil.Process().children(recursive=True)
-                victim = next(child.pid for child in children if "ray::_Worker" in " ".join(child.cmdline()))
+                victim = next(child.pid for child in children if "ray::solve" in " ".join(child.cmdline()))
                 os.kill(victim, signal.SIGKILL)
         assert_same(whole, _batches.joined(solved, 600, back))
     finally:
