@@ -71,10 +71,13 @@ def test_ray_with_a_worker_killed_on_the_way(study):
         for batch in ntg.ray.map_batches(task, batches, workers=2):
             solved.append(batch)
             if victim is None:
-                # Ray calls its processes after what they do.
+                # Ray calls its processes after what they do; between two batches one is idle.
                 children = psutil.Process().children(recursive=True)
-                victim = next(child.pid for child in children if "ray::solve" in " ".join(child.cmdline()))
-                os.kill(victim, signal.SIGKILL)
+                busy = (child.pid for child in children if "ray::solve" in " ".join(child.cmdline()))
+                victim = next(busy, None)
+                if victim is not None:
+                    os.kill(victim, signal.SIGKILL)
+        assert victim is not None
         assert_same(whole, _batches.joined(solved, 600, back))
     finally:
         ray.shutdown()
