@@ -29,6 +29,10 @@ const RESTARTS: usize = 6;
 /// How often a solve goes on from beside a saddle. A law: each time the objective has fallen, and a saddle that leads to
 /// the next one is rare.
 const SADDLES: usize = 3;
+/// From how many points nearer to a saddle a solve goes on where the one before has ended at no solution, and by which part
+/// each is nearer. Choices: the first point is where the Lagrangian is least along a line, which may be far away.
+const NEARER: usize = 2;
+const NEAR: f64 = 0.25;
 /// Where a variable is less than this part of its typical size at the start, the start says nothing about the size, which
 /// is made up from the equations there: a law, for a guess has its own size.
 pub(crate) const UNSEEN: f64 = 0.5;
@@ -89,6 +93,7 @@ pub(crate) fn until_measured<N: Nlp>(
     let mut start: Option<Vec<f64>> = None;
     let (mut iterations, mut rounds, mut restarts, mut saddles) = (0, 0, 0, 0);
     let mut left_saddle: Option<Outcome> = None;
+    let mut beside: Option<Beside> = None;
     let mut undamped: Option<Outcome> = None;
     let mut wide: Option<(Outcome, f64)> = None;
     loop {
@@ -119,6 +124,13 @@ pub(crate) fn until_measured<N: Nlp>(
                 (resized, start, undamped) = (Resized::new(nlp), None, Some(outcome));
                 continue;
             }
+            Measure::Holds if beside.is_some() && left_saddle.is_some() && is_astray(&outcome.status) => {
+                start = beside.as_mut().and_then(Beside::nearer);
+                match start {
+                    Some(_) => continue,
+                    None => return unless_worse(left_saddle, outcome),
+                }
+            }
             Measure::Holds => {
                 let end = match undamped.take() {
                     Some(undamped) if !outcome.status.has_solution() => Outcome { iterations, ..undamped },
@@ -133,6 +145,7 @@ pub(crate) fn until_measured<N: Nlp>(
             }
             Measure::Saddle(below) => {
                 saddles += 1;
+                beside = Some(Beside { saddle: outcome.x.clone(), below: below.clone(), left: NEARER });
                 let saddle = Outcome { is_saddle: true, ..outcome };
                 left_saddle = Some(unless_worse(left_saddle, saddle));
                 start = Some(below);
@@ -154,13 +167,37 @@ pub(crate) fn until_measured<N: Nlp>(
     }
 }
 
+/// A saddle, and the point beside it from which a solve goes on.
+struct Beside {
+    saddle: Vec<f64>,
+    below: Vec<f64>,
+    /// How many nearer points are left.
+    left: usize,
+}
+
+impl Beside {
+    /// The next point, on the way to the saddle; none where enough have been tried.
+    fn nearer(&mut self) -> Option<Vec<f64>> {
+        self.left = self.left.checked_sub(1)?;
+        for (below, saddle) in self.below.iter_mut().zip(&self.saddle) {
+            *below = saddle + NEAR * (*below - saddle);
+        }
+        Some(self.below.clone())
+    }
+}
+
+/// Whether a solve has ended at no solution, and another one from nearby may end at one: neither a limit of the user's has
+/// stopped it nor is the objective without a lower bound.
+fn is_astray(status: &Status) -> bool {
+    matches!(status, Status::StepTooSmall | Status::Infeasible { .. })
+}
+
 /// The end of a solve that went on from beside a saddle, if it did; the saddle, where that end is no solution or above it by
 /// more than the gaps of both. An objective without a lower bound and a cancelled solve are ends all the same. Iterations
 /// and time are those of the end.
 fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
     let Some(saddle) = saddle else { return end };
-    let gap = end.residuals.unscaled.gap.max(saddle.residuals.unscaled.gap);
-    let is_below = end.status.has_solution() && end.objective <= saddle.objective + gap;
+    let is_below = end.status.has_solution() && end.objective <= saddle.objective + end.residuals.unscaled.gap;
     if is_below || matches!(end.status, Status::Unbounded | Status::Cancelled) {
         return end;
     }

@@ -127,6 +127,6 @@ impl Structure {
 }
 
 /// Whether a name is that of a helper of the compiler: no name in a spec has a parenthesis.
-fn is_helper(name: &str) -> bool {
+pub fn is_helper(name: &str) -> bool {
     name.contains('(')
 }

@@ -68,3 +68,38 @@ fn a_product_over_an_index_has_every_derivative_that_its_members_have() {
     // At the start one member is 0 and all rates are 1: x'' y z + ... + 2 (x' y' z + ...), with x'' at the knot.
     assert!(at("second", 0.0).is_finite() && at("all", 0.0).abs() < 1e-9);
 }
+
+/// A store without losses is filled in the second half, where a tariff is lower. That the tariff is not negative shows where it is
+/// written, so that what is paid may have a helper at its corner (docs/maths.md, section 18).
+#[test]
+fn a_tariff_that_stays_above_zero_weighs_a_corner() {
+    let solve = |rate: &str| {
+        let text = format!(
+            "problem Store {{
+                duration T = 2;
+                table steps(at) = linear {{ 0: 0.3;  2: 0.1; }}
+                state e;
+                input u in -1 .. 1;
+                collocation gauss(points = 3, intervals = 10);
+                minimize integral(({rate}) * max(1 + u, 0));
+                dynamics {{ der(e) == u; }}
+                initial {{ e == 0; }}
+                final {{ e == 0; }}
+            }}"
+        );
+        Shipped::text(&text).solve()
+    };
+    let cases = [
+        ("0.2 + 0.1 * sin(pi * t)", 0.4 - 0.4 / std::f64::consts::PI),
+        ("0.25 + 0.1 * sin(pi * t) + 0.05 * cos(pi * t)^2", 0.55 - 0.4 / std::f64::consts::PI),
+        ("0.3 - 0.1 * t", 0.3),
+        ("steps(t)", 0.3),
+        ("0.1 + max(0, 0.2 - 0.1 * t)", 0.3),
+        ("0.2 - 0.1 * tanh(9 * (t - 1))", 0.4 - 0.2 * 9f64.cosh().ln() / 9.0),
+    ];
+    for (rate, known) in cases {
+        let report = solve(rate);
+        close(report.objective, known, 1e-3);
+        assert!(report.iterations <= 60, "{rate}: {} iterations", report.iterations);
+    }
+}

@@ -94,3 +94,99 @@ fn a_cone_may_end_at_its_apex() {
     close(descent("norm(r[2 .. 3]) <= r[1] / tan(30 [deg]);"), known, 1e-6);
     close(descent("r[1] - tan(30 [deg]) * hypot(r[2], r[3]) >= 0;"), known, 1e-6);
 }
+
+/// From rest to rest over `(9.6, 12.8)` in ten seconds, at an acceleration of at most 1, with the least fuel: two seconds faster,
+/// six of coasting, two slower. `width` is what bounds the norm, `rows` say how, `guess` is one.
+fn coasting(width: &str, rows: &str, guess: &str) -> String {
+    format!(
+        "problem Coasting {{
+            duration T = 10;
+            state p[2], v[2];
+            input a[2];
+            input {width};
+            collocation gauss(points = 3, intervals = 10);
+            minimize integral(s);
+            dynamics {{ der(p) == v;  der(v) == a; }}
+            initial {{ p == 0;  v == 0; }}
+            final {{ p == (9.6, 12.8);  v == 0; }}
+            trajectory {{ {rows} }}
+            {guess}
+        }}"
+    )
+}
+
+#[test]
+fn a_thrust_below_its_magnitude_may_coast() {
+    // A width without a bound of its own, one that a guess puts on the tip, and the limit in several forms.
+    let cases = [
+        ("s in 0 .. 1", "cone: norm(a) <= s;", ""),
+        ("s in 0 .. 1", "cone: norm(a) <= s;", "guess { a = 0; s = 0; }"),
+        ("s in 0 .. 1", "cone: s >= norm(a);", "guess { s = 0.5; }"),
+        ("s in 0 .. 1", "cone: 2 * norm(a) - 2 * s <= 0;", ""),
+        ("s in 0 .. 1", "cone: hypot(a[1], a[2]) / 4 <= s / 4;", ""),
+        ("s", "cone: norm(a) <= s; s <= 1;", ""),
+        ("s", "cone: norm(a) + 1 <= s + 1; s <= 1;", "guess { s = -1; }"),
+        ("s in 0 .. 1; param k = 3", "cone: k * norm(a) <= k * s;", ""),
+    ];
+    for (width, rows, guess) in cases {
+        let report = Shipped::text(&coasting(width, rows, guess)).solve();
+        close(report.objective, 4.0, 2e-5);
+        assert!(report.iterations <= 200, "{rows}, {guess}: {} iterations", report.iterations);
+        let cone = report.constraints.iter().find(|constraint| constraint.name.starts_with("cone")).expect("a limit");
+        let worst = cone.points.as_ref().map_or(0.0, |worst| worst.violation);
+        assert!(worst <= 1e-6, "{rows}: {worst}");
+    }
+}
+
+#[test]
+fn units_of_a_cone_do_not_matter() {
+    let solve = |length: &str, unit: &str| {
+        let text = format!(
+            "problem Landing {{
+                duration T in 20 .. 120 [s];
+                state r[3] [{length}], v[3] [{length}/s], z [1];
+                input a[3] [{unit}], s in 0 .. 40 [m/s^2];
+                collocation gauss(points = 3, intervals = 30);
+                minimize integral(s);
+                dynamics {{
+                    der(r) == v;
+                    der(v) == a + (-3.7114, 0, 0) [m/s^2];
+                    der(z) == -5e-4 [s/m] * s;
+                }}
+                initial {{ r == (4000, 300, 800) [m];  v == (-20, 10, 30) [m/s];  z == 0; }}
+                final {{ r == 0;  v == 0; }}
+                trajectory {{
+                    norm(a) <= s;
+                    s <= 40000 [N] / 1905 [kg] * exp(-z);
+                    slope: norm(r[2 .. 3]) * tan(80 [deg]) >= -r[1];
+                    r[1] >= 0;
+                }}
+                guess {{ s = 5 [m/s^2];  T = 60 [s]; }}
+            }}"
+        );
+        Shipped::text(&text).solve()
+    };
+    // IPOPT 3.14 of the same program: 242.737246.
+    for (length, unit) in [("m", "m/s^2"), ("km", "mm/s^2"), ("cm", "km/s^2")] {
+        let report = solve(length, unit);
+        close(report.objective, 242.737_246, 1e-6);
+        assert!(report.iterations <= 300, "{length}, {unit}: {} iterations", report.iterations);
+    }
+}
+
+#[test]
+fn what_bounds_a_norm_is_not_negative() {
+    // With s < 0 the square of the norm would be below that of its width, at a cost of -10.
+    let text = "problem Negative {
+        duration T = 10;
+        state x;
+        input a[2], s in -1 .. 1;
+        collocation gauss(points = 2, intervals = 5);
+        minimize integral(s);
+        dynamics { der(x) == a[1] + a[2]; }
+        initial { x == 0; }
+        trajectory { norm(a) <= s; }
+    }";
+    let report = Shipped::text(text).solve();
+    assert!(report.objective.abs() < 1e-6, "{report}");
+}

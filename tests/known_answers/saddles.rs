@@ -127,3 +127,30 @@ fn a_maximum_does_not_end_at_its_least_corner() {
     leaves_its_corner("abs(integral(u * t))", 0.5);
     leaves_its_corner("max(final(x), -final(x))", 1.0);
 }
+
+/// Half a turn of a body from rest to rest in the least time. A turn about its own axis alone takes `2 sqrt(pi / 0.1)`, is stationary
+/// by symmetry, and the first solve from beside it ends nowhere.
+#[test]
+fn where_a_solve_from_beside_a_saddle_fails_one_from_nearer_is_tried() {
+    let report = Shipped::text(
+        "use std::rotation;
+        problem Slew {
+            duration T in 5 .. 200 [s];
+            state q[4] [1], w[3] [rad/s];
+            input u[3] in -0.1 .. 0.1 [N*m];
+            collocation gauss(points = 3, intervals = 24);
+            minimize T;
+            dynamics { der(q) == rotation::rate(q, w);  1 [kg*m^2] * der(w) == u; }
+            initial { q == (1, 0, 0, 0);  w == 0; }
+            final { q == (0, 0, 0, 1);  w == 0; }
+            guess {
+                q = (cos(pi / 2 * tau), 0, 0, sin(pi / 2 * tau));
+                w = (0, 0, 0.3) * 1 [rad/s];
+                T = 12 [s];
+            }
+        }",
+    )
+    .solve();
+    assert!(report.objective < 0.95 * 2.0 * (std::f64::consts::PI / 0.1).sqrt(), "{report}");
+    assert!(!report.to_string().contains("no minimum"), "{report}");
+}

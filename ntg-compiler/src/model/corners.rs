@@ -11,6 +11,7 @@ use super::elaborator::Elaborator;
 use super::problem::{Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt, Problem};
 use super::signs::Signs;
 use super::unknowns::{is_affine, is_given};
+use super::widths::Widths;
 use crate::diagnostic::Code;
 use crate::expr::{self, Binary, Dag, Fold, Map, Node, NodeId, Set, Unary};
 use crate::source::Span;
@@ -25,11 +26,14 @@ pub(super) struct Site {
 /// The pass's state.
 pub(super) struct Corners {
     pub(super) signs: Signs,
+    pub(super) widths: Widths,
     /// The nodes in which there are corners.
     within: Set<NodeId>, // Asked, never iterated.
     done: Map<(NodeId, bool, Site), NodeId>, // Looked up, never iterated.
     /// The corners for which helpers stand.
     pub(super) treated: Set<NodeId>, // Asked, never iterated.
+    /// The choices between the tip of a cone and the rest of it, which are no corners.
+    pub(super) tips: Set<NodeId>, // Asked, never iterated.
     pub(super) helpers: usize,
     /// The term in hand.
     pub(super) span: Span,
@@ -55,9 +59,11 @@ impl Elaborator<'_> {
         let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
         let mut pass = Corners {
             signs: Signs::of(&self.problem),
+            widths: Widths::of(&self.problem),
             within: self.with_corners(&bodies),
             done: Map::default(),
             treated: Set::default(),
+            tips: Set::default(),
             helpers: 0,
             span: Span::default(),
         };
@@ -74,7 +80,7 @@ impl Elaborator<'_> {
             }
         }
         self.weights_held(&pass);
-        let left = self.corners_left();
+        let left = self.corners_left(&pass);
         self.unnoted(&pass, &left);
         let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();
         spans.sort_by_key(|span| (span.start, span.end));
@@ -282,12 +288,14 @@ impl Elaborator<'_> {
     }
 
     /// The corners in what is solved.
-    fn corners_left(&mut self) -> Vec<NodeId> {
+    fn corners_left(&mut self, pass: &Corners) -> Vec<NodeId> {
         let bodies = self.problem.constraints.iter().map(|constraint| constraint.body);
         let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();
         let all = self.below(&bodies);
         let kinks: Set<NodeId> = expr::kinks(&self.problem.dag, &all).into_iter().collect();
-        all.into_iter().filter(|node| kinks.contains(node) && self.may_jump(*node)).collect()
+        all.into_iter()
+            .filter(|node| kinks.contains(node) && !pass.tips.contains(node) && self.may_jump(*node))
+            .collect()
     }
 
     /// Whether what is solved for decides on which side of a kink its gradient is taken.

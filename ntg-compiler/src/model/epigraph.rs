@@ -33,7 +33,7 @@ impl Elaborator<'_> {
     ) -> Option<NodeId> {
         let against = self.against(pass, corner, (site, growing), depth)?;
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
-        let helper = self.helper_leaf(pass, site, span)?;
+        let helper = self.helper_leaf(pass, corner, site, span)?;
         let zero = self.problem.dag.constant(0.0);
         let above = |node| (node, Bounds { lower: Some(zero), upper: None });
         match against {
@@ -50,7 +50,8 @@ impl Elaborator<'_> {
                 let square = self.problem.dag.powi(helper, 2);
                 let body = self.problem.dag.sub(square, sum);
                 self.hold(site, vec![], above(body), span);
-                self.hold(site, vec![], above(helper), span);
+                let upper = pass.widths.of_root(&mut self.problem, (corner, sum));
+                self.hold(site, vec![], (helper, Bounds { lower: Some(zero), upper }), span);
             }
         }
         Some(helper)
@@ -134,13 +135,13 @@ impl Elaborator<'_> {
     }
 
     /// A number for each point and for each member of the loops at a place.
-    fn helper_leaf(&mut self, pass: &mut Corners, site: &Site, span: Span) -> Option<NodeId> {
+    fn helper_leaf(&mut self, pass: &mut Corners, corner: NodeId, site: &Site, span: Span) -> Option<NodeId> {
         let members = self.members_missed(&own_loops(site), span)?;
         pass.helpers += 1;
         let (name, doc) = (format!("corner({})", pass.helpers), format!("Stands for `{}`.", self.text(span)));
         let count = members.family.as_ref().map(|(count, _)| *count);
         let index = members.family.map(|(_, member)| member);
-        let unit = Unit::default();
+        let unit = self.unit_within(corner);
         let Some(at) = &site.along else {
             let place = self.problem.variables.len();
             let family = count.map(|count| self.new_index(Form::number(1), Form::number(count)));
@@ -158,6 +159,18 @@ impl Elaborator<'_> {
         let family = count.map(|count| (1, count));
         outputs.push(Output { name, doc, unit, family, grid: None, vector: None, spline, span });
         Some(self.leaf(Leaf::Flat { phase: at.clone(), at: At::Here, output: place, index, order: 0 }))
+    }
+
+    /// The unit of the first output or variable in a corner, which is the corner's own where that is affine.
+    fn unit_within(&self, corner: NodeId) -> Unit {
+        let problem = &self.problem;
+        let inputs = problem.dag.inputs_of(&[corner]);
+        let units = inputs.into_iter().filter_map(|input| match problem.leaves.leaf(input) {
+            Leaf::Flat { phase, output, order: 0, .. } => Some(&problem.phases[phase.phase].outputs[*output].unit),
+            Leaf::Variable { variable, .. } => Some(&problem.variables[*variable].unit),
+            _ => None,
+        });
+        units.into_iter().next().cloned().unwrap_or_default()
     }
 
     fn hold(&mut self, site: &Site, loops: Vec<Loop>, (body, bounds): (NodeId, Bounds), span: Span) {

@@ -41,8 +41,9 @@ impl Elaborator<'_> {
                 continue;
             }
             let (is_mission, relied) = (own.domain == Domain::Mission, pass.signs.relied.len());
-            let is_smooth =
-                (is_mission && self.by_helpers(pass, number, growing)) || self.by_sides(pass, number, growing);
+            let is_smooth = self.by_cone(pass, number, growing)
+                || (is_mission && self.by_helpers(pass, number, growing))
+                || self.by_sides(pass, number, growing);
             if !is_smooth {
                 // Nothing rests on the signs that were asked for.
                 pass.signs.relied.truncate(relied);

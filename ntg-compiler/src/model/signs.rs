@@ -1,10 +1,11 @@
 //! Which expressions are never negative, whatever the unknowns are.
 //!
 //! Takes nodes of the graph, says for which of them that is known: squares, roots, exponentials, durations, and what is
-//! made of such by sums, products, quotients, extremes. Of a parameter its default decides; it is then written down,
+//! made of such by sums, products, quotients, extremes; and what stays above 0 by its range. Of a parameter its default decides; it is then written down,
 //! since who sets it may change that.
 
 use super::problem::{At, Bounds, Domain, Leaf, Part, Problem, Start};
+use super::ranges::Ranges;
 use crate::expr::{Binary, InputId, Map, Node, NodeId, Set, Unary};
 
 /// Of what is never negative: the parameters that decide it.
@@ -14,6 +15,7 @@ type Known = Option<Vec<usize>>;
 #[derive(Default)]
 pub(super) struct Signs {
     known: Map<NodeId, Known>, // Looked up, never iterated.
+    ranges: Ranges,
     /// Outputs without index whose limits leave nothing below 0: phase and place.
     limited: Set<(usize, usize)>, // Asked, never iterated.
     /// The parameters that must not become negative, for what was asked to stay true.
@@ -74,6 +76,8 @@ impl Signs {
             Node::Reduce { body, .. } => own(body),
             _ => None,
         };
+        let mut is_above = || self.ranges.of(problem, node).is_some_and(|(least, _)| least >= 0.0);
+        let known = known.or_else(|| is_above().then(Vec::new));
         self.known.insert(node, known.clone());
         known
     }

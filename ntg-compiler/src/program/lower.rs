@@ -18,7 +18,7 @@ use super::pieces::{Piece, Role, part_of, split};
 use super::points::point_sets;
 use super::{KernelBody, Program};
 use crate::expr::NodeId;
-use crate::model::problem::{self as model, Loop, Problem};
+use crate::model::problem::{self as model, Constraint, Loop, Problem};
 use crate::source::{Source, Span};
 
 /// Makes a problem's program. `source` is the text that the problem's spans point into.
@@ -89,15 +89,20 @@ impl Lowering<'_> {
             pieces.extend(split(&mut self.problem, &t.loops, t.body, t.span, cost(), &cost));
         }
         for (constraint, c) in self.problem.constraints.clone().into_iter().enumerate() {
-            let role = Role::Constraint { constraint, bounds: c.bounds };
-            if c.domain == model::Domain::Mission {
-                let part = part_of(constraint, c.loops.len());
-                pieces.extend(split(&mut self.problem, &c.loops, c.body, c.span, role, &part));
-            } else {
-                pieces.push(Piece { loops: c.loops, domain: c.domain, body: c.body, role, span: c.span });
-            }
+            let body = c.body;
+            pieces.extend(self.constraint_pieces(constraint, c, body));
         }
         pieces
+    }
+
+    /// The pieces of a constraint with a given body.
+    fn constraint_pieces(&mut self, number: usize, of: Constraint, body: NodeId) -> Vec<Piece> {
+        let role = Role::Constraint { constraint: number, bounds: of.bounds };
+        if of.domain == model::Domain::Mission {
+            let part = part_of(number, of.loops.len());
+            return split(&mut self.problem, &of.loops, body, of.span, role, &part);
+        }
+        vec![Piece { loops: of.loops, domain: of.domain, body, role, span: of.span }]
     }
 
     /// Puts pieces that are evaluated at the same place under the same loops into one group.
@@ -139,9 +144,7 @@ impl Lowering<'_> {
         }
         for (constraint, c) in self.problem.constraints.clone().into_iter().enumerate() {
             let Some(written) = c.written else { continue };
-            let role = Role::Constraint { constraint, bounds: c.bounds };
-            let part = part_of(constraint, c.loops.len());
-            let own = split(&mut self.problem, &c.loops, written, c.span, role, &part);
+            let own = self.constraint_pieces(constraint, c, written);
             pieces.extend(self.without_integrals(own));
         }
         pieces

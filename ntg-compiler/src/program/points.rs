@@ -1,6 +1,6 @@
 //! At which points of a phase a function is needed (docs/maths.md, section 4).
 
-use ntg_structure::{Block, Points};
+use ntg_structure::{Block, Points, is_helper};
 
 use super::pieces::{Piece, Role};
 use crate::expr::Node;
@@ -17,9 +17,10 @@ pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> V
         Collocation::Uniform { points } => return vec![Points::Uniform { points }],
         Collocation::Gauss { points, equalities, ends } => (points, equalities, ends),
     };
-    let is_corner = |constraint: usize| problem.constraints[constraint].block == Block::Corner;
     match &piece.role {
-        Role::Constraint { constraint, .. } if is_corner(*constraint) => vec![Points::Gauss { points }],
+        Role::Constraint { constraint, .. } if holds_helper(problem, *constraint, piece) => {
+            vec![Points::Gauss { points }]
+        }
         Role::Constraint { bounds, .. } if bounds.lower.is_some() && bounds.lower == bounds.upper => {
             vec![Points::Gauss { points: equalities }]
         }
@@ -33,6 +34,15 @@ pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> V
         }
         _ => vec![Points::Gauss { points }],
     }
+}
+
+/// Whether a row holds a helper above a corner.
+fn holds_helper(problem: &Problem, constraint: usize, piece: &Piece) -> bool {
+    problem.constraints[constraint].block == Block::Corner
+        && problem.dag.inputs_of(&[piece.body]).into_iter().any(|input| match problem.leaves.leaf(input) {
+            Leaf::Flat { phase, output, .. } => is_helper(&problem.phases[phase.phase].outputs[*output].name),
+            _ => false,
+        })
 }
 
 /// Whether the piece holds a derivative that is discontinuous at interior breakpoints.

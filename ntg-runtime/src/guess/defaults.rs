@@ -6,7 +6,7 @@ use crate::transcribe::rows::shortest_duration;
 use crate::transcribe::slots::AffineMap;
 use ntg_nlp::Target;
 use ntg_splines::Side;
-use ntg_structure::{Degree, Domain};
+use ntg_structure::{Block, Degree, Domain, Row};
 use std::collections::HashMap;
 
 /// Bounds a decade or more apart have their geometric mean as middle.
@@ -73,19 +73,31 @@ pub(super) fn outputs(nlp: &Transcription, x: &mut [f64]) {
                 let known = known_values(nlp, phase, output, x);
                 let first = layout.phases[phase].outputs[output].coefficients[0];
                 // What members of a scenario share is looked at once.
-                let bounds = match known.is_empty() {
-                    true => *met.entry(first).or_insert_with(|| bounds(nlp, phase, output)),
-                    false => None,
+                let constant = match known.is_empty() {
+                    true => *met.entry(first).or_insert_with(|| constant(nlp, phase, output)),
+                    false => 0.0,
                 };
                 let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
                 let member = &layout.phases[phase].outputs[output];
                 for (variable, tau) in member.coefficients.iter().zip(member.knots.greville()) {
-                    let constant = bounds.map_or(0.0, |(lower, upper)| middle(lower, upper));
                     x[*variable as usize] = line(&known, start + tau * duration).unwrap_or(constant);
                 }
             }
         }
     }
+}
+
+/// The middle of constant bounds, else 0. What is bounded from below alone, and by nothing but what the compiler knows of the
+/// width of a cone, is one of its unit: at 0 is the tip (docs/maths.md, section 18).
+fn constant(nlp: &Transcription, phase: usize, output: usize) -> f64 {
+    let is_written = |constraint: usize| nlp.model.structure.constraints[constraint].block != Block::Corner;
+    if let Some((lower, upper)) = bounds_by(nlp, phase, output, is_written) {
+        return middle(lower, upper);
+    }
+    let Some((lower, upper)) = bounds(nlp, phase, output) else { return 0.0 };
+    let layout = &nlp.model.layout.phases[phase];
+    let declared = &nlp.model.structure.phases[layout.phase].outputs[layout.outputs[output].output];
+    if upper.is_finite() { middle(lower, upper) } else { lower + declared.unit.factor }
 }
 
 /// `(t, value)` wherever a boundary condition fixes this output in its agent.
@@ -123,6 +135,11 @@ fn line(known: &[(f64, f64)], t: f64) -> Option<f64> {
 /// Bounds along the phase on the output itself, each member of an array by its own: rows of one slot whose
 /// coefficients are one multiple of the B-splines' values, which add up to 1.
 pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)> {
+    bounds_by(nlp, phase, output, |_| true)
+}
+
+/// As [`bounds`], by some of the constraints alone.
+fn bounds_by(nlp: &Transcription, phase: usize, output: usize, counts: impl Fn(usize) -> bool) -> Option<(f64, f64)> {
     let layout = &nlp.model.layout;
     let mut coefficients = layout.phases[phase].outputs[output].coefficients.clone();
     coefficients.sort_unstable();
@@ -132,7 +149,12 @@ pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option
         if !matches!(declared.domain, Domain::Path { .. }) {
             continue;
         }
-        for row in (0..block.rows).filter(|row| group.degree[*row] == Degree::Linear) {
+        let counts = |row: &usize| match &declared.rows[*row] {
+            Row::Constraint { constraint, .. } => counts(*constraint),
+            _ => false,
+        };
+        let is_linear = |row: &usize| group.degree[*row] == Degree::Linear;
+        for row in (0..block.rows).filter(is_linear).filter(counts) {
             let slots: Vec<usize> = block.jacobian.iter().filter(|e| e.0 == row).map(|e| e.1).collect();
             let &[slot] = &slots[..] else { continue };
             // Whether a row is about nothing but the value of this very member of its array.

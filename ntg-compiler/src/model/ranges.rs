@@ -1,0 +1,107 @@
+//! Between which numbers an expression stays, whatever the unknowns are: a tariff by the hour, a sum of sines.
+//!
+//! Takes nodes of the graph, gives bounds by interval arithmetic; none where something in an expression has none. Parameters
+//! have none, since who sets them may change them.
+
+use super::problem::{Duration, Leaf, PhaseAt, Problem, Start};
+use crate::expr::{Binary, InputId, Map, Node, NodeId, Unary};
+use ntg_structure::{TableExtrapolation, TableMethod};
+
+/// How deep expressions are looked into.
+const MAX_DEPTH: usize = 500;
+
+/// The least and the largest value.
+type Range = (f64, f64);
+
+/// Ranges that are known, found once for each node.
+#[derive(Default)]
+pub(super) struct Ranges {
+    known: Map<NodeId, Option<Range>>, // Looked up, never iterated.
+}
+
+impl Ranges {
+    /// The range of a node, if it has one.
+    pub(super) fn of(&mut self, problem: &Problem, node: NodeId) -> Option<Range> {
+        self.look(problem, node, 0).filter(|(least, most)| least.is_finite() && most.is_finite())
+    }
+
+    fn look(&mut self, problem: &Problem, node: NodeId, depth: usize) -> Option<Range> {
+        if let Some(known) = self.known.get(&node) {
+            return *known;
+        }
+        if depth > MAX_DEPTH {
+            return None;
+        }
+        let mut own = |x: NodeId| self.look(problem, x, depth + 1);
+        let range = match *problem.dag.node(node) {
+            Node::Const(number) => Some((number.value(), number.value())),
+            Node::Input(input) => leaf(problem, input),
+            Node::Table { table, ref derivative, .. } if derivative.iter().all(|order| *order == 0) => {
+                data(problem, table as usize)
+            }
+            Node::Unary(op, x) => match op {
+                Unary::Sin | Unary::Cos => Some((-1.0, 1.0)),
+                Unary::Tanh => own(x).map(|(a, b)| (a.tanh(), b.tanh())).or(Some((-1.0, 1.0))),
+                Unary::Logistic => Some((0.0, 1.0)),
+                Unary::Neg => own(x).map(|(a, b)| (-b, -a)),
+                Unary::Exp => own(x).map(|(a, b)| (a.exp(), b.exp())),
+                Unary::Abs => own(x).map(|(a, b)| (a.max(-b).max(0.0), b.max(-a))),
+                _ => None,
+            },
+            Node::Binary(op, a, b) => match (op, own(a), own(b)) {
+                (Binary::Add, Some(a), Some(b)) => Some((a.0 + b.0, a.1 + b.1)),
+                (Binary::Sub, Some(a), Some(b)) => Some((a.0 - b.1, a.1 - b.0)),
+                (Binary::Mul, Some(a), Some(b)) => Some(product(a, b)),
+                (Binary::Div, Some(a), Some(b)) if b.0 > 0.0 => Some(product(a, (b.1.recip(), b.0.recip()))),
+                (Binary::Min, Some(a), Some(b)) => Some((a.0.min(b.0), a.1.min(b.1))),
+                (Binary::Max, Some(a), Some(b)) => Some((a.0.max(b.0), a.1.max(b.1))),
+                _ => None,
+            },
+            Node::Powi(x, 2) => own(x).map(|(a, b)| (a.max(-b).max(0.0).powi(2), b.max(-a).powi(2))),
+            Node::Select { then, otherwise, .. } => match (own(then), own(otherwise)) {
+                (Some(a), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
+                _ => None,
+            },
+            _ => None,
+        };
+        self.known.insert(node, range);
+        range
+    }
+}
+
+fn product(a: Range, b: Range) -> Range {
+    let ends = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
+    (ends.into_iter().fold(f64::INFINITY, f64::min), ends.into_iter().fold(f64::NEG_INFINITY, f64::max))
+}
+
+fn leaf(problem: &Problem, input: InputId) -> Option<Range> {
+    match problem.leaves.leaf(input) {
+        Leaf::Tau => Some((0.0, 1.0)),
+        Leaf::Time(at) => clock(problem, at),
+        _ => None,
+    }
+}
+
+/// The times of an agent that begins and whose phases last as numbers say.
+fn clock(problem: &Problem, at: &PhaseAt) -> Option<Range> {
+    let agent = &problem.agents[problem.phases[at.phase].agent];
+    let start = match agent.start {
+        Start::Fixed(start) => start.map_or(Some(0.0), |start| problem.dag.is_constant(start))?,
+        Start::Free(_) => return None,
+    };
+    let durations = agent.phases.iter().map(|phase| match problem.phases[*phase].duration {
+        Duration::Fixed(duration) => problem.dag.is_constant(duration),
+        _ => None,
+    });
+    Some((start, start + durations.sum::<Option<f64>>()?))
+}
+
+/// The values of a table that stays between those at its nodes.
+fn data(problem: &Problem, table: usize) -> Option<Range> {
+    let table = problem.tables.get(table)?;
+    let stays = matches!(table.method, TableMethod::Linear | TableMethod::Monotone)
+        && table.extrapolation == TableExtrapolation::Clamp
+        && !table.replaceable;
+    let ends = || table.values.iter().copied();
+    stays.then(|| (ends().fold(f64::INFINITY, f64::min), ends().fold(f64::NEG_INFINITY, f64::max)))
+}
