@@ -248,8 +248,11 @@ impl<'a> Elaborator<'a> {
             && !dimension.is_none()
         {
             let message = format!("an exponent must be a pure number, this is {}", dimension.describe());
-            let finding = Diagnostic::new(Code::NotPure, exponent.span, message)
-                .help(format!("divide it by a unit: `{} / 1 [{dimension}]`", self.grouped(exponent.span)));
+            let help = match self.unit_of_power(&base, &exponent, dimension) {
+                Some(whole) => format!("here the unit is that of the exponent: write `{whole}`"),
+                None => format!("divide it by a unit: `{} / 1 [{dimension}]`", self.grouped(exponent.span)),
+            };
+            let finding = Diagnostic::new(Code::NotPure, exponent.span, message).help(help);
             return self.refuse(finding, span);
         }
         let dimension = match base.dimension {
@@ -282,6 +285,19 @@ impl<'a> Elaborator<'a> {
     /// The exponent as a small rational number, if the compiler knows it.
     fn rational(&self, exponent: &Value) -> Option<Ratio> {
         self.problem.dag.is_constant(exponent.node).and_then(Ratio::of)
+    }
+
+    /// What is meant by `0.2^2 [m^2]`: a power of a number whose exponent has the unit of the power.
+    fn unit_of_power(&self, base: &Value, exponent: &Value, dimension: Dimension) -> Option<String> {
+        let (base_text, exponent_text) = (self.grouped(base.span), self.text(exponent.span));
+        let (power, unit) = exponent_text.split_once('[')?;
+        let power: i32 = power.trim().parse().ok().filter(|power| *power > 1)?;
+        let is_pure = base.unit.is_none() && base.dimension_or_none().is_none();
+        let root = dimension.power(Ratio::of(1.0 / f64::from(power))?);
+        let symbol = unit.trim_end().strip_suffix(']')?.trim();
+        let (of, own) = symbol.rsplit_once('^')?;
+        let is_power = own.trim().parse() == Ok(power) && !of.contains(['*', '/', '^']);
+        (is_pure && !root.is_none() && is_power).then(|| format!("({base_text} [{}])^{power}", of.trim()))
     }
 
     fn wild_exponent(&mut self, base: &Value, exponent: &Value, span: Span) -> Value {

@@ -283,7 +283,11 @@ impl<'a> Elaborator<'a> {
         let help = if is_time {
             format!("give the time a name, `let event = {text};`, and use the name here")
         } else {
-            format!("declare `variable v;`, write `v == {text};` in `temporal`, and use `v` here")
+            let rest = self.text(around).strip_prefix(&text).map(|rest| rest.trim_start().to_owned());
+            let is_limited = rest.is_some_and(|rest| ["<=", ">=", "==", "in "].iter().any(|op| rest.starts_with(op)));
+            let alone = "where nothing else in it changes along the way, it belongs in `temporal { }`; else ";
+            let alone = if is_limited { alone } else { "" };
+            format!("{alone}declare `variable v;`, write `v == {text};` in `temporal`, and use `v` here")
         };
         self.report(finding.help(help));
     }
