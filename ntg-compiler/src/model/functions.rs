@@ -10,6 +10,7 @@ use std::rc::Rc;
 
 use super::dimension::{Dimension, Ratio};
 use super::elaborator::Elaborator;
+use super::function_habits::HABITS;
 use super::kinds::Kind;
 use super::problem::Form;
 use super::scope::{Allow, Context, Entity, Meaning, look_up, visible};
@@ -81,75 +82,6 @@ pub(super) const BUILTINS: &[Builtin] = &[
 
 /// The function that takes an expression at a place in time; a declaration of its name in the spec wins.
 pub(super) const AT: &str = "at";
-
-/// How data are interpolated: declared, and applied.
-const TABLE: &str = "table f(x, y) = linear { ... }` in the problem, and here `f(x, y)";
-
-/// Names that people try, and how the language writes them.
-const HABITS: &[(&str, &str)] = &[
-    ("ln", "log(x)"),
-    ("log10", "log(x) / log(10)"),
-    ("log2", "log(x) / log(2)"),
-    ("pow", "x ^ y"),
-    ("arctan", "atan(x)"),
-    ("arctan2", "atan2(y, x)"),
-    ("arcsin", "asin(x)"),
-    ("arccos", "acos(x)"),
-    ("sgn", "sign(x)"),
-    ("fabs", "abs(x)"),
-    ("sind", "sin(x * 1 [deg])"),
-    ("cosd", "cos(x * 1 [deg])"),
-    ("tand", "tan(x * 1 [deg])"),
-    ("asind", "asin(x)"),
-    ("acosd", "acos(x)"),
-    ("atand", "atan(x)"),
-    ("deg2rad", "x * 1 [deg]"),
-    ("radians", "x * 1 [deg]"),
-    ("clip", "max(a, min(x, b))"),
-    ("clamp", "max(a, min(x, b))"),
-    ("saturate", "max(a, min(x, b))"),
-    ("sat", "max(a, min(x, b))"),
-    ("cot", "1 / tan(x)"),
-    ("sec", "1 / cos(x)"),
-    ("sigmoid", "logistic(x)"),
-    ("diff", "der(x)"),
-    ("ddt", "der(x)"),
-    ("derivative", "der(x)"),
-    ("deriv", "der(x)"),
-    ("D", "der(x)"),
-    ("integrate", "integral(x)"),
-    ("trapz", "integral(x)"),
-    ("cumtrapz", "integral(x)"),
-    ("quad", "integral(x)"),
-    ("mean", "integral(x) / T"),
-    ("average", "integral(x) / T"),
-    ("avg", "integral(x) / T"),
-    ("rms", "sqrt(integral(x^2) / T)"),
-    ("interp", TABLE),
-    ("interp1", TABLE),
-    ("interp1d", TABLE),
-    ("interp2", TABLE),
-    ("interp2d", TABLE),
-    ("interpolate", TABLE),
-    ("interpolant", TABLE),
-    ("lookup", TABLE),
-    ("lookup_table", TABLE),
-    ("sumsq", "dot(u, u)"),
-    ("vertcat", "(x, y)"),
-    ("horzcat", "((a, b), (c, d))"),
-    ("if_else", "if a <= b { x } else { y }"),
-    ("linspace", "a + (b - a) * tau"),
-    ("int", "integral(x)"),
-    ("d", "der(x)"),
-    ("sumsqr", "dot(u, u)"),
-    ("norm_2", "norm(u)"),
-    ("mtimes", "A * B"),
-    ("zeros", "0"),
-    ("eye", "identity(n)"),
-    ("diag", "diagonal(v)"),
-    ("softmax", "smooth_max(x, y, width)"),
-    ("smooth_min", "-smooth_max(-x, -y, width)"),
-];
 
 impl Builtin {
     /// A pure number of a pure number, called as the operation is.

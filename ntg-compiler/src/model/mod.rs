@@ -30,6 +30,7 @@ mod element_text;
 mod epigraph;
 mod expression;
 mod files;
+mod function_habits;
 mod functions;
 mod given;
 #[cfg(test)]
