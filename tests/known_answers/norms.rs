@@ -190,3 +190,26 @@ fn what_bounds_a_norm_is_not_negative() {
     let report = Shipped::text(text).solve();
     assert!(report.objective.abs() < 1e-6, "{report}");
 }
+
+#[test]
+fn where_a_norm_is_integrated_and_no_end_is_found_the_other_form_is_told() {
+    let text = "problem Least {
+        duration T = 10;
+        state p[2], v[2];
+        input a[2];
+        collocation gauss(points = 3, intervals = 10);
+        minimize fuel: integral(norm(a));
+        dynamics { der(p) == v;  der(v) == a; }
+        initial { p == 0;  v == 0; }
+        final { p == (9.6, 12.8);  v == 0; }
+        trajectory { norm(a) <= 1; }
+    }";
+    let problem = Shipped::text(text);
+    let few = ntg::prelude::Settings { max_iterations: 3, ..Default::default() };
+    let report = ntg::prelude::solve(problem.problem(), &few).expect("it can be set up");
+    let told = report.to_string();
+    assert!(told.contains("`norm(a)` is integrated in what is minimised: an input of its own"), "{told}");
+    let report = problem.solve();
+    close(report.objective, 4.0, 1e-4);
+    assert!(!report.to_string().contains("input of its own"), "{report}");
+}

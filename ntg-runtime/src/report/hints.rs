@@ -92,6 +92,22 @@ pub(super) fn overdetermined(nlp: &Transcription) -> Option<(String, Place)> {
     Some((message, equation.place.clone()))
 }
 
+/// The norm of a vector that is integrated in what is minimised, where a solve finds no end: an input that is its width is
+/// solved more surely than the helper that stands for it (docs/maths.md, section 18).
+pub(super) fn integrated_norm(nlp: &Transcription) -> Option<(String, Place)> {
+    let structure = &nlp.model.structure;
+    let helpers = structure.phases.iter().flat_map(|phase| &phase.outputs).filter(|output| output.is_helper());
+    let norm = helpers
+        .filter_map(|helper| helper.doc.strip_prefix("Stands for `")?.strip_suffix("`."))
+        .find(|text| ["norm(", "hypot(", "sqrt("].iter().any(|root| text.starts_with(root)) && text.ends_with(')'))?;
+    let message = format!(
+        "`{norm}` is integrated in what is minimised: an input of its own is often solved where this is not, `input s;` \
+         with the limit of the norm as its bound, `{norm} <= s` in `trajectory`, and `s` in the objective"
+    );
+    let term = structure.terms.iter().find(|term| term.place.text.contains(norm)).or(structure.terms.first())?;
+    Some((message, term.place.clone()))
+}
+
 /// Outputs that have left their sizes far behind, the farthest first.
 pub(super) fn ran_off(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);

@@ -306,6 +306,9 @@ impl Report {
         if matches!(status, Status::Infeasible { .. }) {
             told.extend(hints::overdetermined(nlp));
         }
+        if matches!(status, Status::StepTooSmall | Status::IterationLimit) {
+            told.extend(hints::integrated_norm(nlp));
+        }
         let (objective, objective_fine) = (user(nlp, outcome.objective), user(nlp, on_fine.terms.iter().sum()));
         let objective_correction = user(nlp, on_fine.correction);
         let tolerance = Settings::default().between_tolerance;
