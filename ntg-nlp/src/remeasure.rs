@@ -197,7 +197,8 @@ fn is_astray(status: &Status) -> bool {
 /// and time are those of the end.
 fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
     let Some(saddle) = saddle else { return end };
-    let is_below = end.status.has_solution() && end.objective <= saddle.objective + end.residuals.unscaled.gap;
+    let gap = end.residuals.unscaled.gap.max(saddle.residuals.unscaled.gap);
+    let is_below = end.status.has_solution() && end.objective <= saddle.objective + gap;
     if is_below || matches!(end.status, Status::Unbounded | Status::Cancelled) {
         return end;
     }

@@ -2,14 +2,12 @@
 //!
 //! Takes constraints with one bound that hold a positive multiple of the root of a sum of squares of affine expressions
 //! below something that is solved for, as a thrust below its magnitude or a glide slope does. Where the root is 0 the
-//! gradient jumps, and along the root nothing curves: Newton steps overshoot. The row is posed as (18.4), which has the
-//! same set, the same value at and beside the bound to first order, and neither of both.
-
-use ntg_structure::{Block, Unit};
+//! gradient jumps, and along the vector the root has no curvature: Newton steps overshoot. The row is posed as (18.4): the
+//! set is the same, and so are value and slopes at the bound, but the row is smooth there and curves.
 
 use super::corners::Corners;
 use super::elaborator::Elaborator;
-use super::problem::{Bounds, Constraint};
+use super::problem::Bounds;
 use super::unknowns::is_given;
 use crate::expr::{Binary, Dag, Node, NodeId, Unary};
 
@@ -60,21 +58,10 @@ impl Elaborator<'_> {
         let own = &mut self.problem.constraints[number];
         (own.body, own.written) = (smooth, Some(body));
         if !pass.signs.is_positive(&self.problem, width) {
-            self.origin(width, span);
             let own = &self.problem.constraints[number];
+            let (domain, loops) = (own.domain.clone(), own.loops.clone());
             let zero = self.problem.dag.constant(0.0);
-            self.problem.constraints.push(Constraint {
-                name: None,
-                span,
-                block: Block::Corner,
-                unit: Unit::default(),
-                loops: own.loops.clone(),
-                sides: 0,
-                written: None,
-                domain: own.domain.clone(),
-                body: width,
-                bounds: Bounds { lower: Some(zero), upper: None },
-            });
+            self.hold(domain, loops, (width, Bounds { lower: Some(zero), upper: None }), span);
         }
         true
     }
@@ -100,14 +87,24 @@ impl Elaborator<'_> {
         Some(Cone { square: found?, rest: sum })
     }
 
-    /// The square of a node that is a root times and over given positive factors.
-    fn square(&mut self, pass: &mut Corners, node: NodeId) -> Option<NodeId> {
-        match self.problem.dag.node(node).clone() {
-            Node::Unary(Unary::Sqrt, sum) => self.is_corner(node).then_some(sum),
-            Node::Binary(Binary::Hypot, a, b) if self.is_corner(node) => {
+    /// The square of a node that is a root itself.
+    pub(super) fn square_of_root(&mut self, node: NodeId) -> Option<NodeId> {
+        match *self.problem.dag.node(node) {
+            Node::Unary(Unary::Sqrt, sum) => Some(sum),
+            Node::Binary(Binary::Hypot, a, b) => {
                 let [a, b] = [a, b].map(|x| self.problem.dag.powi(x, 2));
                 Some(self.problem.dag.add(a, b))
             }
+            _ => None,
+        }
+    }
+
+    /// The square of a node that is a root times and over given positive factors.
+    fn square(&mut self, pass: &mut Corners, node: NodeId) -> Option<NodeId> {
+        if let Some(sum) = self.square_of_root(node) {
+            return self.is_corner(node).then_some(sum);
+        }
+        match *self.problem.dag.node(node) {
             Node::Binary(op @ (Binary::Mul | Binary::Div), a, b) => {
                 let is_over = op == Binary::Div;
                 let (root, factor) = if is_over || pass.has_corners(a) { (a, b) } else { (b, a) };

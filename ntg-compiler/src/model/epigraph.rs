@@ -43,15 +43,15 @@ impl Elaborator<'_> {
                         true => self.problem.dag.sub(helper, member),
                         false => self.problem.dag.sub(member, helper),
                     };
-                    self.hold(site, loops, above(body), span);
+                    self.hold_helper(site, loops, above(body), span);
                 }
             }
             Against::Root(sum) => {
                 let square = self.problem.dag.powi(helper, 2);
                 let body = self.problem.dag.sub(square, sum);
-                self.hold(site, vec![], above(body), span);
+                self.hold_helper(site, vec![], above(body), span);
                 let upper = pass.widths.of_root(&mut self.problem, (corner, sum));
-                self.hold(site, vec![], (helper, Bounds { lower: Some(zero), upper }), span);
+                self.hold_helper(site, vec![], (helper, Bounds { lower: Some(zero), upper }), span);
             }
         }
         Some(helper)
@@ -115,12 +115,9 @@ impl Elaborator<'_> {
                 let body = self.smooth(pass, body, (&inner, growing), depth + 1);
                 Some(Against::Members(vec![(body, vec![over])]))
             }
-            Node::Unary(Unary::Sqrt, sum) if is_root => {
+            Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if is_root => {
+                let sum = self.square_of_root(corner)?;
                 Some(Against::Root(self.smooth(pass, sum, (site, true), depth + 1)))
-            }
-            Node::Binary(Binary::Hypot, a, b) if is_root => {
-                let [a, b] = [a, b].map(|x| self.problem.dag.powi(x, 2));
-                Some(Against::Root(self.problem.dag.add(a, b)))
             }
             _ => None,
         }
@@ -173,15 +170,21 @@ impl Elaborator<'_> {
         units.into_iter().next().cloned().unwrap_or_default()
     }
 
-    fn hold(&mut self, site: &Site, loops: Vec<Loop>, (body, bounds): (NodeId, Bounds), span: Span) {
-        self.origin(body, span);
+    /// A row that holds a helper at its place.
+    fn hold_helper(&mut self, site: &Site, loops: Vec<Loop>, row: (NodeId, Bounds), span: Span) {
         let domain = site.along.as_ref().map_or(Domain::Mission, |at| Domain::Path(at.clone(), Part::WHOLE));
+        self.hold(domain, site.loops.iter().cloned().chain(loops).collect(), row, span);
+    }
+
+    /// A row of the compiler's own.
+    pub(super) fn hold(&mut self, domain: Domain, loops: Vec<Loop>, (body, bounds): (NodeId, Bounds), span: Span) {
+        self.origin(body, span);
         self.problem.constraints.push(Constraint {
             name: None,
             span,
             block: Block::Corner,
             unit: Unit::default(),
-            loops: site.loops.iter().cloned().chain(loops).collect(),
+            loops,
             sides: 0,
             written: None,
             domain,
