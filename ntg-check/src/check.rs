@@ -130,8 +130,7 @@ fn judged(part: &Part, judge: &mut dyn FnMut(&Part) -> bool, (first, more): (u32
 
 /// A function that depends on no time.
 pub(crate) fn number(certificate: &Certificate, function: usize, integrals: &[Interval]) -> Interval {
-    let value = evaluate(certificate, function, integrals, &|_| Jet::NOTHING);
-    if value.total { value.c[0] } else { Interval::ENTIRE }
+    evaluate(certificate, function, integrals, &|_| Jet::NOTHING).known()
 }
 
 fn verdict(certificate: &Certificate, claim: &Claim, integrals: &[Interval]) -> Sound<()> {
@@ -151,8 +150,7 @@ fn verdict(certificate: &Certificate, claim: &Claim, integrals: &[Interval]) -> 
                 Quantity::Path(function, phase, cells) => {
                     let place = claim.witness.ok_or("there is no witness")?;
                     let part = Walk::of(certificate, &[*function], *phase, *cells).part(place)?;
-                    let found = part.jets(certificate, *function, integrals).0;
-                    if found.total { found.c[0] } else { Interval::ENTIRE }
+                    part.jets(certificate, *function, integrals).0.known()
                 }
                 Quantity::Sum(_) => claim.values,
             };

@@ -1,6 +1,6 @@
 //! The functions of a certificate on boxes of time.
 
-use crate::interval::Interval;
+use crate::interval::{Interval, pi};
 use crate::jet::{Jet, binomial};
 use crate::read::{Axis, Certificate, Flat, Input, Node, Table};
 use crate::real::Real;
@@ -120,7 +120,10 @@ pub(crate) fn evaluate(certificate: &Certificate, function: usize, integrals: &[
 fn input(certificate: &Certificate, input: &Input, integrals: &[Interval], here: &Here<'_>) -> Jet {
     match input {
         Input::Flat(flat, None) => here(*flat),
-        Input::Flat(flat, Some(place)) => end_of(certificate, *flat, *place),
+        Input::Flat(flat, Some((cell, last))) => {
+            let piece = piece(certificate, *flat, *cell).unwrap_or(vec![Interval::ENTIRE]);
+            Jet::constant(if *last { piece[piece.len() - 1] } else { piece[0] })
+        }
         Input::Value(value) => Jet::constant(*value),
         Input::Integral(number) => Jet::constant(integrals.get(*number).copied().unwrap_or(Interval::ENTIRE)),
         Input::Join(how, members) => {
@@ -128,12 +131,6 @@ fn input(certificate: &Certificate, input: &Input, integrals: &[Interval], here:
             members.iter().map(member).reduce(|a, b| operation(how, &[a, b])).unwrap_or(Jet::NOTHING)
         }
     }
-}
-
-/// A flat where a cell of its phase begins, or where it ends.
-fn end_of(certificate: &Certificate, flat: Flat, (cell, last): (usize, bool)) -> Jet {
-    let piece = piece(certificate, flat, cell).unwrap_or(vec![Interval::ENTIRE]);
-    Jet::constant(if last { piece[piece.len() - 1] } else { piece[0] })
 }
 
 /// A named operation; nothing is known of one with another name or number of arguments.
@@ -148,14 +145,14 @@ fn operation(name: &str, args: &[Jet]) -> Jet {
         ("log", [x]) => x.log(),
         ("sin", [x]) => x.sine_and_cosine().0,
         ("cos", [x]) => x.sine_and_cosine().1,
-        ("tan", [x]) => x.sine_and_cosine().0.over(&x.sine_and_cosine().1),
-        ("asin", [x]) => x.atan2(&((one - *x) * (one + *x)).sqrt()),
-        ("acos", [x]) => ((one - *x) * (one + *x)).sqrt().atan2(x),
+        ("tan", [x]) => monotone(x, x.c[0], |x| x.sine_and_cosine().0.over(&x.sine_and_cosine().1)),
+        ("asin", [x]) => monotone(x, x.c[0], |x| x.atan2(&((one - *x) * (one + *x)).sqrt())),
+        ("acos", _) => Jet::constant(pi()) * half - operation("asin", args),
         ("atan", [x]) => x.atan(),
-        ("sinh", [x]) => (x.exp() - (-*x).exp()) * half,
-        ("cosh", [x]) => (x.exp() + (-*x).exp()) * half,
+        ("sinh", [x]) => monotone(x, x.c[0], |x| (x.exp() - (-*x).exp()) * half),
+        ("cosh", [x]) => monotone(x, x.c[0].abs(), |x| (x.exp() + (-*x).exp()) * half),
         ("tanh", [x]) => one - (one + one).over(&(one + (*x + *x).exp())),
-        ("abs", [x]) => x.max(&-*x),
+        ("abs", [x]) => x.max(&-*x).meet(x.c[0].abs()),
         ("sign", [x]) => step(x.c[0], x.total, [-1, 0, 1]),
         ("logistic", [x]) => one.over(&(one + (-*x).exp())),
         ("softplus", [x]) => (one + x.exp()).log(),
@@ -163,7 +160,7 @@ fn operation(name: &str, args: &[Jet]) -> Jet {
         ("sub", [a, b]) => *a - *b,
         ("mul", [a, b]) => *a * *b,
         ("div", [a, b]) => a.over(b),
-        ("pow", [a, b]) => (*b * a.log()).exp(),
+        ("pow", [a, b]) => power(a, b),
         ("atan2", [a, b]) => a.atan2(b),
         ("hypot", [a, b]) => (a.power(2) + b.power(2)).sqrt(),
         ("min", [a, b]) => -(-*a).max(&-*b),
@@ -172,6 +169,23 @@ fn operation(name: &str, args: &[Jet]) -> Jet {
         ("select", [condition, a, b]) => condition.select(a, b),
         _ => Jet::NOTHING,
     }
+}
+
+/// A function that takes all of its values on an interval, and there only rises or only falls wherever it is total: the
+/// ends of the interval decide what values there are.
+fn monotone(x: &Jet, on: Interval, f: impl Fn(&Jet) -> Jet) -> Jet {
+    let all = f(x);
+    if all.total { all.meet(on.rising(|end| f(&Jet::constant(end)).known())) } else { all }
+}
+
+/// A power; that of 0 is 0 where the exponent is positive.
+fn power(a: &Jet, b: &Jet) -> Jet {
+    let of = |a: &Jet| (*b * a.log()).exp();
+    if a.c[0].is_positive() || !a.c[0].is_not_negative() || !b.c[0].is_positive() {
+        return of(a);
+    }
+    let at = |end: Interval| if end == Interval::ZERO { end } else { of(&Jet::constant(end)).known() };
+    Jet::rough((a.c[0].rising(at), a.total && b.total))
 }
 
 /// Which of three numbers, for what is below 0, 0 and above it.
@@ -195,9 +209,7 @@ fn look_up(table: &Table, orders: &[usize], args: &[Jet]) -> Option<Jet> {
 }
 
 fn part(x: &Jet, low: Option<Real>, high: Option<Real>) -> Option<Jet> {
-    let mut part = *x;
-    part.c[0] = x.c[0].within(low, high)?;
-    Some(part)
+    x.c[0].within(low, high).map(|own| x.meet(own))
 }
 
 /// Every cell that the argument may touch.
@@ -290,9 +302,6 @@ fn polynomial(bernstein: &[Jet], u: &Jet, d: usize, width: Interval) -> Jet {
     while row.len() > 1 {
         row = row.windows(2).map(|pair| pair[0] + *u * (pair[1] - pair[0])).collect();
     }
-    let mut value = row[0];
-    if Interval::ZERO.hull(Interval::whole(1)).encloses(u.c[0]) {
-        value.c[0] = value.c[0].meet(hull);
-    }
-    Jet::constant(factor) * value
+    let inside = Interval::ZERO.hull(Interval::whole(1)).encloses(u.c[0]);
+    Jet::constant(factor) * if inside { row[0].meet(hull) } else { row[0] }
 }

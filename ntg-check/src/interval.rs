@@ -124,8 +124,8 @@ impl Interval {
         }
     }
 
-    /// A function that only rises, by its enclosures at the ends.
-    fn rising(self, f: impl Fn(Self) -> Self) -> Self {
+    /// A function that only rises, or only falls, by its enclosures at the ends.
+    pub(crate) fn rising(self, f: impl Fn(Self) -> Self) -> Self {
         let Some((low, high)) = self.ends else { return self };
         f(Self::point(low)).hull(f(Self::point(high)))
     }

@@ -67,9 +67,7 @@ impl Jet {
 
     /// What is known by its values alone.
     pub(crate) fn rough((values, total): Image) -> Self {
-        let mut c = [Interval::ENTIRE; COUNT];
-        c[0] = values;
-        Self { c, total }
+        Self { total, ..Self::NOTHING }.meet(values)
     }
 
     /// From the jet's own coefficients.
@@ -96,6 +94,17 @@ impl Jet {
         Self { c, total: self.total && total }
     }
 
+    /// What is known of the values: nothing, where there may be none.
+    pub(crate) fn known(&self) -> Interval {
+        if self.total { self.c[0] } else { Interval::ENTIRE }
+    }
+
+    /// The same, of which it is known too that its values are among these.
+    pub(crate) fn meet(mut self, values: Interval) -> Self {
+        self.c[0] = self.c[0].meet(values);
+        self
+    }
+
     /// The quotient.
     pub(crate) fn over(&self, divisor: &Self) -> Self {
         let mut c = [Interval::ZERO; COUNT];
@@ -109,9 +118,8 @@ impl Jet {
     /// A power with a whole exponent.
     pub(crate) fn power(&self, n: i32) -> Self {
         let size = n.unsigned_abs();
-        let mut power = (1..size).fold(if size == 0 { Self::one() } else { *self }, |power, _| power * *self);
-        power.c[0] = power.c[0].meet(self.c[0].power(size));
-        power.total = self.total;
+        let first = if size == 0 { Self { total: self.total, ..Self::one() } } else { *self };
+        let power = (1..size).fold(first, |power, _| power * *self).meet(self.c[0].power(size));
         if n < 0 { Self::one().over(&power) } else { power }
     }
 
@@ -171,18 +179,13 @@ impl Jet {
 
     /// `self` where it is certainly not below `other`, `other` where that is certain; else their values.
     pub(crate) fn max(&self, other: &Self) -> Self {
-        let total = self.total && other.total;
-        if (self.c[0] - other.c[0]).is_not_negative() {
-            return Self { total, ..*self };
+        let (total, above) = (self.total && other.total, self.c[0] - other.c[0]);
+        match (self.c[0].ends, other.c[0].ends) {
+            _ if above.is_not_negative() => Self { total, ..*self },
+            _ if (-above).is_not_negative() => Self { total, ..*other },
+            (Some((a, b)), Some((c, d))) => Self::rough((Interval::new(a.max(c), b.max(d)), total)),
+            _ => Self::rough((Interval::ENTIRE, total)),
         }
-        if (other.c[0] - self.c[0]).is_not_negative() {
-            return Self { total, ..*other };
-        }
-        let values = match (self.c[0].ends, other.c[0].ends) {
-            (Some((a, b)), Some((c, d))) => Interval::new(a.max(c), b.max(d)),
-            _ => Interval::ENTIRE,
-        };
-        Self::rough((values, total))
     }
 
     /// `then` where `self` is certainly not 0, `otherwise` where it certainly is; else their values.

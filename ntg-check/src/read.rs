@@ -163,11 +163,6 @@ impl<'a> Words<'a> {
         (0..length.min(MOST)).map(|_| each(self)).collect()
     }
 
-    /// A list of references to `count` things.
-    fn list(&mut self, count: usize) -> Sound<Vec<usize>> {
-        self.many(|words| words.below(count))
-    }
-
     fn real(&mut self) -> Sound<Real> {
         real(self.next()?)
     }
@@ -188,10 +183,6 @@ impl<'a> Words<'a> {
         }
         let (low, high) = (real(low)?, real(high)?);
         if low <= high { Ok(Interval::new(low, high)) } else { Err("the ends of an interval cross".to_owned()) }
-    }
-
-    fn end(&mut self) -> Sound<()> {
-        self.0.next().map_or(Ok(()), |word| Err(format!("`{word}` is one word too many")))
     }
 }
 
@@ -274,7 +265,7 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Sound<()> {
         }
         "tube" => out.tubes.push(Tube {
             phase: words.below(out.phases.len())?,
-            equations: words.list(out.claims.len())?,
+            equations: words.many(|words| words.below(out.claims.len()))?,
             cover: words.0.by_ref().map(str::to_owned).collect(),
             highest: vec![],
             components: vec![],
@@ -303,7 +294,7 @@ fn statement(out: &mut Certificate, words: &mut Words<'_>) -> Sound<()> {
             graph.push(node(word, words, (graph.len(), out.tables.as_slice()))?);
         }
     }
-    words.end()
+    words.0.next().map_or(Ok(()), |word| Err(format!("`{word}` is one word too many")))
 }
 
 /// The tube that a line belongs to.
@@ -333,7 +324,9 @@ fn input(out: &Certificate, words: &mut Words<'_>) -> Sound<Input> {
         "value" => Input::Value(Interval::point(words.real()?)),
         "tau" => Input::Flat(TAU, None),
         "integral" => Input::Integral(words.number()?),
-        join @ ("add" | "mul" | "min" | "max") => Input::Join(join.to_owned(), words.list(out.functions.len())?),
+        join @ ("add" | "mul" | "min" | "max") => {
+            Input::Join(join.to_owned(), words.many(|words| words.below(out.functions.len()))?)
+        }
         word => return Err(format!("`{word}` is no input")),
     })
 }
