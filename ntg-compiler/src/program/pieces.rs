@@ -1,10 +1,11 @@
 //! Splits functions of the whole mission into parts that live at points.
 //!
 //! An objective term or a `temporal` constraint may add up integrals and sums over families.
-//! Where they enter linearly, with a factor that no variable changes, each becomes a *piece* of
-//! its own: an integrand along a phase, or a function of one member of a family. The optimisation
-//! problem then stays a sum of small functions. What enters otherwise stays inside: integrals
-//! become variables of their own, sums become reductions (`kernel.rs`).
+//! Where they enter linearly, with a factor that is one number for the whole mission, each becomes
+//! a *piece* of its own: an integrand along a phase, or a function of one member of a family. The
+//! optimisation problem then stays a sum of small functions; a mean value, `integral(..) / T`, is
+//! one. What enters otherwise stays inside: integrals become variables of their own, sums become
+//! reductions (`kernel.rs`).
 //!
 //! Takes nodes of `model::Problem`, gives [`Piece`]s.
 
@@ -103,15 +104,15 @@ fn step(problem: &mut Problem, work: &Work) -> Step {
             let minus = problem.dag.neg(work.factor);
             Step::Summands(vec![again(a, minus)])
         }
-        Node::Binary(Binary::Mul, a, b) if is_fixed(problem, a) && worth(problem, b) => {
+        Node::Binary(Binary::Mul, a, b) if is_number(problem, a) && worth(problem, b) => {
             let factor = problem.dag.mul(work.factor, a);
             Step::Summands(vec![again(b, factor)])
         }
-        Node::Binary(Binary::Mul, a, b) if is_fixed(problem, b) && worth(problem, a) => {
+        Node::Binary(Binary::Mul, a, b) if is_number(problem, b) && worth(problem, a) => {
             let factor = problem.dag.mul(work.factor, b);
             Step::Summands(vec![again(a, factor)])
         }
-        Node::Binary(Binary::Div, a, b) if is_fixed(problem, b) && worth(problem, a) => {
+        Node::Binary(Binary::Div, a, b) if is_number(problem, b) && worth(problem, a) => {
             let factor = problem.dag.div(work.factor, b);
             Step::Summands(vec![again(a, factor)])
         }
@@ -145,10 +146,14 @@ fn worth(problem: &Problem, node: NodeId) -> bool {
     })
 }
 
-/// Whether no variable of the optimisation problem can change the node.
-fn is_fixed(problem: &Problem, node: NodeId) -> bool {
+/// Whether the node is one number for the whole mission: parameters, durations, starts and variables make it, and no
+/// output does.
+fn is_number(problem: &Problem, node: NodeId) -> bool {
     problem.dag.schedule(&[node]).iter().all(|id| match problem.dag.node(*id) {
-        Node::Input(input) => matches!(problem.leaves.leaf(*input), Leaf::Parameter { .. } | Leaf::Index(_)),
+        Node::Input(input) => matches!(
+            problem.leaves.leaf(*input),
+            Leaf::Parameter { .. } | Leaf::Index(_) | Leaf::Duration(_) | Leaf::Start(_) | Leaf::Variable { .. }
+        ),
         _ => true,
     })
 }
