@@ -6,6 +6,7 @@ use ntg_interp::Interpreted;
 use ntg_report::run::{FORMAT, VERSION, layout};
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
+use ntg_runtime::structure::Unit;
 use serde_json::Value;
 
 use crate::files;
@@ -70,8 +71,10 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
         let base = base(name);
         let base = base.as_str();
         let samples = (numbers(&output["t"]), numbers(&output["value"]));
-        if let ((Some(t), Some(value)), true) = (samples, known.contains(&base)) {
-            guess = guess.output(name, move |tau| interpolate(&t, &value, tau));
+        let declared = structure.phases.iter().flat_map(|p| &p.outputs).find(|output| output.name == base);
+        if let ((Some(t), Some(value)), Some(declared)) = (samples, declared) {
+            let scale = scale(output, &declared.unit);
+            guess = guess.output(name, move |tau| scale * interpolate(&t, &value, tau));
         }
     }
     // What a saved time is in: seconds, unless it says otherwise.
@@ -89,10 +92,15 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
     }
     for variable in &structure.variables {
         if let Some(value) = saved["variables"][&variable.name]["value"].as_f64() {
-            guess = guess.variable(&variable.name, value);
+            guess = guess.variable(&variable.name, scale(&saved["variables"][&variable.name], &variable.unit) * value);
         }
     }
     Ok(guess)
+}
+
+/// What saved values are multiplied by: they are in the unit that they were saved in, the guess is in the declared one.
+fn scale(saved: &Value, declared: &Unit) -> f64 {
+    saved["factor"].as_f64().map_or(1.0, |factor| factor / declared.factor)
 }
 
 fn numbers(list: &Value) -> Option<Vec<f64>> {

@@ -98,25 +98,21 @@ fn spaced((start, end): (f64, f64), every: f64) -> Result<Vec<f64>, String> {
 /// Time, outputs, and named expressions over time. Where something has not begun or has ended, it has no value.
 fn columns(problem: &dyn Problem, report: &Report, times: &[f64]) -> Vec<Named> {
     let solution = &report.solution;
-    let own = |values: Vec<f64>, (start, end): (f64, f64)| {
-        // Times are sums of durations: the last one may be rounded past its own end.
-        let slack = 1e-9 * (end - start);
-        let inside = |t: f64| t >= start - slack && t <= end + slack;
-        let cells = times.iter().zip(values).map(|(t, value)| Some(value).filter(|v| v.is_finite() && inside(*t)));
+    let own = |values: Vec<f64>, exists_at: &dyn Fn(f64) -> bool| {
+        let cells = times.iter().zip(values).map(|(t, value)| Some(value).filter(|v| v.is_finite() && exists_at(*t)));
         Column::Number(cells.collect())
     };
-    let all = (f64::NEG_INFINITY, f64::INFINITY);
     let independent = &solution.structure().independent;
     let shown = times.iter().map(|time| Some(independent.shown(*time))).collect();
     let mut columns = vec![(independent.heading(), Column::Number(shown))];
     for trajectory in solution.trajectories() {
         let values = times.iter().map(|t| trajectory.at(*t)).collect();
         let name = headed(trajectory.name(), trajectory.unit());
-        columns.push((name, own(values, (trajectory.start(), trajectory.end()))));
+        columns.push((name, own(values, &|t| trajectory.exists_at(t))));
     }
     for signal in solution.signals(problem).iter().filter(|signal| !signal.is_constant()) {
         let values = signal.values(times);
-        columns.push((headed(signal.name(), signal.unit()), own(values, signal.span().unwrap_or(all))));
+        columns.push((headed(signal.name(), signal.unit()), own(values, &|t| signal.exists_at(t))));
     }
     columns
 }

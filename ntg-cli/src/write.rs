@@ -5,8 +5,16 @@ use std::path::Path;
 
 use tempfile::Builder;
 
-/// Refuses a file that exists, before anything is computed.
+/// Refuses a file that exists, before anything is computed; and a spec in any case: a result never replaces one.
 pub(crate) fn may_write(path: &Path, force: bool) -> Result<(), String> {
+    if path.extension().is_some_and(|extension| extension == "ntg") {
+        return Err(format!("`{}` is a spec by its ending; give the result another name", path.display()));
+    }
+    may_replace(path, force)
+}
+
+/// Refuses a file that exists.
+fn may_replace(path: &Path, force: bool) -> Result<(), String> {
     if path.exists() && !force {
         return Err(format!("`{}` exists; give --force to replace it, or another name", path.display()));
     }
@@ -20,7 +28,7 @@ pub(crate) fn may_write(path: &Path, force: bool) -> Result<(), String> {
 
 /// Writes a file beside its place first and then moves it there.
 pub(crate) fn whole(path: &Path, force: bool, bytes: &[u8]) -> Result<(), String> {
-    may_write(path, force)?;
+    may_replace(path, force)?;
     let failed = |error: &dyn std::fmt::Display| format!("cannot write `{}`: {error}", path.display());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut partial = builder().tempfile_in(folder).map_err(|e| failed(&e))?;

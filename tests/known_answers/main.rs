@@ -13,6 +13,7 @@ mod flat_limits;
 mod fleet;
 mod flight;
 mod flight_phases;
+mod integrals;
 mod missile;
 mod norms;
 mod oscillator;

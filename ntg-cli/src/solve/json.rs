@@ -102,8 +102,8 @@ fn lets(solved: &Solved<'_>) -> Map<String, Value> {
             let shown = if signal.is_constant() {
                 json!({ "unit": unit, "value": signal.at(0.0) })
             } else {
-                let value: Vec<f64> = times.iter().map(|t| signal.at(*t)).collect();
-                json!({ "unit": unit, "t": shown(solved, &times), "value": value })
+                let own: Vec<f64> = times.iter().copied().filter(|t| signal.exists_at(*t)).collect();
+                json!({ "unit": unit, "t": shown(solved, &own), "value": signal.values(&own) })
             };
             (signal.name().to_owned(), shown)
         })

@@ -34,10 +34,13 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
     heads.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| head(s.name(), s.unit())));
     lines.push(heads.iter().map(|h| format!("{h:>w$}", w = width(h))).collect::<Vec<_>>().join(" "));
     for t in solution.times(solved.samples.min(MOST_ROWS)) {
-        let mut row = vec![independent.shown(t)];
-        row.extend(trajectories.iter().map(|trajectory| trajectory.at(t)));
-        row.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| s.at(t)));
-        let cells = row.iter().zip(&heads).map(|(value, head)| format!("{:>w$}", number(*value), w = width(head)));
+        // What has not begun or has ended has no value.
+        let mut row = vec![Some(independent.shown(t))];
+        row.extend(trajectories.iter().map(|own| own.exists_at(t).then(|| own.at(t))));
+        let moving = signals.iter().filter(|signal| !signal.is_constant());
+        row.extend(moving.map(|own| own.exists_at(t).then(|| own.at(t))));
+        let shown = row.iter().map(|value| value.map_or_else(|| "-".to_owned(), number));
+        let cells = shown.zip(&heads).map(|(value, head)| format!("{value:>w$}", w = width(head)));
         lines.push(cells.collect::<Vec<_>>().join(" "));
     }
     if solved.samples > MOST_ROWS {

@@ -384,6 +384,19 @@ impl<'a> Elaborator<'a> {
             }
             _ => None,
         };
+        if let Some(first) = written
+            && let Some(second) = (first + 1..of.arguments.len()).find(|k| self.text(of.arguments[*k].span) == text)
+        {
+            let message = format!("`{text}` is more than one argument of `{}`", self.text(of.span));
+            let finding = Diagnostic::new(Code::WrongPartial, argument.span, message);
+            let names = [first, second].map(|k| formal.get(k).map_or("..", String::as_str));
+            let help = match names.contains(&text.as_str()) {
+                true => format!("give one of them another name before, such as `let other = {text};`"),
+                false => format!("name the argument as it is declared: `{}` or `{}`", names[0], names[1]),
+            };
+            self.report(finding.help(format!("{help}; the derivative by both is the sum of the two")));
+            return None;
+        }
         let found = written.or_else(named).filter(|k| *k < of.arguments.len());
         if found.is_none() {
             let message = format!("`{text}` is no argument of `{}`", self.text(of.span));

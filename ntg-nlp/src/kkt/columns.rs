@@ -138,7 +138,7 @@ mod tests {
         let mut cliques = Cliques::default();
         let lists: [&[u32]; 6] = [&[0, 1, 2, 9], &[2, 3, 9], &[4, 5, 6, 10], &[6, 7, 8], &[8, 10], &[9, 10]];
         lists.iter().for_each(|list| cliques.add(&mut list.to_vec()));
-        let storage = Storage::new(11, &cliques);
+        let storage = Storage::new(11, 11..11, &cliques);
         let mut matrix = vec![0.0; storage.len];
         storage.clear(&mut matrix);
         for (number, list) in lists.iter().enumerate() {

@@ -383,7 +383,7 @@ mod tests {
     fn storage_of(unknowns: usize, cliques: &[Vec<u32>]) -> Storage {
         let mut all = Cliques::default();
         cliques.iter().for_each(|clique| all.add(&mut clique.clone()));
-        Storage::new(unknowns, &all)
+        Storage::new(unknowns, unknowns..unknowns, &all)
     }
 
     /// Two stretches of a band, two variables and one row that both meet.

@@ -8,6 +8,7 @@
 //! Reference: P. R. Amestoy, T. A. Davis, I. S. Duff, *SIAM J. Matrix Anal. Appl.* 17 (1996).
 
 use std::collections::{BTreeSet, HashSet};
+use std::ops::Range;
 
 /// Lists of unknowns of which every two meet, each of them once.
 #[derive(Clone, Debug, Default)]
@@ -53,26 +54,37 @@ const TYPICAL: usize = 4;
 pub(super) struct Orders {
     /// The cliques that hold each unknown.
     holding: Vec<Vec<u32>>,
-    /// Whether each unknown meets very many.
+    /// Whether each unknown comes last in every order: it meets very many, or border rows define it.
     late: Vec<bool>,
+    /// The unknowns in the program's order, but for global variables, which follow border rows.
+    program: Vec<u32>,
 }
 
 impl Orders {
-    /// Finds the unknowns that meet very many: they come last in every order.
-    pub(super) fn new(count: usize, cliques: &Cliques) -> Self {
+    /// Finds the unknowns that come last in every order. `globals` are the variables that belong to no point; border rows
+    /// follow them. A global that meets border rows and other globals alone, as integrals that are variables do, may have
+    /// no curvature of its own: its pivot is not 0 where the row that defines it is eliminated before.
+    pub(super) fn new(count: usize, globals: Range<usize>, cliques: &Cliques) -> Self {
         let holding = cliques.holding(count);
         let meets = meeting(cliques, &holding);
         let mut sorted = meets.clone();
         sorted.sort_unstable();
         let median = sorted.get(count / 2).copied().unwrap_or(0);
         let most = ((MANY * (count as f64).sqrt()) as usize).max(TYPICAL * median);
-        Self { holding, late: meets.iter().map(|&meets| meets > most).collect() }
+        let is_defined = |unknown: usize| {
+            let mut met = holding[unknown].iter().flat_map(|&clique| cliques.lists[clique as usize].iter());
+            let is_bordered = met.clone().any(|&other| other as usize >= globals.end);
+            globals.contains(&unknown) && is_bordered && met.all(|&other| other as usize >= globals.start)
+        };
+        let late = (0..count).map(|unknown| meets[unknown] > most || is_defined(unknown)).collect();
+        let program = (0..globals.start).chain(globals.end..count).chain(globals.clone()).map(|unknown| unknown as u32);
+        Self { late, program: program.collect(), holding }
     }
 
     /// The program's order.
     pub(super) fn natural(&self) -> Vec<u32> {
         let (late, mut early): (Vec<u32>, Vec<u32>) =
-            (0..self.late.len() as u32).partition(|&unknown| self.late[unknown as usize]);
+            self.program.iter().partition(|&&unknown| self.late[unknown as usize]);
         early.extend(&late);
         early
     }
@@ -80,7 +92,7 @@ impl Orders {
     /// The order of minimum degree.
     pub(super) fn by_degree(self, cliques: &Cliques) -> Vec<u32> {
         let mut order = minimum_degree(cliques, self.holding, &self.late);
-        order.extend((0..self.late.len() as u32).filter(|&unknown| self.late[unknown as usize]));
+        order.extend(self.program.iter().filter(|&&unknown| self.late[unknown as usize]));
         order
     }
 }
@@ -227,10 +239,27 @@ mod tests {
         // A star: its centre is the first in the program's order.
         let mut cliques = Cliques::default();
         (1..300).for_each(|leaf| cliques.add(&mut vec![0, leaf]));
-        let orders = Orders::new(300, &cliques);
+        let orders = Orders::new(300, 300..300, &cliques);
         for order in [orders.natural(), orders.by_degree(&cliques)] {
             assert_eq!(order.len(), 300);
             assert_eq!(order.last(), Some(&0));
+        }
+    }
+
+    #[test]
+    fn what_a_border_row_defines_comes_after_it() {
+        // A path of ten, a duration that meets all of it, an integral along it with its border row.
+        let (duration, integral, row) = (10, 11, 12);
+        let mut cliques = Cliques::default();
+        (0..9).for_each(|k| cliques.add(&mut vec![k, k + 1, duration]));
+        (0..10).for_each(|k| cliques.add(&mut vec![k, row]));
+        cliques.add(&mut vec![duration, row]);
+        cliques.add(&mut vec![integral, row]);
+        let orders = Orders::new(13, 10..12, &cliques);
+        for order in [orders.natural(), orders.by_degree(&cliques)] {
+            let place = |unknown| order.iter().position(|own| *own == unknown).expect("every unknown is in the order");
+            assert_eq!(order.len(), 13);
+            assert!(place(integral) > place(row), "{order:?}");
         }
     }
 

@@ -59,9 +59,9 @@ pub(super) struct Storage {
 impl Storage {
     /// The storage for cliques of unknowns, in the order that costs least. Where the program's order makes the factors
     /// fill nothing, there is no better one.
-    pub(super) fn new(unknowns: usize, cliques: &Cliques) -> Self {
+    pub(super) fn new(unknowns: usize, globals: Range<usize>, cliques: &Cliques) -> Self {
         let fill = |order: &[u32]| Fill::new(&Tree::new(order, cliques), cliques);
-        let orders = Orders::new(unknowns, cliques);
+        let orders = Orders::new(unknowns, globals, cliques);
         let natural = fill(&orders.natural());
         if !natural.fills {
             return Self::of(unknowns, &natural);
@@ -285,7 +285,7 @@ mod tests {
         for list in lists {
             cliques.add(&mut list.iter().map(|&u| u as u32).collect());
         }
-        Storage::new(unknowns, &cliques)
+        Storage::new(unknowns, unknowns..unknowns, &cliques)
     }
 
     /// Products of blocks that the factors take.

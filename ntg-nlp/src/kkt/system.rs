@@ -74,7 +74,7 @@ impl<W> System<W> {
         let mut elements = Elements::new(nlp.blocks(), &supports, &unknowns, &sizes);
         let mut cliques = Cliques::default();
         elements.cliques(&unknowns, |list| cliques.add(list));
-        let storage = Storage::new(n + unknowns.bordered.len(), &cliques);
+        let storage = Storage::new(n + unknowns.bordered.len(), nlp.globals()..n, &cliques);
         elements.locate(&unknowns, &storage);
         let (workspace, latest) = nlp.workspace();
         Self {

@@ -1,5 +1,6 @@
 //! Named expressions of a spec as functions of mission time.
 
+use super::trajectory::is_within;
 use super::{Inner, Solution};
 use crate::problem::Problem;
 use crate::transcribe::SetupError;
@@ -97,6 +98,11 @@ impl Signal<'_> {
         let phases = self.phases.clone()?;
         let start = layout.start(phases.start, x);
         Some((start, phases.fold(start, |t, phase| t + layout.duration(phase, x))))
+    }
+
+    /// Whether a mission time, in seconds, is within its own time, as any is within that of a single number.
+    pub fn exists_at(&self, t: f64) -> bool {
+        self.span().is_none_or(|span| is_within(t, span))
     }
 
     /// Becomes the same expression in another solution; false, and nothing changes, where that is of another problem.

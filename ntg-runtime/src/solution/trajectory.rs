@@ -114,10 +114,22 @@ impl Trajectory {
         self.phases.clone().fold(self.start(), |t, phase| t + layout.duration(phase, x))
     }
 
+    /// Whether a mission time, in seconds, is within its own time. Times are sums of durations: the last one may be
+    /// rounded past its own end.
+    pub fn exists_at(&self, t: f64) -> bool {
+        is_within(t, (self.start(), self.end()))
+    }
+
     /// `count` values at equally spaced times over its own time, as `(t, value)`.
     pub fn sample(&self, count: usize) -> Vec<(f64, f64)> {
         spaced(self.start(), self.end(), count).into_iter().map(|t| (t, self.at(t))).collect()
     }
+}
+
+/// Whether a time is in a span, to a billionth of it.
+pub(super) fn is_within(t: f64, (start, end): (f64, f64)) -> bool {
+    let slack = 1e-9 * (end - start);
+    t >= start - slack && t <= end + slack
 }
 
 impl Solution {

@@ -1,0 +1,61 @@
+//! Objectives that are functions of integrals: mean values, epigraphs, powers. Said in several ways they have one optimum,
+//! and take about as many iterations.
+
+use ntg::prelude::*;
+
+use crate::support::{Shipped, close};
+
+/// A harvest in a season that repeats: optimum and iterations.
+fn harvested(duration: &str, objective: &str) -> (f64, usize) {
+    let spec = Shipped::text(&format!(
+        "problem Harvest {{
+            param year = 6.283185307179586;
+            duration T {duration};
+            state x in 0.05 .. 2;
+            input u in 0 .. 1.2;
+            collocation gauss(points = 3, intervals = 24);
+            periodic x;
+            dynamics {{ der(x) == x * (1 - x) * (1 + 0.5 * sin(2 * pi * tau)) - u * x; }}
+            guess {{ x = 0.5;  u = 0.5; }}
+            {objective}
+        }}"
+    ));
+    let report = spec.solver().solve().expect("it can be set up");
+    assert_eq!(report.status, Status::Solved, "{objective}: {report}");
+    (report.objective, report.iterations)
+}
+
+/// Optimum: CasADi and IPOPT on this mesh, 0.2369532580.
+#[test]
+fn a_mean_value_may_be_divided_by_a_number_or_by_a_duration() {
+    for by in ["year", "T"] {
+        let mean = format!("maximize integral(u * x) / {by} - 0.05 * integral(u^2) / {by};");
+        let (objective, iterations) = harvested("= year", &mean);
+        close(objective, 0.236953258, 1e-8);
+        assert!(iterations <= 20, "/ {by}: {iterations} iterations");
+    }
+    let (objective, iterations) = harvested("in 3 .. 9", "maximize integral(u * x - 0.05 * u^2) / T;");
+    close(objective, 0.2373355689, 1e-8);
+    assert!(iterations <= 20, "{iterations} iterations");
+}
+
+/// Integrals that are variables have no curvature of their own: where two of them stand in one power, that of the objective
+/// is of rank one.
+#[test]
+fn a_power_of_integrals_has_the_optimum_of_its_base() {
+    let base = "integral(u * x) / year - 0.05 * integral(u^2) / year";
+    for exponent in [0.99_f64, 1.01] {
+        let (objective, iterations) = harvested("= year", &format!("maximize ({base})^{exponent};"));
+        close(objective, 0.236953258_f64.powf(exponent), 1e-8);
+        assert!(iterations <= 25, "^{exponent}: {iterations} iterations");
+    }
+}
+
+/// A bound above everything that is to be small takes the place of what is minimised.
+#[test]
+fn an_epigraph_of_integrals_has_the_optimum_of_what_is_below_it() {
+    let direct = harvested("in 3 .. 9", "minimize T + integral((x - 0.4)^2 + u^2);");
+    let epigraph = harvested("in 3 .. 9", "variable J; minimize J; temporal { J >= T + integral((x - 0.4)^2 + u^2); }");
+    close(epigraph.0, direct.0, 1e-7);
+    assert!(epigraph.1 <= 2 * direct.1 + 10, "{} iterations for {}", epigraph.1, direct.1);
+}
