@@ -46,10 +46,14 @@ impl fmt::Display for Tube {
                     writeln!(f, "  {of}no tube from {} on: {words}", at.trim_end())?;
                 }
             }
-            for state in &stretch.states {
+            // A tube that ends where it begins bounds nothing.
+            let is_partial = matches!(stretch.ending, Ending::At(..));
+            let is_nothing = is_partial && stretch.states.iter().all(|state| state.most == 0.0);
+            for state in stretch.states.iter().filter(|_| !is_nothing) {
                 let most = format!("{} {}", above(state.most), state.unit_label());
+                let until = if is_partial { "until then within" } else { "within" };
                 let at_end = state.at_end.map_or(String::new(), |by| format!(", {} at the end", above(by)));
-                writeln!(f, "  {:<width$}  within {}{at_end}", state.label(), most.trim_end())?;
+                writeln!(f, "  {:<width$}  {until} {}{at_end}", state.label(), most.trim_end())?;
             }
         }
         if !self.is_whole() {

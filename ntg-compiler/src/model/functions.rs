@@ -224,6 +224,8 @@ impl<'a> Elaborator<'a> {
             Some(Rule::SmoothAbs) => "write `smooth_abs(u, width)`".to_owned(),
             Some(Rule::SmoothMax) => "write `smooth_max(u, v, width)`".to_owned(),
             Some(Rule::Angle) => "write `atan2(y, x)`".to_owned(),
+            // What is left of two sides of a triangle is another angle.
+            _ if name == "atan" && given == 2 => "the angle of a point is `atan2(y, x)`".to_owned(),
             // A dot over a name is a derivative in mechanics.
             None if name == "dot" && given == 1 => {
                 "the product of two vectors is `dot(a, b)`, a derivative `der(x)`".to_owned()

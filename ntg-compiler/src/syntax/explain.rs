@@ -111,7 +111,7 @@ fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Dia
         _ if matches!(word, "measurement" | "measurements" | "measured" | "observations") => {
             finding.help("what was measured stands in `measure { }`")
         }
-        _ if word == "use" => finding.help("libraries stand before the problem: `use std::constants::*;`"),
+        _ if word == "use" => finding.help("libraries stand before the problem: `use std::constants;`"),
         _ if matches!(word, "control" | "controls") => finding.help("what is chosen freely is an `input`"),
         _ if matches!(word, "parameter" | "parameters" | "constant") => {
             finding.help("a number that may be set is a `param`, one that never changes a `const`")

@@ -292,10 +292,23 @@ fn nodes_are_told_as_they_are_written() {
 }
 
 #[test]
+fn arguments_that_say_two_things_are_told_apart() {
+    let with = |text: &str| told(&format!("{MOVING}\n    fn f(a, b) = a^3 * b;\n    {text}"));
+    says(
+        &with("let p = partial(f(x, x), x);"),
+        "error[E063]: `x` is more than one argument of `f(x, x)`",
+        "spec.ntg:6:30",
+        "name the argument as it is declared: `a` or `b`; the derivative by both is the sum of the two",
+    );
+    assert_eq!(errors(&with("let p = partial(f(x, x), a) + partial(f(x, x), b);")), 0);
+    assert!(with("let p = atan(x, 2 [m]);").contains("= help: the angle of a point is `atan2(y, x)`"));
+}
+
+#[test]
 fn words_and_quotes_of_other_languages_are_led_to_ours() {
     let begins = [
         ("measurements { x == 1 [m] sigma 1 [m]; }", "what was measured stands in `measure { }`"),
-        ("use std::rotation;", "libraries stand before the problem: `use std::constants::*;`"),
+        ("use std::rotation;", "libraries stand before the problem: `use std::constants;`"),
     ];
     for (text, help) in begins {
         let found = told(&format!("{MOVING}\n    {text}"));
