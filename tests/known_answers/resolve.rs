@@ -191,3 +191,45 @@ fn without_a_last_solution_and_where_it_does_not_help_the_guess_is_the_start() {
     let other = solved(solver.resolve());
     close(other.objective, solved(solve(&solver.problem, &solver.settings)).objective, 1e-8);
 }
+
+/// Two stages and a coast on a mesh so coarse that it has several minima: from the middle of all bounds one is found that
+/// is 3e-5 lower than the highest. Optimum: Tsiolkovsky's equation, stage by stage, less what gravity takes.
+const STAGES: &str = "
+    problem Stages {
+        state h [km], v [m/s], m [t];
+        duration total in 50 .. 900 [s];
+        collocation gauss(points = 3, intervals = 10);
+        let g [m/s^2] = 9.81 [m/s^2];
+        phase boost {
+            duration tb in 20 .. 120 [s];
+            input f in 0 .. 400 [kN];
+            dynamics { der(h) == v; der(v) == f / m - g; der(m) == -f / 2.8 [km/s]; }
+            final { m >= 8 [t]; }
+        }
+        phase second after boost {
+            duration in 10 .. 200 [s];
+            jump m;
+            initial { m == 6 [t]; }
+            input f in 0 .. 100 [kN];
+            dynamics { der(h) == v; der(v) == f / m - g; der(m) == -f / 3.2 [km/s]; }
+            final { m >= 2 [t]; }
+        }
+        phase coast after second {
+            duration in 1 .. 500 [s];
+            dynamics { der(h) == v; der(v) == -g; der(m) == 0; }
+        }
+        maximize final(h);
+        initial { h == 0; v == 0; m == 20 [t]; }
+        final { v == 0; }
+        guess { h = 100 [km] * tau; v = 500 [m/s]; m = 8 [t]; duration(boost) = 60 [s]; }
+    }";
+
+#[test]
+fn a_solution_is_no_worse_than_a_guess_that_is_one() {
+    let spec = Shipped::text(STAGES);
+    let first = spec.solve();
+    close(first.objective, 1_200_165.19, 1e-7);
+    let again = spec.solve_from(&Guess::from(&first.solution));
+    close(again.objective, first.objective, 1e-8);
+    assert!(again.warnings().iter().all(|warning| !warning.to_string().contains("the guess keeps")), "{again}");
+}

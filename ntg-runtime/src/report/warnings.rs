@@ -75,6 +75,17 @@ impl Report {
         singular.chain(told).chain(saddle).chain(coarse).chain(cost).chain(between).chain(unmet).collect()
     }
 
+    /// Tells that the guess keeps all constraints and has a better objective than what was found.
+    pub(crate) fn guess_was_better(&mut self, is_better: bool) {
+        let place = || self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone());
+        let told = is_better.then(|| {
+            let message = "the guess keeps all constraints at the points and has a better objective than this solution, which is \
+                 another local optimum; try several starts";
+            (message.to_owned(), place())
+        });
+        self.told.extend(told);
+    }
+
     /// Where the equations that a solution misses between the points are worth more of its objective than
     /// `Settings::between_tolerance`, to first order.
     fn equations_are_off(&self) -> Option<Warning> {

@@ -52,6 +52,11 @@ impl<'a> Budget<'a> {
         if is_late { Status::TimeLimit } else { Status::IterationLimit }
     }
 
+    /// How far rows may be missed.
+    pub(super) fn constraint_tolerance(&self) -> f64 {
+        self.settings.constraint_tolerance
+    }
+
     /// Settings of the first attempt; none where nothing is left. A method that the user has chosen has all that is left.
     pub(super) fn attempt(&self) -> Option<Settings> {
         if self.settings.method == Method::Auto { self.at_most(self.share(ATTEMPT)) } else { self.rest() }

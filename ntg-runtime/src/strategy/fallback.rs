@@ -141,7 +141,7 @@ impl Session {
                 }
                 if let Some(mut next) = self.attempt(attempt, nlp, task, x, &outcome, budget)? {
                     if attempt.has_other_sizes() {
-                        next.residuals.scaled.primal = violation_by(nlp, &outcome.row_factors, &next.x);
+                        next.residuals.scaled.primal = violation_by(nlp, &outcome.row_factors, &next.x).0;
                     }
                     seems_infeasible |= misses(&next);
                     outcome = better(outcome, next);
@@ -221,16 +221,17 @@ impl Session {
     }
 }
 
-/// The largest violation of a row at a point, times the row's factor; infinite where a row has no value.
-fn violation_by(nlp: &Transcription, factors: &[f64], x: &[f64]) -> f64 {
+/// The largest violation of a row at a point, times the row's factor, and the minimised objective; infinite where a row has
+/// no value.
+pub(super) fn violation_by(nlp: &Transcription, factors: &[f64], x: &[f64]) -> (f64, f64) {
     let (mut work, mut at) = nlp.workspace();
     if nlp.values(x, &mut work, &mut at).is_err() {
-        return f64::INFINITY;
+        return (f64::INFINITY, f64::INFINITY);
     }
     let limits = nlp.limits();
     let bounds = limits.row_lower.iter().zip(&limits.row_upper);
     let missed = at.rows.iter().zip(bounds).map(|(value, (lower, upper))| violation(*value, *lower, *upper));
-    missed.zip(factors).map(|(missed, factor)| missed * factor).fold(0.0, f64::max)
+    (missed.zip(factors).map(|(missed, factor)| missed * factor).fold(0.0, f64::max), at.objective)
 }
 
 /// Whether violations have stopped falling at the end of an outcome, be they least there or not.

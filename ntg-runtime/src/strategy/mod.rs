@@ -7,7 +7,7 @@
 //!
 //! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
 //! `coarse_start` finds starts on fewer knots, `simulated_start` by simulation, `fallback` is the sequence of attempts where
-//! a solve fails.
+//! a solve fails, `feasible_guess` looks whether a guess was better.
 
 mod beside;
 mod budget;
@@ -15,6 +15,7 @@ mod carried;
 mod coarse_start;
 mod continuation;
 mod fallback;
+mod feasible_guess;
 mod session;
 mod simulated_start;
 mod solve;

@@ -84,10 +84,15 @@ impl Session {
                 from = Start::Warm(last.multipliers());
             }
             let first_point = (FirstPoint { x: &first, from }, guessed.as_deref());
+            let mut is_guess_better = false;
             let mut outcome = match simulated {
                 Some(outcome) if is_simulated => outcome,
                 failed => self.solve_with_fallback(&mut nlp, task, first_point, failed, !is_last, &mut budget)?,
             };
+            if is_last && i == 0 {
+                let guess = guessed.as_deref().unwrap_or(&first);
+                (outcome, is_guess_better) = self.no_worse_than_guess(&mut nlp, guess, outcome, &mut budget)?;
+            }
             outcome.iterations = budget.spent() - spent;
             if is_last {
                 outcome = self.unwrap_turns(&mut nlp, outcome, settings);
@@ -96,6 +101,7 @@ impl Session {
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
                 let mut report = self.report(nlp, outcome, history, settings)?;
                 report.singular = at_guess;
+                report.guess_was_better(is_guess_better);
                 self.structure = Some(structure);
                 report.seconds = began.elapsed().as_secs_f64();
                 return Ok(report);
