@@ -239,3 +239,37 @@ fn an_objective_that_is_small_beside_what_it_may_be_is_exact() {
         close(report.objective, 2.0 * a * pulse, 1e-4);
     }
 }
+
+/// A store that buys and sells by a tariff, with a price on less than a reserve: a linear program. At its first points the
+/// reserve is kept, and what is missed of it is next to 0, which is no size. Optimum: CasADi and IPOPT on this mesh,
+/// -2.868687499.
+fn store(unit: &str, joules: f64, method: Method) -> f64 {
+    let n = |kilowatt_hours: f64| format!("{:e} [{unit}]", kilowatt_hours * 3.6e6 / joules);
+    let (most, half, reserve) = (n(10.0), n(5.0), n(3.0));
+    let spec = Shipped::text(&format!(
+        "problem Store {{
+            domain t [h];
+            duration D = 24 [h];
+            state E in 0 .. {most};
+            input c in 0 .. 4 [kW], d in 0 .. 4 [kW];
+            collocation gauss(points = 1, intervals = 48);
+            table price(time [h]) [1/kWh] =
+                linear {{ 0: 0.1; 6: 0.1; 8: 0.35; 12: 0.2; 17: 0.25; 19: 0.5; 22: 0.2; 24: 0.1; }}
+            minimize cost: integral(price(t) * (c - d));
+            dynamics {{ der(E) == 0.9 * c - d / 0.9; }}
+            initial {{ E == {half}; }}
+            final {{ E >= {half}; }}
+            trajectory {{ soft(0.02 [1/(kWh*h)]): reserve: E >= {reserve}; }}
+        }}"
+    ));
+    spec.by(method).solve().objective
+}
+
+#[test]
+fn what_is_missed_of_a_reserve_has_the_size_of_the_reserve_in_any_unit() {
+    for (unit, joules) in [("J", 1.0), ("Wh", 3.6e3), ("kWh", 3.6e6), ("GWh", 3.6e12)] {
+        for method in [Method::Auto, Method::Sqp] {
+            close(store(unit, joules, method), -2.868_687_499, 1e-6);
+        }
+    }
+}

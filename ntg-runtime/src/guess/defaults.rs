@@ -23,24 +23,24 @@ pub(super) fn times(nlp: &Transcription, x: &mut [f64]) {
     }
     let durations = layout.phases.iter().filter(|p| p.duration.fixed().is_none()).count();
     let first = layout.coefficients + durations;
-    let bounds = nlp.limits.lower.iter().zip(&nlp.limits.upper);
-    for (value, (lower, upper)) in x.iter_mut().zip(bounds).skip(first) {
-        *value = middle(*lower, *upper);
+    let bounds = nlp.limits.lower.iter().zip(&nlp.limits.upper).zip(nlp.units());
+    for (value, ((lower, upper), unit)) in x.iter_mut().zip(bounds).skip(first) {
+        *value = middle((*lower, *upper), unit);
     }
 }
 
 fn duration(lower: f64, upper: f64) -> f64 {
     // The smallest duration of all is a guard, not a bound that anyone wrote.
     match (lower != shortest_duration(upper), upper.is_finite()) {
-        (true, true) => middle(lower, upper),
+        (true, true) => middle((lower, upper), 1.0),
         (true, false) => 2.0 * lower,
         (false, true) => 0.5 * upper,
         (false, false) => 1.0,
     }
 }
 
-/// The middle of two bounds, or a point near the one that is finite.
-pub(super) fn middle(lower: f64, upper: f64) -> f64 {
+/// The middle of two bounds, or a point near the one that is finite: one unit from 0.
+pub(super) fn middle((lower, upper): (f64, f64), unit: f64) -> f64 {
     match (lower.is_finite(), upper.is_finite()) {
         (true, true) if lower > 0.0 && upper >= DECADE * lower => (lower * upper).sqrt(),
         (true, true) => 0.5 * (lower + upper),
@@ -48,14 +48,14 @@ pub(super) fn middle(lower: f64, upper: f64) -> f64 {
             if lower > 0.0 {
                 2.0 * lower
             } else {
-                lower + 1.0
+                lower + unit
             }
         }
         (false, true) => {
             if upper < 0.0 {
                 2.0 * upper
             } else {
-                upper - 1.0
+                upper - unit
             }
         }
         (false, false) => 0.0,
@@ -91,13 +91,13 @@ pub(super) fn outputs(nlp: &Transcription, x: &mut [f64]) {
 /// width of a cone, is one of its unit: at 0 is the tip (docs/maths.md, section 18).
 fn constant(nlp: &Transcription, phase: usize, output: usize) -> f64 {
     let is_written = |constraint: usize| nlp.model.structure.constraints[constraint].block != Block::Corner;
-    if let Some((lower, upper)) = bounds_by(nlp, phase, output, is_written) {
-        return middle(lower, upper);
+    let layout = &nlp.model.layout.phases[phase];
+    let unit = nlp.model.structure.phases[layout.phase].outputs[layout.outputs[output].output].unit.factor;
+    if let Some(written) = bounds_by(nlp, phase, output, is_written) {
+        return middle(written, unit);
     }
     let Some((lower, upper)) = bounds(nlp, phase, output) else { return 0.0 };
-    let layout = &nlp.model.layout.phases[phase];
-    let declared = &nlp.model.structure.phases[layout.phase].outputs[layout.outputs[output].output];
-    if upper.is_finite() { middle(lower, upper) } else { lower + declared.unit.factor }
+    if upper.is_finite() { middle((lower, upper), unit) } else { lower + unit }
 }
 
 /// `(t, value)` wherever a boundary condition fixes this output in its agent.

@@ -83,7 +83,13 @@ impl Session {
             Some(solution) => (start(&nlp, Some(&Guess::from(solution)))?, Start::Near),
             None => (start(&nlp, task.guess)?, Start::Cold),
         };
-        nlp.set_scales(&x, &settings)?;
+        match from {
+            Start::Near => {
+                let guess = start(&nlp, task.guess)?;
+                nlp.set_scales_near(&x, &guess, &settings)?;
+            }
+            _ => nlp.set_scales(&x, &settings)?,
+        }
         let outcome = self.solve_once(&nlp, FirstPoint { x: &x, from }, &settings);
         budget.spend(outcome.iterations);
         let solution = outcome.status.has_solution().then(|| solution(&nlp, outcome));

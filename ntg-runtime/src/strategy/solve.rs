@@ -10,7 +10,7 @@ use crate::guess::{Guess, start};
 use crate::problem::Problem;
 use crate::report::status::in_words;
 use crate::report::{Report, StepReport, user};
-use crate::settings::Settings;
+use crate::settings::{Scaling, Settings};
 use crate::solution::Solution;
 use crate::status::Status as InWords;
 use crate::transcribe::{SetupError, Transcription};
@@ -79,7 +79,10 @@ impl Session {
                     from = Start::Near;
                 }
             }
-            nlp.set_scales(&first, settings)?;
+            match &guessed {
+                Some(guessed) => nlp.set_scales_near(&first, guessed, settings)?,
+                None => nlp.set_scales(&first, settings)?,
+            }
             if let Some(last) = last.as_ref().filter(|last| last.status.has_solution()) {
                 from = Start::Warm(last.multipliers());
             }
@@ -177,6 +180,9 @@ impl Session {
         self.structure = Some(structure);
         let first = start(&nlp, Some(&Guess::from(last)))?;
         nlp.set_scales(&first, settings)?;
+        if last.inner.sizes.len() == first.len() && settings.scaling != Scaling::Off {
+            nlp.raise_sizes(&last.inner.sizes);
+        }
         let own = last.inner.multipliers();
         let rows: Vec<f64>; // Of a program with other rows.
         let from = if last.inner.x.len() != first.len() {

@@ -16,6 +16,10 @@ use std::ops::Range;
 /// by as much. A law: that of the acceptable end (1e-6) to the default tolerance.
 const TOO_LARGE: f64 = 1e-2;
 
+/// At a point that a solve has found, what is below this fraction of its size lies at a bound, which tells no size. A law:
+/// the tolerance of a rough solution, which starts on coarser knots have.
+const AT_BOUND: f64 = 1e-4;
+
 /// A guess that is such a part of one of the same kind is what rounding leaves of 0, as `50 * cos(90 [deg])` beside
 /// `50 * sin(90 [deg])`. A law: from a part of one rounding to a hundred of them; what is smaller is meant.
 const ROUNDING: Range<f64> = 2e-17..1e-14;
@@ -50,6 +54,31 @@ impl Transcription<'_> {
         self.has_named_size = from_guess.iter().zip(&scale).map(|(before, now)| !automatic || before != now).collect();
         self.limits.scale = scale;
         self.limits.row_scale = if automatic { self.row_scales() } else { vec![1.0; self.limits.row_lower.len()] };
+        Ok(())
+    }
+
+    /// Raises sizes by a point that a solve has found where they are next to nothing beside others: those by the guess of
+    /// that solve, or those with which it was solved (docs/maths.md, equation 5.10).
+    pub(crate) fn raise_sizes(&mut self, others: &[f64]) {
+        let is_at_bound = |size: f64, other: f64| size < AT_BOUND * other;
+        if self.limits.scale.iter().zip(others).any(|(size, other)| is_at_bound(*size, *other)) {
+            let raised = |(size, other): (&f64, &f64)| if is_at_bound(*size, *other) { *other } else { *size };
+            self.limits.scale = self.limits.scale.iter().zip(others).map(raised).collect();
+            self.limits.row_scale = self.row_scales();
+        }
+    }
+
+    /// Sets all sizes at a point that a solve from a guess has found, see [`Transcription::raise_sizes`].
+    ///
+    /// # Errors
+    /// As [`Transcription::set_scales`].
+    pub(crate) fn set_scales_near(&mut self, x: &[f64], guess: &[f64], settings: &Settings) -> Result<(), SetupError> {
+        self.set_scales(guess, settings)?;
+        let by_guess = std::mem::take(&mut self.limits.scale);
+        self.set_scales(x, settings)?;
+        if settings.scaling != Scaling::Off {
+            self.raise_sizes(&by_guess);
+        }
         Ok(())
     }
 
@@ -99,7 +128,15 @@ impl Transcription<'_> {
             }
         }
         let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
-        self.balance_sizes(&groups, (&guess, &guess), scale);
+        // One unit everywhere is what nobody has guessed of an output above 0 (section 8.1), and no size of its own.
+        let mut known = guess.clone();
+        for output in outputs.iter().filter(|o| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor)) {
+            output.coefficients.iter().for_each(|v| known[*v as usize] = 0.0);
+        }
+        // Its own bound would tell it there; where functions have no slopes at the bound, so it is.
+        if !self.balance_sizes(&groups, (&known, &known), scale) {
+            self.balance_sizes(&groups, (&guess, &known), scale);
+        }
         for (output, own) in outputs.iter().zip(&guessed) {
             let least = of_kind(&outputs, &guessed, output, f64::min);
             let most = of_kind(&outputs, &guessed, output, f64::max);
@@ -164,7 +201,7 @@ impl Transcription<'_> {
     }
 
     /// The unit of each variable: that of its output or declaration.
-    pub(super) fn units(&self) -> Vec<f64> {
+    pub(crate) fn units(&self) -> Vec<f64> {
         let mut units = vec![1.0; self.limits.lower.len()];
         self.groups().into_iter().for_each(|(group, unit)| group.iter().for_each(|v| units[*v as usize] = unit));
         let (structure, layout) = (&self.model.structure, &self.model.layout);

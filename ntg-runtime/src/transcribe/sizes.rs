@@ -72,12 +72,13 @@ pub(super) fn slot_group(block: &Block, e: usize, slot: usize, balance: &Balance
 impl Transcription<'_> {
     /// Replaces the sizes of all groups that are 0 in the guess, by the slopes at a point, which may be that guess.
     /// `groups` are variables that share a size; every other variable is a group of its own.
-    pub(super) fn balance_sizes(&self, groups: &[Vec<u32>], (x, guess): (&[f64], &[f64]), scale: &mut [f64]) {
+    /// False, and nothing is replaced, where something is not finite at the point.
+    pub(super) fn balance_sizes(&self, groups: &[Vec<u32>], (x, guess): (&[f64], &[f64]), scale: &mut [f64]) -> bool {
         let mut balance = self.balance(groups, guess);
         let (mut workspace, mut at) = self.workspace();
         let multipliers = vec![0.0; self.elements.rows.len()];
         if self.derivatives(x, 1.0, &multipliers, &mut workspace, &mut at).is_err() {
-            return;
+            return false;
         }
         self.collect_slopes(&at, &mut balance);
         let guessed = balance.size.clone();
@@ -93,6 +94,7 @@ impl Transcription<'_> {
                 _ => {}
             }
         }
+        true
     }
 
     /// Sizes of what has none. `scale` has those that are taken until then.
