@@ -79,8 +79,8 @@ impl Report {
     pub(crate) fn guess_was_better(&mut self, is_better: bool) {
         let place = || self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone());
         let told = is_better.then(|| {
-            let message = "the guess keeps all constraints at the points and has a better objective than this solution, which is \
-                 another local optimum; try several starts";
+            let message = "the guess keeps all constraints at the points and has a better objective than what was found, \
+                 perhaps another local optimum; try several starts";
             (message.to_owned(), place())
         });
         self.told.extend(told);

@@ -7,7 +7,6 @@
 use super::budget::Budget;
 use super::fallback::violation_by;
 use super::session::{FirstPoint, Session};
-use crate::settings::Scaling;
 use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Nlp, Outcome, Start, Status};
 
@@ -34,9 +33,7 @@ impl Session {
         let Some(settings) = budget.further() else { return Ok((outcome, true)) };
         let scales = nlp.limits.clone();
         nlp.set_scales(guess, &settings)?;
-        if settings.scaling != Scaling::Off {
-            nlp.raise_sizes(&scales.scale);
-        }
+        nlp.raise_sizes(&scales.scale, &settings);
         let next = self.solve_measured(nlp, FirstPoint { x: guess, from: Start::Near }, &settings);
         budget.spend(next.iterations);
         let is_as_sure = next.status == Status::Solved || next.status == outcome.status;

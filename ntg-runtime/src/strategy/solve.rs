@@ -10,7 +10,7 @@ use crate::guess::{Guess, start};
 use crate::problem::Problem;
 use crate::report::status::in_words;
 use crate::report::{Report, StepReport, user};
-use crate::settings::{Scaling, Settings};
+use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::status::Status as InWords;
 use crate::transcribe::{SetupError, Transcription};
@@ -81,6 +81,11 @@ impl Session {
             }
             match &guessed {
                 Some(guessed) => nlp.set_scales_near(&first, guessed, settings)?,
+                // A saved solution may lie at bounds as one on coarser knots does.
+                None if i == 0 && guess.is_some_and(Guess::is_near) => {
+                    let (own, _) = self.first_point(&nlp, None)?;
+                    nlp.set_scales_near(&first, &own, settings)?;
+                }
                 None => nlp.set_scales(&first, settings)?,
             }
             if let Some(last) = last.as_ref().filter(|last| last.status.has_solution()) {
@@ -180,9 +185,7 @@ impl Session {
         self.structure = Some(structure);
         let first = start(&nlp, Some(&Guess::from(last)))?;
         nlp.set_scales(&first, settings)?;
-        if last.inner.sizes.len() == first.len() && settings.scaling != Scaling::Off {
-            nlp.raise_sizes(&last.inner.sizes);
-        }
+        nlp.raise_sizes(&last.inner.sizes, settings);
         let own = last.inner.multipliers();
         let rows: Vec<f64>; // Of a program with other rows.
         let from = if last.inner.x.len() != first.len() {

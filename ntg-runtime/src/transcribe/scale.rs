@@ -59,7 +59,11 @@ impl Transcription<'_> {
 
     /// Raises sizes by a point that a solve has found where they are next to nothing beside others: those by the guess of
     /// that solve, or those with which it was solved (docs/maths.md, equation 5.10).
-    pub(crate) fn raise_sizes(&mut self, others: &[f64]) {
+    /// Without scaling, or for another number of variables, nothing is raised.
+    pub(crate) fn raise_sizes(&mut self, others: &[f64], settings: &Settings) {
+        if settings.scaling == Scaling::Off || others.len() != self.limits.scale.len() {
+            return;
+        }
         let is_at_bound = |size: f64, other: f64| size < AT_BOUND * other;
         if self.limits.scale.iter().zip(others).any(|(size, other)| is_at_bound(*size, *other)) {
             let raised = |(size, other): (&f64, &f64)| if is_at_bound(*size, *other) { *other } else { *size };
@@ -76,9 +80,7 @@ impl Transcription<'_> {
         self.set_scales(guess, settings)?;
         let by_guess = std::mem::take(&mut self.limits.scale);
         self.set_scales(x, settings)?;
-        if settings.scaling != Scaling::Off {
-            self.raise_sizes(&by_guess);
-        }
+        self.raise_sizes(&by_guess, settings);
         Ok(())
     }
 
