@@ -1,8 +1,10 @@
 //! From a statement to what is proved of it: one [`Finding`] for each subject.
 
+use std::collections::BTreeMap;
+
 use crate::evaluate::Machine;
 use crate::interval::Interval;
-use crate::prove::{Goal, Leaf, Options, Required, Search, Witness, integral, search};
+use crate::prove::{self, Goal, Leaf, Options, Required, Search, Witness, integral, search};
 use crate::statement::{Kind, Over, Quantity, Statement, Subject, Summand};
 use crate::tube::Evidence;
 
@@ -77,7 +79,7 @@ pub fn constraints(statement: Statement, options: &Options) -> Certificate {
         integrals.push((value, covers));
     }
     let each = statement.subjects.iter().map(|subject| match subject.kind {
-        Kind::Constraint(_) => finding(&machine, subject, options),
+        Kind::Constraint(_) => finding(&machine, (subject, None), options),
         Kind::Term(_) | Kind::Named(_) => Finding::unknown(),
     });
     let findings = each.collect();
@@ -100,9 +102,22 @@ impl Certificate {
         let began = std::time::Instant::now();
         let mut machine = Machine::new(&self.statement);
         machine.integrals = self.integrals.iter().map(|(value, _)| *value).collect();
+        // Members of a named expression are seen side by side: the range of all tells how finely each is to be known.
+        let mut attained: BTreeMap<usize, Interval> = BTreeMap::new();
+        for subject in &self.statement.subjects {
+            let (Kind::Named(number), Quantity::Path(function, phase, cells)) = (subject.kind, &subject.quantity)
+            else {
+                continue;
+            };
+            if let Some(own) = prove::attained(&machine, (*function, *phase, cells.clone())) {
+                let all = attained.entry(number).or_insert(own);
+                *all = all.hull(own);
+            }
+        }
         for (subject, found) in self.statement.subjects.iter().zip(&mut self.findings) {
             if !matches!(subject.kind, Kind::Constraint(_)) {
-                *found = finding(&machine, subject, options);
+                let elsewhere = if let Kind::Named(number) = subject.kind { attained.get(&number) } else { None };
+                *found = finding(&machine, (subject, elsewhere.copied()), options);
             }
         }
         drop(machine);
@@ -158,7 +173,8 @@ fn bound(machine: &Machine<'_>, function: Option<usize>) -> Option<Interval> {
     Some(if value.total { value.c[0] } else { Interval::ENTIRE })
 }
 
-fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Finding {
+/// What is found of a subject, of which values may be known to be attained elsewhere.
+fn finding(machine: &Machine<'_>, (subject, elsewhere): (&Subject, Option<Interval>), options: &Options) -> Finding {
     let (below, above) = (bound(machine, subject.bounds.0), bound(machine, subject.bounds.1));
     let equality = subject.bounds.0.is_some() && subject.bounds.0 == subject.bounds.1;
     let required = (below.is_some() || above.is_some()).then(|| Required {
@@ -169,7 +185,7 @@ fn finding(machine: &Machine<'_>, subject: &Subject, options: &Options) -> Findi
         Quantity::Path(function, phase, cells) => {
             let goal = match required {
                 Some(required) if !equality => Goal::Bounds(required),
-                _ => Goal::Range,
+                _ => Goal::Range(elsewhere),
             };
             let found = search(machine, (*function, *phase, cells.clone()), &goal, options);
             path(found, (required, equality), (below, subject.unit.factor))

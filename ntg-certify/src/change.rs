@@ -1,20 +1,26 @@
 //! What is done to a constraint that fails between its points: more points where it fails, and tightened bounds.
 
+use std::collections::BTreeMap;
+
 use ntg_structure::{Instant, Part};
 
 /// Into how many equal parts of scaled time a phase is divided for points that are added.
 pub const PARTS: usize = 64;
 
+/// How many times as many points hold a member in each of the [`PARTS`] equal parts of its phase: 2 to the power of this.
+pub type Levels = [u8; PARTS];
+
 /// What is done to one constraint.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
     /// By how much its lower bound is raised, SI.
     pub below: f64,
     /// By how much its upper bound is lowered, SI.
     pub above: f64,
-    /// In which of the [`PARTS`] equal parts of its phases more points hold it, and how many times as many: 2 to the
-    /// power of this.
-    pub levels: [u8; PARTS],
+    /// Where more points hold it, for each of its members that needs them, by the indices of the member.
+    pub levels: BTreeMap<Vec<i64>, Levels>,
+    /// How many members it has along its phases.
+    pub members: usize,
     /// Where an end condition fixes it at the start of its phases and it meets a bound there, and the same at their end,
     /// what is left as it is.
     pub ends: [Spared; 2],
@@ -34,22 +40,15 @@ pub enum Spared {
     Interval,
 }
 
-impl Default for Change {
-    fn default() -> Self {
-        Self { below: 0.0, above: 0.0, levels: [0; PARTS], ends: [Spared::Nothing; 2], missed: 0.0 }
-    }
-}
-
 impl Change {
-    /// Holds it at more points between two scaled times: 2 to the power of `more` times as many as now, `most` at most;
-    /// and half as many beside these parts.
-    pub(crate) fn mark(&mut self, now: &Self, (from, to): (f64, f64), (more, most): (u8, u8)) {
-        let part = |tau: f64| ((tau * PARTS as f64) as usize).min(PARTS - 1);
+    /// Holds a member at more points between two scaled times: 2 to the power of `more` times as many as now, `most` at
+    /// most; and half as many beside these parts.
+    pub(crate) fn mark(&mut self, now: &Self, (member, from, to): (&[i64], f64, f64), (more, most): (u8, u8)) {
+        let now = now.levels.get(member).copied().unwrap_or([0; PARTS]);
+        let levels = self.levels.entry(member.to_vec()).or_insert([0; PARTS]);
         // What ends where a part begins is not in it.
         let (first, last) = (part(from), part((to - SAME).max(from)));
-        let mut raise = |own: usize, more: u8| {
-            self.levels[own] = self.levels[own].max((now.levels[own] + more).min(most));
-        };
+        let mut raise = |own: usize, more: u8| levels[own] = levels[own].max((now[own] + more).min(most));
         (first..=last).for_each(|own| raise(own, more));
         for beside in [first.checked_sub(1), Some(last + 1).filter(|own| *own < PARTS)].into_iter().flatten() {
             raise(beside, more.saturating_sub(1));
@@ -61,36 +60,53 @@ impl Change {
         self.ends != [Spared::Nothing; 2]
     }
 
-    /// The level at a scaled time.
-    pub(crate) fn level(&self, tau: f64) -> u8 {
-        self.levels[((tau * PARTS as f64) as usize).min(PARTS - 1)]
+    /// The level of a member at a scaled time.
+    pub(crate) fn level(&self, member: &[i64], tau: f64) -> u8 {
+        self.levels.get(member).map_or(0, |levels| levels[part(tau)])
+    }
+
+    /// The levels of a member of a group that holds the constraint. The group may have loops more than the spec writes, or
+    /// fewer (the sides of a corner): members that agree in the indices that both have are the same.
+    pub(crate) fn levels_of(&self, indices: &[i64]) -> Levels {
+        let agrees = |own: &[i64]| own.iter().zip(indices).all(|(a, b)| a == b);
+        let mut levels = [0; PARTS];
+        for (_, own) in self.levels.iter().filter(|(member, _)| agrees(member)) {
+            levels.iter_mut().zip(own).for_each(|(most, own)| *most = (*most).max(*own));
+        }
+        levels
     }
 
     /// How many times as many points hold it where there are most.
     pub fn points(&self) -> usize {
-        1 << self.levels.iter().max().copied().unwrap_or(0)
+        1 << self.levels.values().flatten().max().copied().unwrap_or(0)
     }
 
-    /// The part of its phases' time in which more points are.
+    /// The part of the time of all of its members in which more points are.
     pub fn share(&self) -> f64 {
-        self.levels.iter().filter(|level| **level > 0).count() as f64 / PARTS as f64
+        let marked = self.levels.values().flatten().filter(|level| **level > 0).count();
+        marked as f64 / (PARTS * self.members.max(self.levels.len()).max(1)) as f64
     }
+}
 
-    /// The levels that there are.
-    pub(crate) fn each_level(&self) -> impl Iterator<Item = u8> + '_ {
-        (1..=self.levels.iter().max().copied().unwrap_or(0)).filter(|level| self.levels.contains(level))
-    }
+/// In which of the equal parts a scaled time is.
+fn part(tau: f64) -> usize {
+    ((tau * PARTS as f64) as usize).min(PARTS - 1)
+}
 
-    /// Parts of one level that follow each other, as stretches of scaled time inside a part of the phase.
-    pub(crate) fn stretches(&self, level: u8, within: &Part) -> Vec<Part> {
-        let is_marked = |own: usize| own < PARTS && self.levels[own] == level;
-        let firsts = (0..PARTS).filter(|own| is_marked(*own) && (*own == 0 || !is_marked(own - 1)));
-        let stretch = |first: usize| {
-            let end = (first..=PARTS).find(|own| !is_marked(*own)).unwrap_or(PARTS);
-            cut(within, (first as f64 / PARTS as f64, end as f64 / PARTS as f64))
-        };
-        firsts.filter_map(stretch).collect()
-    }
+/// The levels above 0 that there are.
+pub(crate) fn each_level(levels: &Levels) -> impl Iterator<Item = u8> + '_ {
+    (1..=levels.iter().max().copied().unwrap_or(0)).filter(|level| levels.contains(level))
+}
+
+/// Parts of one level that follow each other, as stretches of scaled time inside a part of the phase.
+pub(crate) fn stretches(levels: &Levels, level: u8, within: &Part) -> Vec<Part> {
+    let is_marked = |own: usize| own < PARTS && levels[own] == level;
+    let firsts = (0..PARTS).filter(|own| is_marked(*own) && (*own == 0 || !is_marked(own - 1)));
+    let stretch = |first: usize| {
+        let end = (first..=PARTS).find(|own| !is_marked(*own)).unwrap_or(PARTS);
+        cut(within, (first as f64 / PARTS as f64, end as f64 / PARTS as f64))
+    };
+    firsts.filter_map(stretch).collect()
 }
 
 /// Scaled times that are nearer to each other than this are one.
@@ -112,33 +128,47 @@ pub(crate) fn cut(within: &Part, (from, to): (f64, f64)) -> Option<Part> {
 mod tests {
     use super::*;
 
-    fn stretches(change: &Change, level: u8, within: &Part) -> Vec<(f64, f64)> {
-        change.stretches(level, within).iter().map(|part| (part.from.tau() * 64.0, part.to.tau() * 64.0)).collect()
+    const ONE: &[i64] = &[3];
+
+    fn marked(change: &Change, level: u8, within: &Part) -> Vec<(f64, f64)> {
+        let found = stretches(&change.levels_of(ONE), level, within);
+        found.iter().map(|part| (part.from.tau() * 64.0, part.to.tau() * 64.0)).collect()
     }
 
     #[test]
     fn marked_parts_are_stretches_of_time_with_half_as_many_points_beside_them() {
         let (now, mut change) = (Change::default(), Change::default());
-        assert!(stretches(&change, 1, &Part::WHOLE).is_empty());
-        change.mark(&now, (0.0, 0.01), (1, 6));
-        change.mark(&now, (0.5, 0.5), (3, 6));
-        assert_eq!(stretches(&change, 1, &Part::WHOLE), [(0.0, 1.0)]);
-        assert_eq!(stretches(&change, 2, &Part::WHOLE), [(31.0, 32.0), (33.0, 34.0)]);
-        assert_eq!(stretches(&change, 3, &Part::WHOLE), [(32.0, 33.0)]);
+        assert!(marked(&change, 1, &Part::WHOLE).is_empty());
+        change.mark(&now, (ONE, 0.0, 0.01), (1, 6));
+        change.mark(&now, (ONE, 0.5, 0.5), (3, 6));
+        assert_eq!(marked(&change, 1, &Part::WHOLE), [(0.0, 1.0)]);
+        assert_eq!(marked(&change, 2, &Part::WHOLE), [(31.0, 32.0), (33.0, 34.0)]);
+        assert_eq!(marked(&change, 3, &Part::WHOLE), [(32.0, 33.0)]);
         assert_eq!((change.share(), change.points()), (4.0 / 64.0, 8));
-        assert_eq!(change.each_level().collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(each_level(&change.levels_of(ONE)).collect::<Vec<_>>(), [1, 2, 3]);
     }
 
     #[test]
     fn what_is_marked_again_has_more_points_than_before_and_never_more_than_most() {
         let mut before = Change::default();
-        before.mark(&Change::default(), (0.0, 1.0), (2, 6));
-        assert_eq!(before.stretches(2, &Part::WHOLE), [Part::WHOLE]);
+        before.mark(&Change::default(), (ONE, 0.0, 1.0), (2, 6));
+        assert_eq!(stretches(&before.levels_of(ONE), 2, &Part::WHOLE), [Part::WHOLE]);
         let half = Part { to: Instant::new(0.5), with_last: false, ..Part::WHOLE };
-        assert_eq!(before.stretches(2, &half), [half]);
-        let mut after = before;
-        after.mark(&before, (0.0, 0.2), (3, 6));
-        after.mark(&before, (0.0, 0.1), (9, 6));
-        assert_eq!((after.levels[0], after.levels[12], after.levels[40], after.points()), (6, 5, 2, 64));
+        assert_eq!(stretches(&before.levels_of(ONE), 2, &half), [half]);
+        let mut after = before.clone();
+        after.mark(&before, (ONE, 0.0, 0.2), (3, 6));
+        after.mark(&before, (ONE, 0.0, 0.1), (9, 6));
+        let levels = after.levels_of(ONE);
+        assert_eq!((levels[0], levels[12], levels[40], after.points()), (6, 5, 2, 64));
+    }
+
+    #[test]
+    fn members_have_points_of_their_own_and_those_of_a_corner_share_theirs() {
+        let mut change = Change { members: 4, ..Change::default() };
+        change.mark(&Change::default(), (&[1, 2], 0.0, 1.0), (1, 6));
+        assert_eq!(change.levels_of(&[2, 2]), [0; PARTS]);
+        assert_eq!(change.levels_of(&[1, 2]), [1; PARTS]);
+        assert_eq!(change.levels_of(&[1, 2, 7]), [1; PARTS], "a side of the corner of the same member");
+        assert_eq!(change.share(), 0.25);
     }
 }

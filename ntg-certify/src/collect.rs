@@ -227,6 +227,7 @@ impl<'a> Collector<'a> {
             this.out.subjects.push(Subject {
                 kind,
                 name,
+                indices: indices.to_vec(),
                 quantity,
                 unit: declared.unit.clone(),
                 bounds: (below, above),
@@ -252,7 +253,7 @@ impl<'a> Collector<'a> {
             let name = declared.name.as_deref().unwrap_or(&declared.place.text).to_owned();
             let (kind, quantity) = (Kind::Term(term), Quantity::Sum(summands));
             let unit = declared.unit.clone();
-            self.out.subjects.push(Subject { kind, name, quantity, unit, bounds: (None, None) });
+            self.out.subjects.push(Subject { kind, name, indices: vec![], quantity, unit, bounds: (None, None) });
         }
         Ok(())
     }
@@ -271,7 +272,7 @@ impl<'a> Collector<'a> {
                 };
                 let name = self.named_member(&named.name, &indices, along);
                 let (kind, unit) = (Kind::Named(number), named.unit.clone());
-                self.out.subjects.push(Subject { kind, name, quantity, unit, bounds: (None, None) });
+                self.out.subjects.push(Subject { kind, name, indices, quantity, unit, bounds: (None, None) });
             }
         }
         Ok(())

@@ -20,6 +20,7 @@ struct Need {
     along: bool,
     scale: f64,
     ends: [Spared; 2],
+    members: usize,
 }
 
 /// How many times what may be tightened at all is tightened ahead of more points; where more may be missed, still more points
@@ -43,7 +44,7 @@ pub(crate) fn change(
 ) -> bool {
     let mut changed = false;
     for (number, need) in needs(certificate, wanted) {
-        let Need { below, above, along, scale, ends } = need;
+        let Need { below, above, along, scale, ends, members } = need;
         if !below.is_finite() || !above.is_finite() {
             continue; // It may have no value; no bound helps.
         }
@@ -52,7 +53,8 @@ pub(crate) fn change(
             continue;
         }
         let change = changes.entry(number).or_default();
-        let now = *change;
+        let now = change.clone();
+        change.members = members;
         (0..2).for_each(|end| change.ends[end] = change.ends[end].max(ends[end]));
         let worst = below.max(above);
         // What tightening has not made less needs more points, too.
@@ -81,13 +83,20 @@ fn needs(certificate: &Certificate, wanted: &Guarantee) -> BTreeMap<usize, Need>
     let machine = Machine::new(&certificate.statement);
     let ends = Ends::of(&machine);
     let mut needs: BTreeMap<usize, Need> = BTreeMap::new();
+    let mut members: BTreeMap<usize, usize> = BTreeMap::new();
     for (subject, finding) in certificate.each() {
-        let (Kind::Constraint(number), false) = (subject.kind, finding.verdict.holds()) else { continue };
+        let Kind::Constraint(number) = subject.kind else { continue };
+        let along = matches!(subject.quantity, Quantity::Path(..));
+        if along {
+            *members.entry(number).or_insert(0) += 1;
+        }
+        if finding.verdict.holds() {
+            continue;
+        }
         let Some((low, high)) = finding.required else { continue };
         let below = if low.is_finite() { (low - finding.values.low()).max(0.0) } else { 0.0 };
         let above = if high.is_finite() { (finding.values.high() - high).max(0.0) } else { 0.0 };
         let scale = size(finding.required);
-        let along = matches!(subject.quantity, Quantity::Path(..));
         let need = needs.entry(number).or_default();
         (need.below, need.above, need.scale) = (need.below.max(below), need.above.max(above), need.scale.max(scale));
         need.along |= along;
@@ -95,6 +104,9 @@ fn needs(certificate: &Certificate, wanted: &Guarantee) -> BTreeMap<usize, Need>
             let spared = spared(&machine, &ends, (subject, finding), (last, wanted.margin * scale));
             need.ends[end] = need.ends[end].max(spared);
         }
+    }
+    for (number, need) in &mut needs {
+        need.members = members.get(number).copied().unwrap_or(0);
     }
     needs
 }
@@ -162,9 +174,10 @@ fn mark(
             }
             let tau = |part: f64| cuts[leaf.cell] + (cuts[leaf.cell + 1] - cuts[leaf.cell]) * part;
             let times = (tau(leaf.start()), tau(leaf.start() + leaf.length()));
-            let (before, power) = (now.level(times.0), if now.level(times.0) > 0 { 1 } else { 2 });
+            let member = &subject.indices[..];
+            let (before, power) = (now.level(member, times.0), if now.level(member, times.0) > 0 { 1 } else { 2 });
             let more = doublings(missed / coarse);
-            change.mark(now, times, (more, most));
+            change.mark(now, (member, times.0, times.1), (more, most));
             left = left.max(missed / f64::from(1_u32 << (power * u32::from(more.min(most.saturating_sub(before))))));
         }
     }

@@ -18,7 +18,7 @@ pub struct Options {
     /// A constraint that may miss its bound by less than this, relative to the size of the bound, is left undecided
     /// instead of halving boxes further. Default 1e-13, some hundreds of roundings.
     pub tolerance: f64,
-    /// Bounds of what is only shown are within this part of its range. Default 0.01.
+    /// Bounds of what is only shown are within this part of its range, over all of its members. Default 0.01.
     pub sharpness: f64,
     /// Integrals are enclosed to this relative width. Default 1e-7.
     pub integral: f64,
@@ -131,8 +131,8 @@ pub struct Search {
 pub(crate) enum Goal {
     /// The bounds hold, or by how much they are missed.
     Bounds(Required),
-    /// The range is known.
-    Range,
+    /// The range is known, of something of which these values are attained elsewhere.
+    Range(Option<Interval>),
     /// The integral is known to this relative width.
     Integral(f64),
 }
@@ -152,19 +152,11 @@ pub(crate) fn search(
     goal: &Goal,
     options: &Options,
 ) -> Search {
-    let cuts = &machine.statement.phases[phase].cuts;
     let needs = machine.needs(function);
     let cells = stretch.len();
-    let mut open: Vec<Open> = stretch
-        .map(|number| Open {
-            cell: number,
-            halvings: 0,
-            part: 0,
-            pieces: needs.iter().map(|flat| cell(machine.statement, machine.statement.flats[*flat], number)).collect(),
-            tau: Piece::line(Interval::point(cuts[number]), Interval::point(cuts[number + 1])),
-        })
-        .collect();
-    let mut judge = Judge { goal, options, inner: None, sum: 0.0, size: 0.0, witness: None };
+    let mut open: Vec<Open> = stretch.map(|number| Open::whole(machine, &needs, (phase, number))).collect();
+    let inner = if let Goal::Range(elsewhere) = goal { *elsewhere } else { None };
+    let mut judge = Judge { goal, options, inner, sum: 0.0, size: 0.0, witness: None };
     let mut leaves: Vec<Leaf> = vec![];
     let mut budget = options.boxes.saturating_mul(cells);
     while !open.is_empty() {
@@ -192,9 +184,22 @@ pub(crate) fn search(
         Goal::Bounds(required) => leaves.iter().fold(0.0, |most: f64, leaf| {
             most.max(if leaf.total { required.missed_at_most(leaf.values) } else { f64::INFINITY })
         }),
-        Goal::Range | Goal::Integral(_) => 0.0,
+        Goal::Range(_) | Goal::Integral(_) => 0.0,
     };
     Search { leaves, values, witness: judge.witness, missed }
+}
+
+/// Values that a function attains, in the middles of some cells of a phase.
+pub(crate) fn attained(
+    machine: &Machine<'_>,
+    (function, phase, stretch): (usize, usize, Range<usize>),
+) -> Option<Interval> {
+    let needs = machine.needs(function);
+    let middles = stretch.map(|number| {
+        let (_, centre) = look::<1>(machine, function, (&needs, &Open::whole(machine, &needs, (phase, number))));
+        value(&centre)
+    });
+    middles.filter(|middle| middle.is_bounded()).reduce(Interval::hull)
 }
 
 impl Leaf {
@@ -210,6 +215,18 @@ impl Leaf {
 }
 
 impl Open {
+    /// A whole cell of a phase.
+    fn whole(machine: &Machine<'_>, needs: &[usize], (phase, number): (usize, usize)) -> Self {
+        let cuts = &machine.statement.phases[phase].cuts;
+        Self {
+            cell: number,
+            halvings: 0,
+            part: 0,
+            pieces: needs.iter().map(|flat| cell(machine.statement, machine.statement.flats[*flat], number)).collect(),
+            tau: Piece::line(Interval::point(cuts[number]), Interval::point(cuts[number + 1])),
+        }
+    }
+
     fn leaf(&self, values: Interval, mean: Interval, total: bool) -> Leaf {
         let Self { cell, halvings, part, .. } = *self;
         Leaf { cell, halvings, part, values, mean, total, open: false }
@@ -323,7 +340,7 @@ impl Judge<'_> {
         const MOST_FOR_RANGES: u32 = 12;
         match self.goal {
             Goal::Bounds(_) => MOST_HALVINGS,
-            Goal::Range => MOST_FOR_RANGES,
+            Goal::Range(_) => MOST_FOR_RANGES,
             Goal::Integral(_) => 2 * MOST_FOR_RANGES,
         }
     }
@@ -350,7 +367,7 @@ impl Judge<'_> {
                     None => missed <= self.options.tolerance * required.size(),
                 }
             }
-            Goal::Range => self.inner.is_some_and(|inner| {
+            Goal::Range(_) => self.inner.is_some_and(|inner| {
                 let slack = self.options.sharpness * inner.width() + 1e-12 * inner.size() + rounding;
                 leaf.values.low() >= inner.low() - slack && leaf.values.high() <= inner.high() + slack
             }),

@@ -200,6 +200,8 @@ pub struct Subject {
     pub kind: Kind,
     /// Its name with its members' indices.
     pub name: String,
+    /// The indices of the loops in which it stands; of terms none.
+    pub indices: Vec<i64>,
     /// What is bounded.
     pub quantity: Quantity,
     /// The unit in which a person sees it; the file has SI units alone.

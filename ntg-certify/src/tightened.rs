@@ -6,10 +6,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use ntg_runtime::problem::{Derivatives, Lanes, Problem};
+use ntg_runtime::solution::Solution;
 use ntg_splines::Table;
-use ntg_structure::{Call, Domain, Group, Instant, Kernel, Points, Row, Structure};
+use ntg_structure::{Affine, Call, Domain, Group, Instant, Kernel, Loop, Points, Row, Structure};
 
-use crate::change::{Change, Spared, cut};
+use crate::change::{Change, Levels, Spared, cut, each_level, stretches};
 
 /// A problem with changed constraints.
 pub struct Tightened<'p> {
@@ -68,7 +69,7 @@ impl<'p> Tightened<'p> {
         let mut rows: Vec<(usize, f64)> = vec![];
         for row in &mut group.rows {
             let Row::Constraint { constraint, lower, upper } = row else { continue };
-            let change = changes.get(constraint).copied().unwrap_or_default();
+            let change = changes.get(constraint).cloned().unwrap_or_default();
             let stays = lower == upper || (change.spares_ends() && !self.inside.contains(&number));
             let is_equality = lower == upper;
             for (side, add) in [(&mut *lower, change.below), (&mut *upper, -change.above)] {
@@ -95,20 +96,29 @@ impl<'p> Tightened<'p> {
             let Domain::Path { phase, points, .. } = &group.domain else { continue };
             let own = &self.structure.phases[phase.phase];
             // Sets that accompany Gauss points hold the same constraints again.
-            let stretches = match own.points[*points] {
+            let intervals = match own.points[*points] {
                 Points::Uniform { points } => points.saturating_sub(1).max(1),
                 Points::Gauss { points } => most_intervals(own) * (points + 1),
                 _ => continue,
             };
             for (change, rows) in alike(&group, changes) {
-                for level in change.each_level() {
-                    let set = self.structure.phases[phase.phase].points.len();
-                    let more = Points::Uniform { points: (stretches << level) + 1 };
-                    self.structure.phases[phase.phase].points.push(more);
-                    self.hold(&group, (set, &rows), (&change, Some(level)));
+                for (members, levels) in by_levels(&group, &change) {
+                    for level in each_level(&levels) {
+                        let set = self.set(phase.phase, Points::Uniform { points: (intervals << level) + 1 });
+                        self.hold(&members, (set, &rows), (&change, Some((level, &levels))));
+                    }
                 }
             }
         }
+    }
+
+    /// A set of points of a phase, added where there is none alike.
+    fn set(&mut self, phase: usize, points: Points) -> usize {
+        let sets = &mut self.structure.phases[phase].points;
+        sets.iter().position(|own| *own == points).unwrap_or_else(|| {
+            sets.push(points);
+            sets.len() - 1
+        })
     }
 
     /// Adds groups that hold tightened constraints at their own points, but for where they are spared.
@@ -126,11 +136,16 @@ impl<'p> Tightened<'p> {
 
     /// Adds groups that hold some rows of a group at other points: where a change has a level, or where it is not
     /// spared.
-    fn hold(&mut self, group: &Group, (set, rows): (usize, &[usize]), (change, level): (&Change, Option<u8>)) {
+    fn hold(
+        &mut self,
+        group: &Group,
+        (set, rows): (usize, &[usize]),
+        (change, level): (&Change, Option<(u8, &Levels)>),
+    ) {
         let Domain::Path { phase, part, .. } = &group.domain else { return };
         let copy = self.selection(group, rows);
         let (from, to) = inside(&self.structure.phases[phase.phase], change.ends);
-        let parts = level.map_or(vec![*part], |level| change.stretches(level, part));
+        let parts = level.map_or(vec![*part], |(level, levels)| stretches(levels, level, part));
         for part in parts {
             for (times, is_inside) in [((0.0, from), false), ((from, to), true), ((to, 1.0), false)] {
                 let Some(mut part) = cut(&part, times).filter(|_| is_inside || level.is_some()) else { continue };
@@ -188,10 +203,26 @@ fn alike(group: &Group, changes: &BTreeMap<usize, Change>) -> Vec<(Change, Vec<u
         };
         match found.iter_mut().find(|(own, _)| own == change) {
             Some((_, rows)) => rows.push(row),
-            None => found.push((*change, vec![row])),
+            None => found.push((change.clone(), vec![row])),
         }
     }
     found
+}
+
+/// The members of a group that are held at more points, by the levels of their points: the group itself where all have the
+/// same, a group for each member else.
+fn by_levels(group: &Group, change: &Change) -> Vec<(Group, Levels)> {
+    let members = Solution::members(&group.loops);
+    let levels: Vec<Levels> = members.iter().map(|member| change.levels_of(member)).collect();
+    if let Some(first) = levels.first().filter(|first| levels.iter().all(|own| own == *first)) {
+        return vec![(group.clone(), *first)];
+    }
+    let only = |member: &[i64]| {
+        let alone = |index: &i64| Loop { first: Affine::constant(*index), last: Affine::constant(*index) };
+        Group { loops: member.iter().map(alone).collect(), ..group.clone() }
+    };
+    let marked = members.iter().zip(levels).filter(|(_, own)| each_level(own).next().is_some());
+    marked.map(|(member, own)| (only(member), own)).collect()
 }
 
 /// Scaled times between which bounds are tightened: without the first and the last interval where these are spared.

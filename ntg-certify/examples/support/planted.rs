@@ -56,6 +56,7 @@ impl Planted {
         let subject = |kind, name: &str, bound| Subject {
             kind,
             name: name.to_owned(),
+            indices: vec![],
             quantity: path.clone(),
             unit: Unit::default(),
             bounds: (None, bound),
