@@ -7,6 +7,7 @@
 mod angles;
 mod car;
 mod constructs;
+mod corners;
 mod data;
 mod degenerate;
 mod flat_limits;

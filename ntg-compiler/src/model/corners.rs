@@ -8,7 +8,9 @@
 use ntg_structure::Block;
 
 use super::elaborator::Elaborator;
+use super::monotone::Push;
 use super::problem::{Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt, Problem};
+use super::ranges::Ranges;
 use super::signs::Signs;
 use super::unknowns::{is_affine, is_given};
 use super::widths::Widths;
@@ -16,16 +18,22 @@ use crate::diagnostic::Code;
 use crate::expr::{self, Binary, Dag, Fold, Map, Node, NodeId, Set, Unary};
 use crate::source::Span;
 
-/// Where an expression stands: the loops around it, and the phase along which it is integrated.
+/// Where an expression stands.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct Site {
+    /// The loops around it.
     pub(super) loops: Vec<Loop>,
+    /// The phase along which it is integrated.
     pub(super) along: Option<PhaseAt>,
+    /// Whether its weight may vanish: nothing pushes a helper then, which needs a bound away from its corner too.
+    pub(super) floats: bool,
 }
 
 /// The pass's state.
 pub(super) struct Corners {
     pub(super) signs: Signs,
+    /// Between which numbers expressions stay where all outputs are within their bounds.
+    pub(super) ranges: Ranges,
     pub(super) widths: Widths,
     /// The nodes in which there are corners.
     within: Set<NodeId>, // Asked, never iterated.
@@ -59,6 +67,7 @@ impl Elaborator<'_> {
         let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
         let mut pass = Corners {
             signs: Signs::of(&self.problem),
+            ranges: Ranges::within(&self.problem),
             widths: Widths::of(&self.problem),
             within: self.with_corners(&bodies),
             done: Map::default(),
@@ -70,7 +79,7 @@ impl Elaborator<'_> {
         self.corners_limited(&mut pass);
         for term in 0..self.problem.objective.len() {
             let own = &self.problem.objective[term];
-            let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None });
+            let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None, floats: false });
             pass.span = own.span;
             let smooth = self.smooth(&mut pass, body, (&site, true), 0);
             if smooth != body {
@@ -180,9 +189,15 @@ impl Elaborator<'_> {
             if site.along.is_some() {
                 return node;
             }
-            let along = Site { loops: site.loops.clone(), along: Some(phase.clone()) };
+            let along = Site { along: Some(phase.clone()), ..site.clone() };
             let integrand = self.smooth(pass, integrand, (&along, growing), depth);
             return self.leaf(Leaf::Integral { phase, integrand });
+        }
+        // A corner that is pushed away from its corner, and one for which no helper can stand, is flat on one side: nothing
+        // would push a helper inside of it there.
+        if matches!(own, Node::Binary(Binary::Min | Binary::Max, ..) | Node::Reduce { fold: Fold::Min | Fold::Max, .. })
+        {
+            return node;
         }
         let mut inner = site.clone();
         if let Node::Reduce { range, .. } = own {
@@ -195,12 +210,20 @@ impl Elaborator<'_> {
         {
             return node;
         }
+        let operands = own.operands();
+        // Rows of a helper are there once it is: whether one may stand for a corner is known before.
+        let both = operands.iter().filter(|operand| pass.has_corners(**operand)).count() > 1;
         let mut images: Map<NodeId, NodeId> = Map::default();
-        for (at, operand) in own.operands().into_iter().enumerate() {
+        for (at, operand) in operands.into_iter().enumerate() {
             let rises = if pass.has_corners(operand) { self.slope(pass, &own, at) } else { None };
-            let image = match rises {
-                Some(rises) => self.smooth(pass, operand, (&inner, growing == rises), depth),
-                None => operand,
+            let push = rises.map(|rises| (rises, self.push(pass, &own, at, growing == rises, both)));
+            let image = match push {
+                Some((rises, push)) if push != Push::Nothing => {
+                    let floats = inner.floats || push == Push::Floating;
+                    let site = Site { floats, ..inner.clone() };
+                    self.smooth(pass, operand, (&site, growing == rises), depth)
+                }
+                _ => operand,
             };
             // One operand that the node both grows and falls with stays.
             if images.insert(operand, image).is_some_and(|before| before != image) {
@@ -208,56 +231,6 @@ impl Elaborator<'_> {
             }
         }
         self.problem.dag.rebuild(&own, |operand| images[&operand])
-    }
-
-    /// Whether a node grows with an operand, or falls; none where that is not known.
-    pub(super) fn slope(&self, pass: &mut Corners, node: &Node, at: usize) -> Option<bool> {
-        let mut positive = |x: NodeId| pass.signs.is_positive(&self.problem, x);
-        match *node {
-            Node::Unary(Unary::Neg, _) => Some(false),
-            Node::Unary(
-                Unary::Sqrt
-                | Unary::Exp
-                | Unary::Log
-                | Unary::Atan
-                | Unary::Sinh
-                | Unary::Tanh
-                | Unary::Logistic
-                | Unary::Softplus,
-                _,
-            ) => Some(true),
-            Node::Unary(Unary::Cosh | Unary::Abs, x) => positive(x).then_some(true),
-            Node::Binary(Binary::Add | Binary::Min | Binary::Max, ..) => Some(true),
-            Node::Binary(Binary::Sub, ..) => Some(at == 0),
-            Node::Binary(Binary::Mul, a, b) => self.sign(pass, if at == 0 { b } else { a }),
-            Node::Binary(Binary::Div, _, b) if at == 0 => self.sign(pass, b),
-            Node::Binary(Binary::Div, a, b) => (positive(b)).then(|| self.sign(pass, a)).flatten().map(|up| !up),
-            Node::Binary(Binary::Hypot, a, b) => positive(if at == 0 { a } else { b }).then_some(true),
-            Node::Binary(Binary::Pow, a, b) if at == 0 => {
-                let power = self.problem.dag.is_constant(b)?;
-                positive(a).then_some(power > 0.0)
-            }
-            Node::Powi(_, n) if n > 0 && n % 2 != 0 => Some(true),
-            Node::Powi(x, n) => positive(x).then_some(n > 0),
-            Node::Select { .. } => (at > 0).then_some(true),
-            Node::Reduce { fold: Fold::Product, body, .. } => positive(body).then_some(true),
-            Node::Reduce { .. } => Some(true),
-            _ => None,
-        }
-    }
-
-    /// Whether a factor is not negative, or not positive; none where neither is known.
-    fn sign(&self, pass: &mut Corners, factor: NodeId) -> Option<bool> {
-        if pass.signs.is_positive(&self.problem, factor) {
-            return Some(true);
-        }
-        match *self.problem.dag.node(factor) {
-            Node::Const(number) if number.value() <= 0.0 => Some(false),
-            Node::Unary(Unary::Neg, x) => pass.signs.is_positive(&self.problem, x).then_some(false),
-            Node::Binary(Binary::Mul, a, b) => Some(self.sign(pass, a)? == self.sign(pass, b)?),
-            Node::Binary(Binary::Div, a, b) => Some(self.sign(pass, a)? == self.sign(pass, b)?),
-            _ => None,
-        }
     }
 
     /// Parameters on whose sign it rests that a helper may stand for a corner: they must not be set to less than 0.

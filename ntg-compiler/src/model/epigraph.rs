@@ -31,6 +31,12 @@ impl Elaborator<'_> {
         (site, growing): (&Site, bool),
         depth: usize,
     ) -> Option<NodeId> {
+        let limit = match site.floats {
+            true => {
+                Some(pass.ranges.of(&self.problem, corner).map(|(least, most)| if growing { most } else { least })?)
+            }
+            false => None,
+        };
         let against = self.against(pass, corner, (site, growing), depth)?;
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
         let helper = self.helper_leaf(pass, corner, site, span)?;
@@ -53,6 +59,13 @@ impl Elaborator<'_> {
                 let upper = pass.widths.of_root(&mut self.problem, (corner, sum));
                 self.hold_helper(site, vec![], (helper, Bounds { lower: Some(zero), upper }), span);
             }
+        }
+        if let Some(limit) = limit.map(|limit| self.problem.dag.constant(limit)) {
+            let bounds = match growing {
+                true => Bounds { lower: None, upper: Some(limit) },
+                false => Bounds { lower: Some(limit), upper: None },
+            };
+            self.hold_helper(site, vec![], (helper, bounds), span);
         }
         Some(helper)
     }

@@ -46,6 +46,7 @@ mod listed;
 mod measure;
 mod mention;
 mod mission;
+mod monotone;
 mod named;
 mod names;
 pub(crate) mod norms;

@@ -3,8 +3,8 @@
 //! Takes nodes of the graph, gives bounds by interval arithmetic; none where something in an expression has none. Parameters
 //! have none, since who sets them may change them.
 
-use super::problem::{Duration, Leaf, PhaseAt, Problem, Start};
-use crate::expr::{Binary, InputId, Map, Node, NodeId, Unary};
+use super::problem::{At, Domain, Duration, Leaf, Part, PhaseAt, Problem, Start};
+use crate::expr::{Binary, Fold, InputId, Map, Node, NodeId, Unary};
 use ntg_structure::{TableExtrapolation, TableMethod};
 
 /// How deep expressions are looked into.
@@ -17,9 +17,34 @@ type Range = (f64, f64);
 #[derive(Default)]
 pub(super) struct Ranges {
     known: Map<NodeId, Option<Range>>, // Looked up, never iterated.
+    /// Of outputs by phase and place, and of variables.
+    outputs: Map<(usize, usize), Range>, // Looked up, never iterated.
+    variables: Map<usize, Range>,      // Looked up, never iterated.
 }
 
 impl Ranges {
+    /// Ranges where all outputs and variables are within those of their bounds that are numbers.
+    pub(super) fn within(problem: &Problem) -> Self {
+        let mut ranges = Self::default();
+        let number = |end: Option<NodeId>| end.and_then(|end| problem.dag.is_constant(end));
+        for own in &problem.constraints {
+            if let (Domain::Path(_, Part::WHOLE), Node::Input(input)) = (&own.domain, problem.dag.node(own.body))
+                && let Leaf::Flat { phase, at: At::Here, output, order: 0, .. } = problem.leaves.leaf(*input)
+                && let (Some(lower), Some(upper)) = (number(own.bounds.lower), number(own.bounds.upper))
+            {
+                // Of members with bounds of their own the widest count.
+                let known = ranges.outputs.entry((phase.phase, *output)).or_insert((lower, upper));
+                *known = (known.0.min(lower), known.1.max(upper));
+            }
+        }
+        for (place, variable) in problem.variables.iter().enumerate() {
+            if let (Some(lower), Some(upper)) = (number(variable.bounds.lower), number(variable.bounds.upper)) {
+                ranges.variables.insert(place, (lower, upper));
+            }
+        }
+        ranges
+    }
+
     /// The range of a node, if it has one.
     pub(super) fn of(&mut self, problem: &Problem, node: NodeId) -> Option<Range> {
         self.look(problem, node, 0).filter(|(least, most)| least.is_finite() && most.is_finite())
@@ -35,7 +60,7 @@ impl Ranges {
         let mut own = |x: NodeId| self.look(problem, x, depth + 1);
         let range = match *problem.dag.node(node) {
             Node::Const(number) => Some((number.value(), number.value())),
-            Node::Input(input) => leaf(problem, input),
+            Node::Input(input) => self.leaf(problem, input),
             Node::Table { table, ref derivative, .. } if derivative.iter().all(|order| *order == 0) => {
                 data(problem, table as usize)
             }
@@ -45,6 +70,7 @@ impl Ranges {
                 Unary::Logistic => Some((0.0, 1.0)),
                 Unary::Neg => own(x).map(|(a, b)| (-b, -a)),
                 Unary::Exp => own(x).map(|(a, b)| (a.exp(), b.exp())),
+                Unary::Sqrt => own(x).filter(|(a, _)| *a >= 0.0).map(|(a, b)| (a.sqrt(), b.sqrt())),
                 Unary::Abs => own(x).map(|(a, b)| (a.max(-b).max(0.0), b.max(-a))),
                 _ => None,
             },
@@ -55,6 +81,9 @@ impl Ranges {
                 (Binary::Div, Some(a), Some(b)) if b.0 > 0.0 => Some(product(a, (b.1.recip(), b.0.recip()))),
                 (Binary::Min, Some(a), Some(b)) => Some((a.0.min(b.0), a.1.min(b.1))),
                 (Binary::Max, Some(a), Some(b)) => Some((a.0.max(b.0), a.1.max(b.1))),
+                (Binary::Hypot, Some(a), Some(b)) => {
+                    Some((0.0, a.0.abs().max(a.1.abs()).hypot(b.0.abs().max(b.1.abs()))))
+                }
                 _ => None,
             },
             Node::Powi(x, 2) => own(x).map(|(a, b)| (a.max(-b).max(0.0).powi(2), b.max(-a).powi(2))),
@@ -62,24 +91,27 @@ impl Ranges {
                 (Some(a), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
                 _ => None,
             },
+            Node::Reduce { fold: Fold::Min | Fold::Max, body, .. } => own(body),
             _ => None,
         };
         self.known.insert(node, range);
         range
+    }
+
+    fn leaf(&self, problem: &Problem, input: InputId) -> Option<Range> {
+        match problem.leaves.leaf(input) {
+            Leaf::Tau => Some((0.0, 1.0)),
+            Leaf::Time(at) => clock(problem, at),
+            Leaf::Flat { phase, output, order: 0, .. } => self.outputs.get(&(phase.phase, *output)).copied(),
+            Leaf::Variable { variable, .. } => self.variables.get(variable).copied(),
+            _ => None,
+        }
     }
 }
 
 fn product(a: Range, b: Range) -> Range {
     let ends = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
     (ends.into_iter().fold(f64::INFINITY, f64::min), ends.into_iter().fold(f64::NEG_INFINITY, f64::max))
-}
-
-fn leaf(problem: &Problem, input: InputId) -> Option<Range> {
-    match problem.leaves.leaf(input) {
-        Leaf::Tau => Some((0.0, 1.0)),
-        Leaf::Time(at) => clock(problem, at),
-        _ => None,
-    }
 }
 
 /// The times of an agent that begins and whose phases last as numbers say.

@@ -27,6 +27,16 @@ struct Sides {
     treated: Vec<NodeId>,
 }
 
+impl Sides {
+    /// Takes back all sides but the first, of a node that stays as it is.
+    fn forget(&mut self, (loops, count, treated): (usize, i64, usize)) {
+        self.loops.truncate(loops);
+        self.count = count;
+        self.treated.truncate(treated);
+        self.done.clear();
+    }
+}
+
 impl Elaborator<'_> {
     /// Takes the corners out of constraints with one bound: of integrals by helpers, elsewhere by sides.
     pub(super) fn corners_limited(&mut self, pass: &mut Corners) {
@@ -54,7 +64,7 @@ impl Elaborator<'_> {
     /// Whether helpers stand for corners of a constraint now.
     fn by_helpers(&mut self, pass: &mut Corners, number: usize, growing: bool) -> bool {
         let own = &self.problem.constraints[number];
-        let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None });
+        let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None, floats: false });
         pass.span = own.span;
         let smooth = self.smooth(pass, body, (&site, growing), 0);
         if smooth == body {
@@ -159,6 +169,7 @@ impl Elaborator<'_> {
         if matches!(own, Node::Input(_) | Node::Reduce { .. }) {
             return node;
         }
+        let before = (sides.loops.len(), sides.count, sides.treated.len());
         let mut images: Map<NodeId, NodeId> = Map::default();
         for (at, operand) in own.operands().into_iter().enumerate() {
             let rises = if pass.has_corners(operand) { self.slope(pass, own, at) } else { None };
@@ -168,9 +179,33 @@ impl Elaborator<'_> {
             };
             // One operand that the node both grows and falls with stays.
             if images.insert(operand, image).is_some_and(|before| before != image) {
+                sides.forget(before);
                 return node;
             }
         }
-        self.problem.dag.rebuild(own, |operand| images[&operand])
+        let rebuilt = self.problem.dag.rebuild(own, |operand| images[&operand]);
+        if self.keeps_slope(pass, own, rebuilt) {
+            return rebuilt;
+        }
+        sides.forget(before);
+        node
+    }
+
+    /// Whether a node has a value, and grows or falls as before, where one side of a corner stands for the corner: a side
+    /// may be negative where the corner is not, as that of `max(0, x)^2`.
+    fn keeps_slope(&self, pass: &mut Corners, before: &Node, rebuilt: NodeId) -> bool {
+        let after = self.problem.dag.node(rebuilt).clone();
+        let (old, new) = (before.operands(), after.operands());
+        if old.len() != new.len() || std::mem::discriminant(before) != std::mem::discriminant(&after) {
+            return false; // It has become another node, of which nothing is known.
+        }
+        let has_value = match after {
+            Node::Unary(Unary::Sqrt | Unary::Log, x) => x == old[0] || pass.signs.is_positive(&self.problem, x),
+            _ => true,
+        };
+        let is_same = |pass: &mut Corners, at: usize| {
+            self.slope(pass, before, at).is_none_or(|slope| self.slope(pass, &after, at) == Some(slope))
+        };
+        has_value && (0..new.len()).filter(|at| old[*at] != new[*at]).all(|at| is_same(pass, at))
     }
 }

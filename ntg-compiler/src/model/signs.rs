@@ -18,6 +18,8 @@ pub(super) struct Signs {
     ranges: Ranges,
     /// Outputs without index whose limits leave nothing below 0: phase and place.
     limited: Set<(usize, usize)>, // Asked, never iterated.
+    /// Those whose limits leave nothing below a number above 0.
+    away: Set<(usize, usize)>, // Asked, never iterated.
     /// The parameters that must not become negative, for what was asked to stay true.
     pub(super) relied: Vec<usize>,
 }
@@ -36,6 +38,10 @@ impl Signs {
                 && is_above(problem, &constraint.bounds)
             {
                 signs.limited.insert((phase.phase, *output));
+                let lower = constraint.bounds.lower.and_then(|lower| problem.dag.is_constant(lower));
+                if lower.is_some_and(|lower| lower > 0.0) {
+                    signs.away.insert((phase.phase, *output));
+                }
             }
         }
         signs
@@ -47,6 +53,49 @@ impl Signs {
         let new: Vec<usize> = parameters.into_iter().filter(|one| !self.relied.contains(one)).collect();
         self.relied.extend(new);
         true
+    }
+
+    /// Whether a node stays above 0, and does not come near it but by what is solved for: a parameter by its default.
+    pub(super) fn is_above_zero(&mut self, problem: &Problem, node: NodeId) -> bool {
+        self.is_positive(problem, node) && self.is_away(problem, node, 0)
+    }
+
+    /// Whether a node is above 0 by a margin.
+    fn is_away(&mut self, problem: &Problem, node: NodeId, depth: usize) -> bool {
+        if depth > MAX_DEPTH {
+            return false;
+        }
+        let mut own = |x: NodeId| self.is_away(problem, x, depth + 1);
+        let is_away = match *problem.dag.node(node) {
+            Node::Const(number) => number.value() > 0.0,
+            Node::Input(input) => return self.is_leaf_away(problem, input, depth),
+            Node::Unary(Unary::Exp | Unary::Cosh, _) => true,
+            Node::Unary(Unary::Sqrt | Unary::Abs, x) | Node::Powi(x, _) => own(x),
+            Node::Binary(Binary::Mul | Binary::Div | Binary::Min, a, b) => own(a) && own(b),
+            Node::Binary(Binary::Max | Binary::Hypot, a, b) => own(a) || own(b),
+            Node::Binary(Binary::Add, a, b) => [(a, b), (b, a)].into_iter().any(|(above, other)| {
+                self.is_away(problem, above, depth + 1) && self.look(problem, other, depth + 1).is_some()
+            }),
+            Node::Binary(Binary::Pow, a, _) => own(a),
+            Node::Select { then, otherwise, .. } => own(then) && own(otherwise),
+            Node::Reduce { body, .. } => own(body),
+            _ => false,
+        };
+        is_away || self.ranges.of(problem, node).is_some_and(|(least, _)| least > 0.0)
+    }
+
+    fn is_leaf_away(&mut self, problem: &Problem, input: InputId, depth: usize) -> bool {
+        match problem.leaves.leaf(input) {
+            Leaf::Parameter { parameter, .. } => problem.parameters[*parameter].value.iter().all(|value| *value > 0.0),
+            Leaf::Integral { integrand, .. } => self.is_away(problem, *integrand, depth + 1),
+            Leaf::Duration(_) => true,
+            Leaf::Variable { variable, .. } => {
+                let lower = problem.variables[*variable].bounds.lower;
+                lower.and_then(|lower| problem.dag.is_constant(lower)).is_some_and(|lower| lower > 0.0)
+            }
+            Leaf::Flat { phase, output, order: 0, index: None, .. } => self.away.contains(&(phase.phase, *output)),
+            _ => false,
+        }
     }
 
     fn look(&mut self, problem: &Problem, node: NodeId, depth: usize) -> Known {

@@ -1,0 +1,166 @@
+//! Formulas of corners, `abs`, `max`, `min`, clamps and smooth conditions, that nothing but themselves decide: what is called
+//! solved has the value that the formula has there, and is a minimum of it.
+
+use std::fmt::Write as _;
+
+use ntg::prelude::*;
+
+use crate::support::{Shipped, close};
+
+/// A formula in `x`: its text, and its value.
+struct Formula(String, Box<dyn Fn(f64) -> f64>);
+
+/// Numbers of a fixed sequence.
+struct Draw(u64);
+
+impl Draw {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % count
+    }
+
+    /// A number between two, in hundredths.
+    fn number(&mut self, least: i64, most: i64) -> f64 {
+        (least + self.below((most - least + 1) as usize) as i64) as f64 / 100.0
+    }
+
+    fn line(&mut self) -> Formula {
+        let (slope, offset) = ([1.0, -1.0, 2.0, -0.5, 1.5][self.below(5)], self.number(-200, 200));
+        Formula(format!("({slope} * x + ({offset}))"), Box::new(move |x| slope * x + offset))
+    }
+
+    fn corner(&mut self) -> Formula {
+        let Formula(a, f) = self.line();
+        let Formula(b, g) = self.line();
+        let (c, d) = (self.number(20, 150), self.number(0, 200));
+        match self.below(7) {
+            0 => Formula(format!("abs{a}"), Box::new(move |x| f(x).abs())),
+            1 => Formula(format!("max(0, {a})"), Box::new(move |x| f(x).max(0.0))),
+            2 => Formula(format!("max({a}, {b})"), Box::new(move |x| f(x).max(g(x)))),
+            3 => Formula(format!("min({a}, {b})"), Box::new(move |x| f(x).min(g(x)))),
+            4 => Formula(format!("min(1, max(0, {a}))"), Box::new(move |x| f(x).clamp(0.0, 1.0))),
+            5 => Formula(
+                format!("(if {a} <= 0.2 smooth {c} {{ {d} }} else {{ 1 }})"),
+                Box::new(move |x| {
+                    let s = ((f(x) - 0.2) / c + 0.5).clamp(0.0, 1.0);
+                    d + (1.0 - d) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s)
+                }),
+            ),
+            _ => Formula(format!("max(0, abs{a} - {c})"), Box::new(move |x| (f(x).abs() - c).max(0.0))),
+        }
+    }
+
+    fn term(&mut self) -> Formula {
+        let Formula(a, f) = self.corner();
+        match self.below(9) {
+            0 | 1 => Formula(a, f),
+            2 => Formula(format!("({a})^2"), Box::new(move |x| f(x).powi(2))),
+            3 => Formula(format!("({a})^3"), Box::new(move |x| f(x).powi(3))),
+            4 => Formula(format!("exp(-0.5 * {a})"), Box::new(move |x| (-0.5 * f(x)).exp())),
+            5 => Formula(format!("sqrt(0.5 + ({a})^2)"), Box::new(move |x| (0.5 + f(x).powi(2)).sqrt())),
+            6 => Formula(format!("tanh({a})"), Box::new(move |x| f(x).tanh())),
+            7 => Formula(format!("1 / (1 + ({a})^2)"), Box::new(move |x| 1.0 / (1.0 + f(x).powi(2)))),
+            _ => Formula(format!("(0.3 + 0.7 * {a}) * ({a})"), Box::new(move |x| (0.3 + 0.7 * f(x)) * f(x))),
+        }
+    }
+
+    /// One or two terms, and a parabola that leaves no minimum far away.
+    fn formula(&mut self) -> Formula {
+        let mut text = String::new();
+        let mut terms: Vec<(f64, Formula)> = vec![];
+        for _ in 0..1 + self.below(2) {
+            let weight = self.number(20, 150) * if self.below(3) == 0 { -1.0 } else { 1.0 };
+            terms.push((weight, self.term()));
+        }
+        let (bowl, centre) = (self.number(10, 60), self.number(0, 200));
+        for (weight, Formula(term, _)) in &terms {
+            let _ = write!(text, "({weight}) * {term} + ");
+        }
+        let _ = write!(text, "{bowl} * (x - {centre})^2");
+        let value = move |x: f64| {
+            terms.iter().map(|(weight, term)| weight * (term.1)(x)).sum::<f64>() + bowl * (x - centre).powi(2)
+        };
+        Formula(text, Box::new(value))
+    }
+}
+
+/// The formula in an integral that is minimised, or limited, at an end, and limited along the way.
+const PLACES: [&str; 4] = [
+    "minimize integral(FORMULA);",
+    "variable c; minimize c; temporal { integral(FORMULA) <= c; }",
+    "minimize final(FORMULA);",
+    "variable c; minimize c; trajectory { FORMULA <= c; }",
+];
+
+#[test]
+fn a_corner_is_what_it_is_wherever_it_stands() {
+    let mut draw = Draw(7);
+    let (mut tried, mut unsolved) = (0, 0);
+    for _ in 0..150 {
+        let Formula(text, value) = draw.formula();
+        let start = draw.number(-300, 300);
+        for place in PLACES {
+            let place = place.replace("FORMULA", &text);
+            let spec = Shipped::text(&format!(
+                "problem Corner {{ duration T = 1; output x in -6 .. 6: spline(order = 1, intervals = 1, smoothness = 0);
+                 {place} guess {{ x = {start}; }} }}"
+            ));
+            let report = spec.solver().solve().expect("it can be set up");
+            tried += 1;
+            if report.status != Status::Solved {
+                unsolved += 1;
+                continue;
+            }
+            let x = report.solution.output("x").expect("x").at(0.5);
+            let (found, size) = (value(x), 1.0 + value(x).abs());
+            assert!((report.objective - found).abs() <= 1e-4 * size, "{place}: {} for {found}", report.objective);
+            let beside = (-200..=200).map(|k| value((x + 1e-5 * f64::from(k)).clamp(-6.0, 6.0)));
+            let least = beside.fold(f64::INFINITY, f64::min);
+            let is_saddle = report.warnings().iter().any(|warning| warning.to_string().contains("no minimum"));
+            assert!(found - least <= 1e-5 * size || is_saddle, "{place}: x = {x} has {found}, beside it {least}");
+        }
+    }
+    // Minima at corners that no helper stands for: `tanh(abs(x))`, `1 / (1 + min(1, max(0, x))^2)`.
+    assert!(20 * unsolved <= 3 * tried, "{unsolved} of {tried} unsolved");
+}
+
+/// Price by the hour, nothing at night: what floats at night costs nothing, and stays within its bounds.
+#[test]
+fn a_weight_that_vanishes_by_the_clock_leaves_the_rest_exact() {
+    let price = |limit: &str| {
+        let spec = Shipped::text(&format!(
+            "problem Night {{
+                duration T = 24; state e in 0 .. 10; input p {limit}; collocation gauss(points = 2, intervals = 24);
+                table price(t) = linear {{ 0: 0; 6: 0; 8: 0.3; 20: 0.3; 22: 0; 24: 0; }}
+                dynamics {{ der(e) == p; }}
+                initial {{ e == 5; }} final {{ e == 5; }}
+                minimize integral(price(t) * max(0, 1 + sin(2 * pi * t / 24) + p));
+            }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert_eq!(report.status, Status::Solved, "{report}");
+        (report.objective, report.iterations)
+    };
+    let (objective, iterations) = price("in -3 .. 3");
+    close(objective, 0.2320052, 1e-6);
+    assert!(iterations <= 40, "{iterations}");
+}
+
+/// Sides may be negative where a corner is not: (18.3) asks for a function that rises for all of them.
+#[test]
+fn a_limit_on_a_function_of_a_corner_is_no_limit_on_its_sides() {
+    let most = |limit: &str| {
+        let spec = Shipped::text(&format!(
+            "problem Limit {{ duration T = 1; output x in -9 .. 9: spline(order = 1, intervals = 1, smoothness = 0);
+             minimize integral(-x); trajectory {{ {limit} }} guess {{ x = -3; }} }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert_eq!(report.status, Status::Solved, "{limit}: {report}");
+        -report.objective
+    };
+    close(most("max(0, x - 2)^2 <= 1;"), 3.0, 1e-6);
+    close(most("abs(x)^1.5 <= 8;"), 4.0, 1e-6);
+    close(most("100 / (1 + abs(x)) >= 20;"), 4.0, 1e-6);
+    close(most("max(0, x) * max(1, x) <= 4;"), 2.0, 1e-6);
+    close(most("max(x, -x - 8)^3 <= 8;"), 2.0, 1e-6);
+}
