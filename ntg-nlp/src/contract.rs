@@ -127,6 +127,8 @@ pub struct Limits {
     /// How much the scaled violation of each row counts beside that of a row of weight 1; empty where all weigh alike.
     /// Where rows cannot all be met, those of small weight give way.
     pub row_weight: Vec<f64>,
+    /// A positive typical size of the objective; none: what it varies by at the start says.
+    pub objective_size: Option<f64>,
 }
 
 /// A number of an evaluation, by its indices.

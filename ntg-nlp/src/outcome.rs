@@ -81,6 +81,8 @@ pub struct Outcome {
     pub bound_multipliers: Vec<f64>,
     /// The factor of each row with which violations become comparable (docs/maths.md, equation 5.2).
     pub row_factors: Vec<f64>,
+    /// The factor of the objective by which it was solved.
+    pub objective_factor: f64,
     /// The minimised objective at `x`.
     pub objective: f64,
     /// How far `x` and the multipliers are from a solution.
@@ -112,6 +114,7 @@ impl Outcome {
             row_multipliers: vec![0.0; nlp.rows()],
             bound_multipliers: vec![0.0; nlp.variables()],
             row_factors: vec![1.0; nlp.rows()],
+            objective_factor: 1.0,
             objective: f64::NAN,
             residuals: Residuals::default(),
             is_saddle: false,

@@ -66,6 +66,8 @@ pub(crate) enum Measure {
     Rows,
     /// By these sizes of its variables and the slopes there, the end is no solution.
     Sizes(Vec<f64>),
+    /// By this size of the objective, which is that at the end, the end is no solution.
+    Objective(f64),
     /// They hold, and the end is a saddle; beside it, at this point, the Lagrangian is less.
     Saddle(Vec<f64>),
     /// Variables have outgrown their sizes on the way; these are larger.
@@ -96,12 +98,13 @@ pub(crate) fn until_measured<N: Nlp>(
     let mut beside: Option<Beside> = None;
     let mut undamped: Option<Outcome> = None;
     let mut wide: Option<(Outcome, f64)> = None;
+    let (mut large, mut magnified): (Option<Outcome>, usize) = (None, 0);
     loop {
         let left = options.max_iterations.saturating_sub(iterations);
         let is_damped = undamped.is_some();
-        let from = match &wide {
-            Some((wide, _)) => Some((wide.x.as_slice(), Start::Warm(wide.multipliers()))),
-            None => start.as_deref().map(|start| (start, Start::Cold)),
+        let from = match (&wide, &large) {
+            (Some((end, _)), _) | (None, Some(end)) => Some((end.x.as_slice(), Start::Warm(end.multipliers()))),
+            (None, None) => start.as_deref().map(|start| (start, Start::Cold)),
         };
         let round = Round { start: from, may_outgrow: restarts < RESTARTS, is_damped };
         let tolerance = options.tolerance * wide.as_ref().map_or(1.0, |(_, objective)| *objective);
@@ -112,6 +115,14 @@ pub(crate) fn until_measured<N: Nlp>(
         if let Some((wide, _)) = wide {
             return unless_worse(left_saddle, narrower(wide, outcome));
         }
+        let measure = match large.take() {
+            Some(before) if !outcome.status.has_solution() => match confirmed(before, &outcome, &options) {
+                Confirmed::By(end) => return unless_worse(left_saddle, end),
+                Confirmed::Not(before) => return unless_worse(left_saddle, narrower(before, outcome)),
+                Confirmed::Improved(size) => Measure::Objective(size),
+            },
+            _ => measure,
+        };
         // Sizes that were outgrown may have become too large.
         let measure = match measure {
             Measure::Holds if resized.is_resized() && outcome.status.has_solution() => {
@@ -149,6 +160,14 @@ pub(crate) fn until_measured<N: Nlp>(
                 let saddle = Outcome { is_saddle: true, ..outcome };
                 left_saddle = Some(unless_worse(left_saddle, saddle));
                 start = Some(below);
+                continue;
+            }
+            // What has fallen by so much in each round is 0.
+            Measure::Objective(_) if magnified == ROUNDS => return unless_worse(left_saddle, outcome),
+            Measure::Objective(size) => {
+                magnified += 1;
+                resized.measure_objective(size);
+                large = Some(outcome);
                 continue;
             }
             Measure::Outgrown(sizes) => {
@@ -209,12 +228,54 @@ fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
 /// tolerances, is not small beside the objective itself, (6.4b). An objective within the tolerance of 0 is none.
 fn small_objective(end: &Outcome, options: &Options) -> Option<f64> {
     let beside = end.residuals.unscaled.gap / end.objective.abs();
-    let objective = end.residuals.scaled.gap / beside;
     let is_small = end.status == Status::Solved && beside > WIDE * GAP * options.tolerance;
-    (is_small && objective > options.tolerance && objective < 1.0).then_some(objective)
+    let objective = scaled_objective(end);
+    (is_small && !is_none(end, options) && objective < 1.0).then_some(objective)
 }
 
-/// The end of a solve with lower tolerances for a small objective; where that is none, the end from which it went on, whose
+/// The size of the scaled objective.
+fn scaled_objective(end: &Outcome) -> f64 {
+    end.objective_factor * end.objective.abs()
+}
+
+/// Whether an objective is within the tolerance of 0 by its scale.
+fn is_none(end: &Outcome, options: &Options) -> bool {
+    scaled_objective(end) <= options.tolerance
+}
+
+/// What a solve with a larger scale of the objective says of the end from which it went on, where it has ended at no solution
+/// by that scale: rounding of heavy terms may leave it none.
+enum Confirmed {
+    /// The end of both that is better is a solution: the objective has not changed, and is all but stationary.
+    By(Outcome),
+    /// It is none.
+    Not(Outcome),
+    /// The objective has fallen to this size.
+    Improved(f64),
+}
+
+/// How much of the objective may change in a solve that confirms it: the tolerance of acceptable ends.
+const SAME: f64 = residuals::ACCEPTABLE;
+/// What is left of a gradient by the scale of the objective itself, where rounding of heavy terms lets it fall no further. A
+/// choice: that much of the objective at most a change of all variables by their sizes would gain.
+const ALL_BUT_STATIONARY: f64 = 1e-3;
+
+fn confirmed(before: Outcome, end: &Outcome, options: &Options) -> Confirmed {
+    let found = end.residuals.scaled;
+    let is_feasible = found.primal <= options.constraint_tolerance;
+    let gained = before.objective - end.objective;
+    let is_same = gained.abs() <= SAME * before.objective.abs();
+    match end.status {
+        Status::StepTooSmall if is_feasible && is_same && found.dual <= ALL_BUT_STATIONARY => {
+            let best = if gained > 0.0 { end.clone() } else { before };
+            Confirmed::By(Outcome { status: Status::Solved, iterations: end.iterations, seconds: end.seconds, ..best })
+        }
+        Status::StepTooSmall if is_feasible && gained > 0.0 && !is_same => Confirmed::Improved(end.objective.abs()),
+        _ => Confirmed::Not(before),
+    }
+}
+
+/// The end of a solve with lower tolerances, or with a larger scale, of a small objective; where that is none, the end from which it went on, whose
 /// objective is acceptable and no more.
 fn narrower(wide: Outcome, end: Outcome) -> Outcome {
     let (iterations, seconds) = (end.iterations, end.seconds);
@@ -268,7 +329,29 @@ pub(crate) fn sizes_at_end<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) ->
 pub fn is_solution_by<N: Nlp>(nlp: &N, sizes: &[f64], end: &Outcome, options: &Options) -> bool {
     let tolerance = |of: f64| LOOSER * of;
     let (constraint, optimality) = (tolerance(options.constraint_tolerance), tolerance(options.tolerance));
-    residual_by(nlp, sizes, end, options).is_none_or(|found| found.is_acceptable(constraint, optimality))
+    residual_by(nlp, (sizes, None), end, options).is_none_or(|found| found.is_acceptable(constraint, optimality))
+}
+
+/// The size of the objective by which a solution is none: what its terms vary by there, and what it is, where weights of
+/// terms that vanish there have made it vary by far more at the start. None where it is a solution by that size, too.
+pub(crate) fn objective_at_end<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<f64> {
+    if end.status != Status::Solved || scaled_objective(end) <= f64::EPSILON {
+        return None; // A sum of squares whose roots are 0 to the tolerance.
+    }
+    let sizes = Scales::sizes(nlp.limits());
+    let (mut work, mut at) = nlp.workspace();
+    nlp.derivatives(&end.x, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
+    let varies = variation(nlp.blocks(), &at, &sizes).max(at.objective.abs());
+    let is_wide = end.residuals.unscaled.gap > WIDE * GAP * options.tolerance * at.objective.abs();
+    // Where the objective is within the tolerance of 0 by its scale, lower tolerances would not do.
+    let size = if is_wide && is_none(end, options) { at.objective.abs() } else { varies };
+    if !(size.is_finite() && size > f64::MIN_POSITIVE) {
+        return None;
+    }
+    let found = residual_by(nlp, (&sizes, Some(size)), end, options)?;
+    let tolerance = |of: f64| LOOSER * of;
+    let is_solution = found.is_acceptable(tolerance(options.constraint_tolerance), tolerance(options.tolerance));
+    (!is_solution).then_some(size)
 }
 
 /// The sizes of the variables at a point, where they are larger than their typical ones; and by how much at most.
@@ -280,15 +363,23 @@ fn sizes_at<N: Nlp>(nlp: &N, x: &[f64]) -> (Vec<f64>, f64) {
     (sizes, grown.into_iter().fold(0.0, f64::max))
 }
 
-/// The residual at the end of an outcome, by given sizes of the variables and the slopes there; none where the program has
-/// no derivatives there.
-fn residual_by<N: Nlp>(nlp: &N, sizes: &[f64], end: &Outcome, options: &Options) -> Option<Residual> {
+/// The residual at the end of an outcome, by given sizes of the variables, one of the objective if there is one, and the
+/// slopes there; none where the program has no derivatives there.
+fn residual_by<N: Nlp>(
+    nlp: &N,
+    (sizes, objective): (&[f64], Option<f64>),
+    end: &Outcome,
+    options: &Options,
+) -> Option<Residual> {
     let (mut work, mut at) = nlp.workspace();
     nlp.derivatives(&end.x, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
     let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
     assembly.first(nlp.blocks(), &at);
     let mut resized = Resized::new(nlp);
     resized.resize(sizes.to_vec());
+    if let Some(size) = objective {
+        resized.measure_objective(size);
+    }
     let slopes = Slopes::of(nlp, &at, &assembly.jacobian, sizes).at_solution(nlp, &at, sizes);
     let scales = Scales::from_slopes(resized.limits(), options.scaling, &slopes);
     let (blocks, y) = (nlp.blocks(), |i: usize| end.row_multipliers[i]);
@@ -345,5 +436,8 @@ pub(crate) fn measure_at_end<N: Nlp>(nlp: &N, outcome: &Outcome, options: &Optio
     if !rows_hold(nlp, &at.rows, &mut slopes, options) {
         return Measure::Rows;
     }
-    sizes_at_end(nlp, outcome, options).map_or(Measure::Holds, Measure::Sizes)
+    match sizes_at_end(nlp, outcome, options) {
+        Some(sizes) => Measure::Sizes(sizes),
+        None => objective_at_end(nlp, outcome, options).map_or(Measure::Holds, Measure::Objective),
+    }
 }

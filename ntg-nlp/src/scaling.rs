@@ -125,7 +125,8 @@ impl Scales {
         let by_slope = slopes_of_rows.map(|slope| is_slope(&slope).then(|| 1.0 / slope));
         let factors = by_size.zip(by_slope).map(|(size, slope)| slope.unwrap_or(size));
         let rows = factors.zip(weights).map(|(factor, weight)| factor * weight).collect();
-        let objective = if is_slope(&slopes.variation) { VARIATION / slopes.variation } else { 1.0 };
+        let variation = limits.objective_size.unwrap_or(slopes.variation);
+        let objective = if is_slope(&variation) { VARIATION / variation } else { 1.0 };
         Self { variables, rows, objective, by_bounds }
     }
 }

@@ -26,6 +26,11 @@ impl<'a, N: Nlp> Resized<'a, N> {
     pub(crate) fn resize(&mut self, sizes: Vec<f64>) {
         self.limits.to_mut().scale = sizes;
     }
+
+    /// Gives the objective another size.
+    pub(crate) fn measure_objective(&mut self, size: f64) {
+        self.limits.to_mut().objective_size = Some(size);
+    }
 }
 
 impl<N: Nlp> Nlp for Resized<'_, N> {

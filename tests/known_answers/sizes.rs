@@ -284,3 +284,45 @@ fn a_saved_point_at_a_bound_tells_no_size() {
         close(store("kWh", 3.6e6, 0.02, method).solve_from(&kept).objective, -2.868_687_499, 1e-6);
     }
 }
+
+/// A line through 0 with the least effort, its end held by a heavy weight: `w / (1 + 2 w)` in any unit of the objective.
+#[test]
+fn a_heavy_weight_hides_nothing_of_the_rest_of_the_objective() {
+    // By sequential quadratic programming heavier ones end as acceptable.
+    for (method, powers) in [(Method::Auto, &[0, 4, 8, 10, 12, 14][..]), (Method::Sqp, &[0, 4, 8, 10][..])] {
+        for &power in powers {
+            let spec = Shipped::text(&format!(
+                "problem Heavy {{ duration T = 1; state x; input u; collocation gauss(points = 2, intervals = 4);
+                 dynamics {{ der(x) == u; }} initial {{ x == 0; }}
+                 minimize integral(u^2) / 2 + 1e{power} * (final(x) - 1)^2; }}"
+            ));
+            let report = spec.by(method).solver().solve().expect("it can be set up");
+            assert_eq!(report.status, Status::Solved, "1e{power}, {method:?}: {report}");
+            let weight = 10.0_f64.powi(power);
+            close(report.objective, weight / (1.0 + 2.0 * weight), 1e-6);
+        }
+    }
+}
+
+/// The speed of a walk, by its length to 1 m, by itself to 1 m/s, and by a clock that all but knows the time: the clock
+/// decides the time, and halfway between both says the rest.
+#[test]
+fn a_tight_measurement_leaves_the_others_what_they_say() {
+    for sigma in ["1 [s]", "1e-2 [s]", "1e-4 [s]", "1e-6 [s]"] {
+        let spec = Shipped::text(&format!(
+            "problem Walk {{ duration T in 0.5 .. 9 [s]; state x [m]; variable v [m/s];
+             collocation gauss(points = 2, intervals = 1); dynamics {{ der(x) == v; }} initial {{ x == 0; }}
+             measure {{ final(x) == 10 [m] sigma 1 [m]; v == 4 [m/s] sigma 1 [m/s]; T == 2 [s] sigma {sigma}; }}
+             guess {{ v = 4 [m/s];  T = 2.1 [s]; }} }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert_eq!(report.status, Status::Solved, "{sigma}: {report}");
+        if sigma != "1 [s]" {
+            // (2 v - 10)^2 / 2 + (v - 4)^2 / 2 at v = 4.8.
+            close(report.objective, 0.4, 1e-2);
+        }
+        if sigma == "1e-6 [s]" {
+            close(report.objective, 0.4, 1e-6);
+        }
+    }
+}

@@ -4,7 +4,7 @@ use super::state::{Analysis, State};
 use crate::contract::Nlp;
 use crate::kkt::System;
 use crate::outcome::Outcome;
-use crate::remeasure::{self, Measure, OUTGROWN, UNSEEN, is_near_scales, outgrown, sizes_at_end};
+use crate::remeasure::{self, Measure, OUTGROWN, UNSEEN, is_near_scales, objective_at_end, outgrown, sizes_at_end};
 use crate::residuals::{self, ACCEPTABLE, ROUNDING, Residuals, slot_terms};
 use crate::scaling::Scales;
 use crate::sizes::multiples;
@@ -117,7 +117,10 @@ impl<'a, N: Nlp> State<'a, N> {
         } else if !outcome.status.has_solution() || analysis.system.as_ref().is_none_or(is_near) {
             holds()
         } else {
-            sizes_at_end(nlp, &outcome, options).map_or_else(holds, Measure::Sizes)
+            match sizes_at_end(nlp, &outcome, options) {
+                Some(sizes) => Measure::Sizes(sizes),
+                None => objective_at_end(nlp, &outcome, options).map_or_else(holds, Measure::Objective),
+            }
         };
         outcome
     }
@@ -159,6 +162,7 @@ impl<'a, N: Nlp> State<'a, N> {
             row_multipliers,
             bound_multipliers,
             row_factors,
+            objective_factor: objective,
             objective: self.record.objective,
             residuals,
             is_saddle: false,

@@ -93,6 +93,7 @@ impl<N: Nlp> Run<'_, N> {
             row_multipliers,
             bound_multipliers,
             row_factors: self.program.scales.rows.clone(),
+            objective_factor: self.program.scales.objective,
             objective: self.record.objective,
             residuals: self.record.residuals,
             is_saddle: false,

@@ -152,6 +152,7 @@ mod tests {
             row_multipliers: vec![],
             bound_multipliers: vec![0.0],
             row_factors: vec![],
+            objective_factor: 1.0,
             objective,
             residuals: Residuals { scaled: residual, unscaled: residual },
             is_saddle: false,

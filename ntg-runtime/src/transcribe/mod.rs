@@ -323,6 +323,7 @@ fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f6
         angles: vec![],
         row_scale: vec![1.0; elements.rows.len()],
         row_weight: vec![],
+        objective_size: None,
     }
 }
 
