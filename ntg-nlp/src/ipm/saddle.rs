@@ -44,6 +44,9 @@ const UNEVEN: f64 = 0.2;
 /// itself, and of 1. Choices: what is less by a hundred tolerances is beyond rounding.
 const NEAR: f64 = 0.1;
 const LOWER: f64 = 1e-6;
+/// By how much a scaled equality, whose slope is 1, may change along a direction that leaves equalities as they are. A law:
+/// where equalities leave no freedom, what the matrix calls a direction is rounding, and they change by about 1.
+const LEVEL: f64 = 1e-3;
 /// The shift of a matrix that is singular, because what it is of is flat.
 const FLAT: f64 = 1e-8;
 
@@ -81,6 +84,9 @@ impl<N: Nlp> State<'_, N> {
     /// The point along a direction of negative curvature, on the better side.
     fn below_curvature(&mut self, descent: &Descent) -> Option<Vec<f64>> {
         let farthest = self.distance_to_inactive_bounds(&descent.along).min(1.0);
+        if !self.leaves_equalities() {
+            return None;
+        }
         let here = self.lagrangian()?;
         (0..HALVINGS).map(|halvings| farthest * 0.5_f64.powi(halvings as i32)).find_map(|distance| {
             let enough = 0.5 * ARMIJO * distance * distance * descent.curvature;
@@ -105,6 +111,9 @@ impl<N: Nlp> State<'_, N> {
         along.iter_mut().for_each(|entry| *entry /= largest);
         along.push(0.0);
         let distance = self.distance_to_inactive_bounds(&along).min(NEAR);
+        if !self.leaves_equalities() {
+            return None;
+        }
         let here = self.lagrangian()?;
         let enough = LOWER * here.abs().max(1.0);
         if distance * self.cost_of_active_bounds() > ARMIJO * enough {
@@ -173,6 +182,11 @@ impl<N: Nlp> State<'_, N> {
         let inactive = slacks.inequalities.iter().zip(slacks.s.iter().zip(&slacks.z)).filter(|(_, (s, z))| s > z);
         let nearest = inactive.map(|(of, (s, _))| self.step.jacobian_x[of.function].abs() / s).fold(0.0, f64::max);
         TO_BOUND / nearest
+    }
+
+    /// Whether a motion along the direction whose product is at hand leaves equalities as they are.
+    fn leaves_equalities(&self) -> bool {
+        self.slacks.equalities.iter().all(|of| self.step.jacobian_x[of.function].abs() <= LEVEL)
     }
 
     /// What a motion along the direction whose product is at hand costs at the active bounds that it does not leave as they are.

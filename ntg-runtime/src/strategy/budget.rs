@@ -57,6 +57,11 @@ impl<'a> Budget<'a> {
         self.settings.constraint_tolerance
     }
 
+    /// How small scaled residuals of optimality must be.
+    pub(super) fn tolerance(&self) -> f64 {
+        self.settings.tolerance
+    }
+
     /// Settings of the first attempt; none where nothing is left. A method that the user has chosen has all that is left.
     pub(super) fn attempt(&self) -> Option<Settings> {
         if self.settings.method == Method::Auto { self.at_most(self.share(ATTEMPT)) } else { self.rest() }

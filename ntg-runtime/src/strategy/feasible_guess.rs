@@ -26,7 +26,9 @@ impl Session {
         let Some(objective) = feasible_objective(nlp, guess, &outcome, budget.constraint_tolerance()) else {
             return Ok((outcome, false));
         };
-        let is_better = |than: f64| than - objective > BETTER * objective.abs().max(than.abs());
+        // An objective that is 0 to the tolerance of what it varies by is no worse than one that is 0.
+        let least = budget.tolerance() / outcome.objective_factor;
+        let is_better = |than: f64| than - objective > (BETTER * objective.abs().max(than.abs())).max(least);
         if !outcome.status.has_solution() || !is_better(outcome.objective) {
             return Ok((outcome, false));
         }
