@@ -12,6 +12,7 @@ use super::names;
 use super::node::{Node, NodeWork};
 use super::points::fine_set;
 use ntg_structure::Place;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// An expression that is singular at the guess.
@@ -52,7 +53,7 @@ pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
         batch.values(this.problem, &this.model.tables, x, &mut work);
         let point =
             |element: usize| names::point(&this.model.structure, &this.model.layout, &batch.sites[element].point, x);
-        in_node(this, (&batch.node, &work.node), &point, &not_finite, &mut found);
+        in_node(this, (&batch.node, &work.node), &point, &mut |_, values| not_finite(values), &mut found);
     }
     let structure = &this.model.structure;
     let norms: Vec<&Place> = structure.norms.iter().map(|norm| &structure.constraints[*norm].place).collect();
@@ -63,8 +64,8 @@ pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
     found
 }
 
-/// Every expression that has a pole or no value somewhere along these variables, looked for at `samples` places to a point
-/// and at both sides of every breakpoint.
+/// Every expression that has a pole or no value somewhere along these variables of which the points tell nothing, looked for
+/// at `samples` places to a point and at both sides of every breakpoint.
 ///
 /// # Errors
 /// [`SetupError`] for an index outside its family.
@@ -74,32 +75,51 @@ pub(crate) fn poles(this: &Transcription, x: &[f64], samples: usize) -> Result<V
     if structure.kernels.iter().all(|kernel| kernel.probes.is_empty()) {
         return Ok(found);
     }
+    let mut at_points: BTreeMap<Probe, f64> = BTreeMap::new();
+    for group in &this.elements.batches {
+        let (batch, mut work) = (&group.batch, group.batch.work());
+        batch.values(this.problem, &this.model.tables, x, &mut work);
+        let mut keep = |probe: Probe, values: &[f64]| {
+            let most = at_points.entry(probe).or_insert(0.0);
+            *most = values.iter().map(|value| value.abs()).filter(|size| size.is_finite()).fold(*most, f64::max);
+            vec![]
+        };
+        in_node(this, (&batch.node, &work.node), &|_| String::new(), &mut keep, &mut found);
+    }
+    let mut far = |probe: Probe, values: &[f64]| far_out(values, at_points.get(&probe).copied().unwrap_or(0.0));
     for group in &structure.groups {
         let sites = sites(&frame, group, |points, breakpoints, phase| fine_set(points, breakpoints, phase, samples))?;
         for batch in batches(&frame, &group.call, sites)? {
             let mut work = batch.work();
             batch.values(this.problem, &this.model.tables, x, &mut work);
             let point = |element: usize| names::point(structure, &this.model.layout, &batch.sites[element].point, x);
-            in_node(this, (&batch.node, &work.node), &point, &far_out, &mut found);
+            in_node(this, (&batch.node, &work.node), &point, &mut far, &mut found);
         }
     }
     Ok(found)
 }
+
+/// A probe, by its kernel and its place there.
+type Probe = (usize, usize);
 
 /// Places at which a value is no number.
 fn not_finite(values: &[f64]) -> Vec<usize> {
     (0..values.len()).filter(|lane| !values[*lane].is_finite()).collect()
 }
 
-/// Places at which a value is no number, or beyond all that it is elsewhere.
-fn far_out(values: &[f64]) -> Vec<usize> {
+/// Places at which a value is no number, or beyond all that it is elsewhere and at the points, `largest`.
+fn far_out(values: &[f64], largest: f64) -> Vec<usize> {
+    /// What is so many times as large as at any point is none that the points know of: an input that is 0 but for one
+    /// interval is as large there at a point. A choice.
+    const UNSEEN: f64 = 10.0;
     /// What a pole is above the middle of its values. A law: a solve to 1e-8 leaves an argument that is 0 at about that part
     /// of its size, and that of a square root at the root of it.
     const FAR: f64 = 1e4;
     let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
     let middle = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    let is_far = |value: f64| !value.is_finite() || (middle > 0.0 && value.abs() > FAR * middle);
+    let is_far =
+        |value: f64| !value.is_finite() || (middle > 0.0 && value.abs() > (FAR * middle).max(UNSEEN * largest));
     (0..values.len()).filter(|lane| is_far(values[*lane])).collect()
 }
 
@@ -108,7 +128,7 @@ fn in_node(
     this: &Transcription,
     (node, work): (&Node, &NodeWork),
     point: &dyn Fn(usize) -> String,
-    which: &dyn Fn(&[f64]) -> Vec<usize>,
+    which: &mut dyn FnMut(Probe, &[f64]) -> Vec<usize>,
     found: &mut Vec<Singular>,
 ) {
     for (edge, below) in node.edges.iter().zip(&work.edges) {
@@ -121,8 +141,8 @@ fn in_node(
     }
     let mut probes = vec![0.0; places.len() * lanes];
     this.problem.probes(node.kernel, lanes, &work.inputs, &this.model.tables, &mut probes);
-    for (place, values) in places.iter().zip(probes.chunks_exact(lanes)) {
-        let singular = which(values);
+    for (probe, (place, values)) in places.iter().zip(probes.chunks_exact(lanes)).enumerate() {
+        let singular = which((node.kernel, probe), values);
         let Some(first) = singular.first() else { continue };
         match found.iter_mut().find(|known| known.place == *place) {
             // The value and the derivative of one expression have a probe each.
