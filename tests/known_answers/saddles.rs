@@ -154,3 +154,19 @@ fn where_a_solve_from_beside_a_saddle_fails_one_from_nearer_is_tried() {
     assert!(report.objective < 0.95 * 2.0 * (std::f64::consts::PI / 0.1).sqrt(), "{report}");
     assert!(!report.to_string().contains("no minimum"), "{report}");
 }
+
+/// Equations say all: 2 m of free fall take `sqrt(4 / 9.81)` seconds, at most as at least.
+#[test]
+fn what_equations_leave_no_freedom_is_no_saddle() {
+    for sense in ["minimize", "maximize"] {
+        let spec = Shipped::text(&format!(
+            "problem Fall {{ duration T in 0.01 .. 5 [s]; output h [m]: spline(order = 3, intervals = 1);
+             initial {{ h == 2 [m];  der(h) == 0; }} final {{ h == 0; }}
+             trajectory {{ der(h, 2) == -9.81 [m/s^2]; }} {sense} T; }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert_eq!(report.status, Status::Solved, "{report}");
+        close(report.objective, (4.0_f64 / 9.81).sqrt(), 1e-8);
+        assert!(report.warnings().is_empty(), "{sense}: {report}");
+    }
+}

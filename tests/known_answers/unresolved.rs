@@ -192,3 +192,16 @@ fn a_thrust_that_turns_round_is_worth_nothing() {
     assert!(report.objective_correction.abs() < 1e-9, "{}", report.objective_correction);
     assert_eq!(found, Resolution::Coarse, "{report}");
 }
+
+/// A feed that is 0 but at the start, over a volume that is 7 at least.
+#[test]
+fn a_quotient_that_is_large_in_one_interval_has_no_pole() {
+    let spec = Shipped::text(
+        "problem Feed { duration T = 40; state P, V in 1 .. 10; input F in 0 .. 1; collocation gauss(points = 3, intervals = 30);
+         maximize final(P * V); dynamics { der(P) == 0.004 * (1 + 4 * sin(t * 10)) - P * F / V; der(V) == F; }
+         initial { P == 0; V == 7; } trajectory { F >= if t <= 0.4 { 1 } else { 0 }; } guess { P = 0; V = 8; F = 0.02; } }",
+    );
+    let report = spec.solver().solve().expect("it can be set up");
+    let told: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
+    assert!(told.iter().all(|warning| !warning.contains("singular")), "{told:?}");
+}

@@ -150,6 +150,10 @@ impl<'a> Elaborator<'a> {
         if let Some(help) = self.forgotten_rate(a, b).filter(|_| verb == "compare") {
             return help;
         }
+        let ends = [a, b].into_iter().flat_map(|side| [self.text(side.span), self.other_end(side.span)]);
+        if let Some(help) = ends.into_iter().find_map(|text| unit_of_divisor(&text)) {
+            return help;
+        }
         let bare = |v: &Value| v.dimension == Some(Dimension::NONE) && self.problem.dag.is_constant(v.node).is_some();
         let unit_of = |v: &Value| match &v.unit {
             Some(unit) => unit.symbol.clone(),
@@ -188,6 +192,14 @@ impl<'a> Elaborator<'a> {
             }
         }
         "bring both to the same dimension: check units, powers and missing factors".to_owned()
+    }
+
+    /// The text of the upper end of a range whose lower end is at a place; empty where it is none.
+    fn other_end(&self, lower: Span) -> String {
+        let all = self.source.span();
+        let after = self.source.slice(Span { start: lower.end, end: all.end });
+        let upper = after.trim_start().strip_prefix("..").and_then(|upper| upper.split_inclusive(']').next());
+        upper.map(|upper| upper.trim().to_owned()).unwrap_or_default()
     }
 
     fn product(&mut self, cx: &Context<'a>, factors: &'a [(MulOp, Expr)], span: Span) -> Value {
@@ -310,4 +322,14 @@ impl<'a> Elaborator<'a> {
             .help(format!("make the base a pure number: `({} / 1 [{unit}]) ^ ...`", self.grouped(base.span)));
         self.refuse(finding, span)
     }
+}
+
+/// Of `1/300 [1/m]`, whose unit is that of 300: what to write where that was not meant.
+fn unit_of_divisor(text: &str) -> Option<String> {
+    let (quotient, unit) = text.strip_suffix(']')?.rsplit_once('[')?;
+    let (above, below) = quotient.rsplit_once('/')?;
+    let (above, below) = (above.trim(), below.trim());
+    [above, below].iter().all(|number| number.parse::<f64>().is_ok()).then(|| {
+        format!("a unit belongs to the number before it, here to {below} alone: write `{above} [{unit}] / {below}`")
+    })
 }

@@ -335,3 +335,18 @@ fn characters_that_nobody_sees_are_named_and_to_be_removed() {
         says(&found, &message, "spec.ntg:5:5", "remove it");
     }
 }
+
+#[test]
+fn a_unit_behind_a_quotient_belongs_to_the_divisor() {
+    let curve = |range: &str| told(&format!("{MOVING}\n    variable k in {range};"));
+    let help = "a unit belongs to the number before it, here to 300 alone: write `1 [1/m] / 300`";
+    says(&curve("-1/300 .. 1/300 [1/m]"), "error[E041]: ", "spec.ntg:5:19", help);
+    assert_eq!(errors(&curve("-1 [1/m] / 300 .. 1 [1/m] / 300")), 0);
+    let start = told(&format!("{MOVING}\n    initial {{ der(x) == 1/2 [m/s]; }}"));
+    says(
+        &start,
+        "error[E041]: ",
+        "spec.ntg:5:15",
+        "a unit belongs to the number before it, here to 2 alone: write `1 [m/s] / 2`",
+    );
+}
