@@ -99,6 +99,8 @@ pub(crate) fn until_measured<N: Nlp>(
     let mut undamped: Option<Outcome> = None;
     let mut wide: Option<(Outcome, f64)> = None;
     let (mut large, mut magnified): (Option<Outcome>, usize) = (None, 0);
+    // What the objective is 0 beside, by its scale at the start.
+    let mut nothing = 0.0_f64;
     loop {
         let left = options.max_iterations.saturating_sub(iterations);
         let is_damped = undamped.is_some();
@@ -108,7 +110,8 @@ pub(crate) fn until_measured<N: Nlp>(
         };
         let round = Round { start: from, may_outgrow: restarts < RESTARTS, is_damped };
         let tolerance = options.tolerance * wide.as_ref().map_or(1.0, |(_, objective)| *objective);
-        let options = Options { max_iterations: left, tolerance, ..options.after(began.elapsed()) };
+        let most = if large.is_some() { left.min(MAGNIFIED) } else { left };
+        let options = Options { max_iterations: most, tolerance, ..options.after(began.elapsed()) };
         let (mut outcome, measure) = solve(&resized, round, &options);
         iterations += outcome.iterations;
         (outcome.iterations, outcome.seconds) = (iterations, began.elapsed().as_secs_f64());
@@ -116,6 +119,9 @@ pub(crate) fn until_measured<N: Nlp>(
             return unless_worse(left_saddle, narrower(wide, outcome));
         }
         let measure = match large.take() {
+            Some(before) if is_zero(&outcome, nothing) => {
+                return unless_worse(left_saddle, zero(before, outcome));
+            }
             Some(before) if !outcome.status.has_solution() => match confirmed(before, &outcome, &options) {
                 Confirmed::By(end) => return unless_worse(left_saddle, end),
                 Confirmed::Not(before) => return unless_worse(left_saddle, narrower(before, outcome)),
@@ -165,6 +171,9 @@ pub(crate) fn until_measured<N: Nlp>(
             // What has fallen by so much in each round is 0.
             Measure::Objective(_) if magnified == ROUNDS => return unless_worse(left_saddle, outcome),
             Measure::Objective(size) => {
+                if magnified == 0 {
+                    nothing = f64::EPSILON / outcome.objective_factor;
+                }
                 magnified += 1;
                 resized.measure_objective(size);
                 large = Some(outcome);
@@ -254,6 +263,23 @@ enum Confirmed {
     Improved(f64),
 }
 
+/// Iterations of a solve with a larger scale of the objective. A choice: from near a solution few are needed, and an objective
+/// that falls to 0 like a high power takes many.
+const MAGNIFIED: usize = 50;
+
+/// Whether an objective is 0 beside what it varied by, and is not so by what equalities miss.
+fn is_zero(end: &Outcome, nothing: f64) -> bool {
+    let objective = end.objective.abs();
+    objective <= nothing && end.residuals.unscaled.worth <= SAME * objective
+}
+
+/// An end whose objective is 0 by its scale at the start: the last solution, at the lesser objective where that is one too.
+fn zero(before: Outcome, end: Outcome) -> Outcome {
+    let (iterations, seconds) = (end.iterations, end.seconds);
+    let best = if end.status == Status::Solved { end } else { before };
+    Outcome { iterations, seconds, ..best }
+}
+
 /// How much of the objective may change in a solve that confirms it: the tolerance of acceptable ends.
 const SAME: f64 = residuals::ACCEPTABLE;
 /// What is left of a gradient by the scale of the objective itself, where rounding of heavy terms lets it fall no further. A
@@ -270,7 +296,9 @@ fn confirmed(before: Outcome, end: &Outcome, options: &Options) -> Confirmed {
             let best = if gained > 0.0 { end.clone() } else { before };
             Confirmed::By(Outcome { status: Status::Solved, iterations: end.iterations, seconds: end.seconds, ..best })
         }
-        Status::StepTooSmall if is_feasible && gained > 0.0 && !is_same => Confirmed::Improved(end.objective.abs()),
+        Status::StepTooSmall | Status::IterationLimit if is_feasible && gained > 0.0 && !is_same => {
+            Confirmed::Improved(end.objective.abs())
+        }
         _ => Confirmed::Not(before),
     }
 }

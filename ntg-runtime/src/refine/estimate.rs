@@ -70,6 +70,14 @@ pub(super) fn marks(
     Ok(marks)
 }
 
+/// Whether any output's spline has a jump in its highest derivative, or a phase few knots to tell: where none has, each phase
+/// is one polynomial, and there is nothing that a finer mesh would know better.
+pub(super) fn has_jumps(nlp: &Transcription, report: &Report) -> bool {
+    let x = report.solution.coefficients();
+    let is_told = |member: &PhaseMember| member.breakpoints.len() > FEW + 1;
+    nlp.model.layout.phases.iter().any(|member| !is_told(member) || jumps(member, x).iter().any(|jump| *jump > 0.0))
+}
+
 /// Into how many pieces an interval is split for a violation that is so many times the tolerance: the
 /// violation between points falls with the square of their distance.
 fn wanted(ratio: f64) -> usize {

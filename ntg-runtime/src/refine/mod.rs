@@ -93,7 +93,8 @@ impl Run<'_> {
             self.beside = beside(&nlp, &self.report);
         }
         let found = round(&nlp, &self.report, (&self.rounds, self.beside));
-        let met = found.within(self.wanted.tolerance);
+        let met = found.within(self.wanted.tolerance)
+            || (found.is_exact(self.wanted.tolerance) && !estimate::has_jumps(&nlp, &self.report));
         self.number = self.rounds.len();
         self.rounds.push(found);
         keep_best(&mut self.best, &self.report, &self.rounds, self.wanted.tolerance);

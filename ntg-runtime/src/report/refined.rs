@@ -69,7 +69,12 @@ impl Refined {
 impl Round {
     /// Whether all errors are within a tolerance.
     pub(crate) fn within(&self, tolerance: f64) -> bool {
-        self.quadrature <= tolerance && self.change <= tolerance && self.violation <= tolerance
+        self.is_exact(tolerance) && self.change <= tolerance
+    }
+
+    /// Whether the errors are within a tolerance that one round tells by itself.
+    pub(crate) fn is_exact(&self, tolerance: f64) -> bool {
+        self.quadrature <= tolerance && self.violation <= tolerance
     }
 }
 
