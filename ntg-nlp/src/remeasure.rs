@@ -168,8 +168,10 @@ pub(crate) fn until_measured<N: Nlp>(
                 start = Some(below);
                 continue;
             }
-            // What has fallen by so much in each round is 0.
-            Measure::Objective(_) if magnified == ROUNDS => return unless_worse(left_saddle, outcome),
+            // By its own size it is no solution still.
+            Measure::Objective(_) if magnified == ROUNDS => {
+                return unless_worse(left_saddle, Outcome { status: Status::Acceptable, ..outcome });
+            }
             Measure::Objective(size) => {
                 if magnified == 0 {
                     nothing = f64::EPSILON / outcome.objective_factor;
@@ -286,13 +288,14 @@ const SAME: f64 = residuals::ACCEPTABLE;
 /// choice: that much of the objective at most a change of all variables by their sizes would gain.
 const ALL_BUT_STATIONARY: f64 = 1e-3;
 
+/// Compares the end of a solve with a larger scale of the objective, which is no solution, with the one `before`.
 fn confirmed(before: Outcome, end: &Outcome, options: &Options) -> Confirmed {
     let found = end.residuals.scaled;
     let is_feasible = found.primal <= options.constraint_tolerance;
     let gained = before.objective - end.objective;
     let is_same = gained.abs() <= SAME * before.objective.abs();
     match end.status {
-        Status::StepTooSmall if is_feasible && is_same && found.dual <= ALL_BUT_STATIONARY => {
+        Status::StepTooSmall if is_feasible && is_same && found.dual <= ALL_BUT_STATIONARY && found.worth <= SAME => {
             let best = if gained > 0.0 { end.clone() } else { before };
             Confirmed::By(Outcome { status: Status::Solved, iterations: end.iterations, seconds: end.seconds, ..best })
         }
@@ -303,7 +306,8 @@ fn confirmed(before: Outcome, end: &Outcome, options: &Options) -> Confirmed {
     }
 }
 
-/// The end of a solve with lower tolerances, or with a larger scale, of a small objective; where that is none, the end from which it went on, whose
+/// The end of a solve with lower tolerances, or with a larger scale, of a small objective; where that is none, the end from
+/// which it went on, whose
 /// objective is acceptable and no more.
 fn narrower(wide: Outcome, end: Outcome) -> Outcome {
     let (iterations, seconds) = (end.iterations, end.seconds);

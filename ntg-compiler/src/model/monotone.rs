@@ -91,7 +91,9 @@ impl Elaborator<'_> {
                 return if ends_at_zero { Push::Steep } else { Push::Nothing };
             }
             Node::Reduce { fold: Fold::Product, .. } => return Push::Nothing,
-            Node::Select { condition, .. } => condition,
+            // What is not chosen has no weight.
+            Node::Select { condition, .. } if is_given(&self.problem, condition) => return Push::Floating,
+            Node::Select { .. } => return Push::Nothing,
             Node::Binary(Binary::Mul | Binary::Div, ..) if both => return Push::Nothing,
             Node::Binary(Binary::Mul, a, b) => {
                 if at == 0 {
@@ -103,8 +105,7 @@ impl Elaborator<'_> {
             Node::Binary(Binary::Div, _, b) => b,
             _ => return Push::Steep,
         };
-        let is_choice = matches!(node, Node::Select { .. });
-        if !is_choice && self.is_away_from_zero(pass, factor) {
+        if self.is_away_from_zero(pass, factor) {
             Push::Steep
         } else if is_given(&self.problem, factor) {
             Push::Floating

@@ -53,7 +53,9 @@ pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
         batch.values(this.problem, &this.model.tables, x, &mut work);
         let point =
             |element: usize| names::point(&this.model.structure, &this.model.layout, &batch.sites[element].point, x);
-        in_node(this, (&batch.node, &work.node), &point, &mut |_, values| not_finite(values), &mut found);
+        each_probe(this, (&batch.node, &work.node), &mut |node, _, place, values| {
+            add(&mut found, node, place, &not_finite(values), &point);
+        });
     }
     let structure = &this.model.structure;
     let norms: Vec<&Place> = structure.norms.iter().map(|norm| &structure.constraints[*norm].place).collect();
@@ -79,21 +81,21 @@ pub(crate) fn poles(this: &Transcription, x: &[f64], samples: usize) -> Result<V
     for group in &this.elements.batches {
         let (batch, mut work) = (&group.batch, group.batch.work());
         batch.values(this.problem, &this.model.tables, x, &mut work);
-        let mut keep = |probe: Probe, values: &[f64]| {
+        each_probe(this, (&batch.node, &work.node), &mut |_, probe, _, values| {
             let most = at_points.entry(probe).or_insert(0.0);
             *most = values.iter().map(|value| value.abs()).filter(|size| size.is_finite()).fold(*most, f64::max);
-            vec![]
-        };
-        in_node(this, (&batch.node, &work.node), &|_| String::new(), &mut keep, &mut found);
+        });
     }
-    let mut far = |probe: Probe, values: &[f64]| far_out(values, at_points.get(&probe).copied().unwrap_or(0.0));
     for group in &structure.groups {
         let sites = sites(&frame, group, |points, breakpoints, phase| fine_set(points, breakpoints, phase, samples))?;
         for batch in batches(&frame, &group.call, sites)? {
             let mut work = batch.work();
             batch.values(this.problem, &this.model.tables, x, &mut work);
             let point = |element: usize| names::point(structure, &this.model.layout, &batch.sites[element].point, x);
-            in_node(this, (&batch.node, &work.node), &point, &mut far, &mut found);
+            each_probe(this, (&batch.node, &work.node), &mut |node, probe, place, values| {
+                let largest = at_points.get(&probe).copied().unwrap_or(0.0);
+                add(&mut found, node, place, &far_out(values, largest), &point);
+            });
         }
     }
     Ok(found)
@@ -101,6 +103,8 @@ pub(crate) fn poles(this: &Transcription, x: &[f64], samples: usize) -> Result<V
 
 /// A probe, by its kernel and its place there.
 type Probe = (usize, usize);
+/// Takes a probe of a node, where it stands, and its values.
+type Visit<'a> = dyn FnMut(&Node, Probe, &Place, &[f64]) + 'a;
 
 /// Places at which a value is no number.
 fn not_finite(values: &[f64]) -> Vec<usize> {
@@ -123,16 +127,10 @@ fn far_out(values: &[f64], largest: f64) -> Vec<usize> {
     (0..values.len()).filter(|lane| is_far(values[*lane])).collect()
 }
 
-/// Adds what is singular in a kernel and in the reductions below it.
-fn in_node(
-    this: &Transcription,
-    (node, work): (&Node, &NodeWork),
-    point: &dyn Fn(usize) -> String,
-    which: &mut dyn FnMut(Probe, &[f64]) -> Vec<usize>,
-    found: &mut Vec<Singular>,
-) {
+/// Calls `visit` with the values of every probe of a kernel and of the reductions below it, by node.
+fn each_probe(this: &Transcription, (node, work): (&Node, &NodeWork), visit: &mut Visit<'_>) {
     for (edge, below) in node.edges.iter().zip(&work.edges) {
-        in_node(this, (&edge.child, &below.child), point, which, found);
+        each_probe(this, (&edge.child, &below.child), visit);
     }
     let places = &this.model.structure.kernels[node.kernel].probes;
     let lanes = node.lanes();
@@ -142,16 +140,19 @@ fn in_node(
     let mut probes = vec![0.0; places.len() * lanes];
     this.problem.probes(node.kernel, lanes, &work.inputs, &this.model.tables, &mut probes);
     for (probe, (place, values)) in places.iter().zip(probes.chunks_exact(lanes)).enumerate() {
-        let singular = which((node.kernel, probe), values);
-        let Some(first) = singular.first() else { continue };
-        match found.iter_mut().find(|known| known.place == *place) {
-            // The value and the derivative of one expression have a probe each.
-            Some(known) => known.count = known.count.max(singular.len()),
-            None => found.push(Singular {
-                place: place.clone(),
-                point: point(first % node.elements),
-                count: singular.len(),
-            }),
+        visit(node, (node.kernel, probe), place, values);
+    }
+}
+
+/// Adds an expression that is singular at some lanes of a node.
+fn add(found: &mut Vec<Singular>, node: &Node, place: &Place, lanes: &[usize], point: &dyn Fn(usize) -> String) {
+    let Some(first) = lanes.first() else { return };
+    match found.iter_mut().find(|known| known.place == *place) {
+        // The value and the derivative of one expression have a probe each.
+        Some(known) => known.count = known.count.max(lanes.len()),
+        None => {
+            let point = point(first % node.elements);
+            found.push(Singular { place: place.clone(), point, count: lanes.len() });
         }
     }
 }
