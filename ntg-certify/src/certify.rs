@@ -218,7 +218,10 @@ fn path(
         Some(_) if equality => {
             Verdict::Within(if total { residual(outward(found.values), below, unit) } else { f64::INFINITY })
         }
-        Some(_) => judge((found.witness.map_or(0.0, |witness| witness.missed), found.missed), total),
+        Some(required) => {
+            let least = found.witness.map_or(0.0, |witness| required.surely_missed(witness.value));
+            judge((least, found.missed), total)
+        }
     };
     let values = within_required(found.values, (&verdict, required), unit);
     let required = required.map(|r| (r.low, r.high));
@@ -276,7 +279,13 @@ fn within_required(values: Interval, (verdict, required): (&Verdict, Option<Requ
 impl Required {
     /// By how much a value that is known misses the bounds: at least, and at most.
     fn missed(&self, value: Interval) -> (f64, f64) {
-        (self.missed_at_least(value).max(0.0), self.missed_at_most(value))
+        (self.surely_missed(value), self.missed_at_most(value))
+    }
+
+    /// By how much a value misses the bounds at least, if by more than some roundings: what less is missed, another
+    /// arithmetic may not find.
+    fn surely_missed(&self, value: Interval) -> f64 {
+        if self.missed_at_least(outward(value)) > 0.0 { self.missed_at_least(value) } else { 0.0 }
     }
 }
 

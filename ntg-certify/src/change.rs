@@ -19,6 +19,9 @@ pub struct Change {
     pub above: f64,
     /// Where more points hold it, for each of its members that needs them, by the indices of the member.
     pub levels: BTreeMap<Vec<i64>, Levels>,
+    /// Scaled times that hold it besides, for each of its members that needs them: where more points in all of a part did
+    /// not suffice.
+    pub places: BTreeMap<Vec<i64>, Vec<f64>>,
     /// How many members it has along its phases.
     pub members: usize,
     /// Where an end condition fixes it at the start of its phases and it meets a bound there, and the same at their end,
@@ -55,6 +58,14 @@ impl Change {
         }
     }
 
+    /// Holds a member at a scaled time besides.
+    pub(crate) fn hold(&mut self, member: &[i64], tau: f64) {
+        let places = self.places.entry(member.to_vec()).or_default();
+        if !places.iter().any(|own| (own - tau).abs() <= NEAR) {
+            places.push(tau);
+        }
+    }
+
     /// Whether its bounds stay what they are at the first or the last point of its phases.
     pub(crate) fn spares_ends(&self) -> bool {
         self.ends != [Spared::Nothing; 2]
@@ -68,12 +79,16 @@ impl Change {
     /// The levels of a member of a group that holds the constraint. The group may have loops more than the spec writes, or
     /// fewer (the sides of a corner): members that agree in the indices that both have are the same.
     pub(crate) fn levels_of(&self, indices: &[i64]) -> Levels {
-        let agrees = |own: &[i64]| own.iter().zip(indices).all(|(a, b)| a == b);
         let mut levels = [0; PARTS];
-        for (_, own) in self.levels.iter().filter(|(member, _)| agrees(member)) {
+        for (_, own) in self.levels.iter().filter(|(member, _)| agrees(member, indices)) {
             levels.iter_mut().zip(own).for_each(|(most, own)| *most = (*most).max(*own));
         }
         levels
+    }
+
+    /// The scaled times that hold a member of a group besides, as [`Change::levels_of`].
+    pub(crate) fn places_of(&self, indices: &[i64]) -> impl Iterator<Item = f64> {
+        self.places.iter().filter(|(member, _)| agrees(member, indices)).flat_map(|(_, own)| own).copied()
     }
 
     /// How many times as many points hold it where there are most.
@@ -81,11 +96,21 @@ impl Change {
         1 << self.levels.values().flatten().max().copied().unwrap_or(0)
     }
 
+    /// At how many scaled times its members are held besides.
+    pub fn held(&self) -> usize {
+        self.places.values().map(Vec::len).sum()
+    }
+
     /// The part of the time of all of its members in which more points are.
     pub fn share(&self) -> f64 {
         let marked = self.levels.values().flatten().filter(|level| **level > 0).count();
         marked as f64 / (PARTS * self.members.max(self.levels.len()).max(1)) as f64
     }
+}
+
+/// Whether members agree in the indices that both have.
+fn agrees(own: &[i64], indices: &[i64]) -> bool {
+    own.iter().zip(indices).all(|(a, b)| a == b)
 }
 
 /// In which of the equal parts a scaled time is.
@@ -98,19 +123,22 @@ pub(crate) fn each_level(levels: &Levels) -> impl Iterator<Item = u8> + '_ {
     (1..=levels.iter().max().copied().unwrap_or(0)).filter(|level| levels.contains(level))
 }
 
-/// Parts of one level that follow each other, as stretches of scaled time inside a part of the phase.
-pub(crate) fn stretches(levels: &Levels, level: u8, within: &Part) -> Vec<Part> {
+/// Parts of one level that follow each other, as stretches of scaled time.
+pub(crate) fn stretches(levels: &Levels, level: u8) -> Vec<(f64, f64)> {
     let is_marked = |own: usize| own < PARTS && levels[own] == level;
     let firsts = (0..PARTS).filter(|own| is_marked(*own) && (*own == 0 || !is_marked(own - 1)));
     let stretch = |first: usize| {
         let end = (first..=PARTS).find(|own| !is_marked(*own)).unwrap_or(PARTS);
-        cut(within, (first as f64 / PARTS as f64, end as f64 / PARTS as f64))
+        (first as f64 / PARTS as f64, end as f64 / PARTS as f64)
     };
-    firsts.filter_map(stretch).collect()
+    firsts.map(stretch).collect()
 }
 
 /// Scaled times that are nearer to each other than this are one.
-const SAME: f64 = 1e-12;
+pub(crate) const SAME: f64 = 1e-12;
+
+/// Times nearer to each other than this hold the same: what is missed between them is rounding.
+const NEAR: f64 = 1e-9;
 
 /// What a part has between two scaled times; none where that is no time at all.
 pub(crate) fn cut(within: &Part, (from, to): (f64, f64)) -> Option<Part> {
@@ -130,20 +158,20 @@ mod tests {
 
     const ONE: &[i64] = &[3];
 
-    fn marked(change: &Change, level: u8, within: &Part) -> Vec<(f64, f64)> {
-        let found = stretches(&change.levels_of(ONE), level, within);
-        found.iter().map(|part| (part.from.tau() * 64.0, part.to.tau() * 64.0)).collect()
+    fn marked(change: &Change, level: u8) -> Vec<(f64, f64)> {
+        let found = stretches(&change.levels_of(ONE), level);
+        found.iter().map(|(from, to)| (from * 64.0, to * 64.0)).collect()
     }
 
     #[test]
     fn marked_parts_are_stretches_of_time_with_half_as_many_points_beside_them() {
         let (now, mut change) = (Change::default(), Change::default());
-        assert!(marked(&change, 1, &Part::WHOLE).is_empty());
+        assert!(marked(&change, 1).is_empty());
         change.mark(&now, (ONE, 0.0, 0.01), (1, 6));
         change.mark(&now, (ONE, 0.5, 0.5), (3, 6));
-        assert_eq!(marked(&change, 1, &Part::WHOLE), [(0.0, 1.0)]);
-        assert_eq!(marked(&change, 2, &Part::WHOLE), [(31.0, 32.0), (33.0, 34.0)]);
-        assert_eq!(marked(&change, 3, &Part::WHOLE), [(32.0, 33.0)]);
+        assert_eq!(marked(&change, 1), [(0.0, 1.0)]);
+        assert_eq!(marked(&change, 2), [(31.0, 32.0), (33.0, 34.0)]);
+        assert_eq!(marked(&change, 3), [(32.0, 33.0)]);
         assert_eq!((change.share(), change.points()), (4.0 / 64.0, 8));
         assert_eq!(each_level(&change.levels_of(ONE)).collect::<Vec<_>>(), [1, 2, 3]);
     }
@@ -152,9 +180,7 @@ mod tests {
     fn what_is_marked_again_has_more_points_than_before_and_never_more_than_most() {
         let mut before = Change::default();
         before.mark(&Change::default(), (ONE, 0.0, 1.0), (2, 6));
-        assert_eq!(stretches(&before.levels_of(ONE), 2, &Part::WHOLE), [Part::WHOLE]);
-        let half = Part { to: Instant::new(0.5), with_last: false, ..Part::WHOLE };
-        assert_eq!(stretches(&before.levels_of(ONE), 2, &half), [half]);
+        assert_eq!(marked(&before, 2), [(0.0, 64.0)]);
         let mut after = before.clone();
         after.mark(&before, (ONE, 0.0, 0.2), (3, 6));
         after.mark(&before, (ONE, 0.0, 0.1), (9, 6));
@@ -170,5 +196,15 @@ mod tests {
         assert_eq!(change.levels_of(&[1, 2]), [1; PARTS]);
         assert_eq!(change.levels_of(&[1, 2, 7]), [1; PARTS], "a side of the corner of the same member");
         assert_eq!(change.share(), 0.25);
+    }
+
+    #[test]
+    fn a_time_that_holds_a_member_holds_it_once() {
+        let mut change = Change::default();
+        for tau in [0.5, 0.25, 0.5 + 1e-10] {
+            change.hold(&[1, 2], tau);
+        }
+        assert_eq!(change.places_of(&[1, 2, 7]).collect::<Vec<_>>(), [0.5, 0.25]);
+        assert_eq!((change.places_of(&[1, 1]).count(), change.held()), (0, 2));
     }
 }

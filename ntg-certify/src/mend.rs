@@ -9,6 +9,7 @@ use crate::evaluate::{Here, Machine, cell};
 use crate::guarantee::Guarantee;
 use crate::interval::Interval;
 use crate::jet::Jet;
+use crate::prove::Leaf;
 use crate::spline::Piece;
 use crate::statement::{Kind, Quantity, Subject};
 
@@ -63,7 +64,7 @@ pub(crate) fn change(
         let is_dense = along && worst > coarse;
         let foreseen = if is_dense { mark(certificate, (number, coarse), (&now, change), wanted.points) } else { 0.0 };
         change.missed = worst;
-        let is_denser = change.levels != now.levels;
+        let is_denser = change.levels != now.levels || change.places != now.places;
         // A quarter more: the trajectory moves a little when it is held back.
         let tightened = |own: f64, missed: f64| match (is_denser, missed > 0.0) {
             (_, false) => own,
@@ -140,48 +141,83 @@ fn spared(
 
 /// About what a function is in the middle of a cell beside an end of the phase, and where the cell has its other end.
 fn beside(machine: &Machine<'_>, (function, phase): (usize, usize), number: usize, last: bool) -> (f64, f64) {
-    let cuts = &machine.statement.phases[phase].cuts;
-    let tau = Piece::line(Interval::point(cuts[number]), Interval::point(cuts[number + 1]));
-    let at = |part: f64| {
-        let mut flats = vec![None; machine.statement.flats.len()];
-        for flat in machine.needs(function) {
-            let piece = cell(machine.statement, machine.statement.flats[flat], number);
-            flats[flat] = Some(Jet::<1>::constant(Interval::point(piece.near(part))));
-        }
-        machine.evaluate(function, &Here { flats, tau: Jet::constant(Interval::point(tau.near(part))) }).c[0].middle()
-    };
+    let at = |part: f64| number_at(machine, (function, phase), (number, part)).middle();
     (at(0.5), at(if last { 0.0 } else { 1.0 }))
 }
 
+/// About what a function is at a part of a cell.
+fn number_at(machine: &Machine<'_>, (function, phase): (usize, usize), (number, part): (usize, f64)) -> Interval {
+    let cuts = &machine.statement.phases[phase].cuts;
+    let tau = Piece::line(Interval::point(cuts[number]), Interval::point(cuts[number + 1]));
+    let mut flats = vec![None; machine.statement.flats.len()];
+    for flat in machine.needs(function) {
+        let piece = cell(machine.statement, machine.statement.flats[flat], number);
+        flats[flat] = Some(Jet::<1>::constant(Interval::point(piece.near(part))));
+    }
+    machine.evaluate(function, &Here { flats, tau: Jet::constant(Interval::point(tau.near(part))) }).c[0]
+}
+
 /// Holds a constraint at more points where it may miss its bounds by more than can be tightened. Gives what it may still
-/// miss there then, and what it misses elsewhere: between points that falls with the square of their distance, and where
-/// more points did not suffice before, as at kinks, with the distance.
+/// miss there then, and what it misses elsewhere: between points that falls with the square of their distance. Where more
+/// points did not suffice before, as at kinks, one more is where most is missed: a quarter is, on both sides of it.
 fn mark(
     certificate: &Certificate,
     (number, coarse): (usize, f64),
     (now, change): (&Change, &mut Change),
     points: usize,
 ) -> f64 {
+    let machine = Machine::new(&certificate.statement);
     let (mut left, most): (f64, u8) = (0.0, points.max(1).ilog2() as u8);
     for (subject, finding) in certificate.each().filter(|(subject, _)| subject.kind == Kind::Constraint(number)) {
-        let (Quantity::Path(_, phase, _), Some((low, high))) = (&subject.quantity, finding.required) else { continue };
+        let (Quantity::Path(function, phase, _), Some((low, high))) = (&subject.quantity, finding.required) else {
+            continue;
+        };
         let cuts = &certificate.statement.phases[*phase].cuts;
+        let member = &subject.indices[..];
+        let missed = |values: Interval| (low - values.low()).max(values.high() - high);
+        let at = |cell: usize, part: f64| missed(number_at(&machine, (*function, *phase), (cell, part)));
+        // Of boxes that follow each other, and miss it, that in which it is missed most.
+        let (mut worst, mut summits): (Option<(f64, &Leaf)>, Vec<&Leaf>) = (None, vec![]);
         for leaf in finding.covers.iter().flatten() {
-            let missed = (low - leaf.values.low()).max(leaf.values.high() - high);
-            if missed <= coarse {
-                left = left.max(missed);
-                continue;
-            }
+            let own = missed(leaf.values);
             let tau = |part: f64| cuts[leaf.cell] + (cuts[leaf.cell + 1] - cuts[leaf.cell]) * part;
             let times = (tau(leaf.start()), tau(leaf.start() + leaf.length()));
-            let member = &subject.indices[..];
-            let (before, power) = (now.level(member, times.0), if now.level(member, times.0) > 0 { 1 } else { 2 });
-            let more = doublings(missed / coarse);
+            let is_missed = own > coarse;
+            if is_missed && now.level(member, times.0) > 0 {
+                let value = at(leaf.cell, leaf.start() + 0.5 * leaf.length());
+                if worst.is_none_or(|(most, _)| value > most) {
+                    worst = Some((value, leaf));
+                }
+                left = left.max(0.25 * own);
+                continue;
+            }
+            summits.extend(worst.take().map(|(_, leaf)| leaf));
+            if !is_missed {
+                left = left.max(own);
+                continue;
+            }
+            let more = doublings(own / coarse);
             change.mark(now, (member, times.0, times.1), (more, most));
-            left = left.max(missed / f64::from(1_u32 << (power * u32::from(more.min(most.saturating_sub(before))))));
+            left = left.max(own / f64::from(1_u32 << (2 * u32::from(more.min(most)))));
+        }
+        for leaf in summits.into_iter().chain(worst.map(|(_, leaf)| leaf)) {
+            let part = largest(|part| at(leaf.cell, part), (leaf.start(), leaf.length()));
+            change.hold(member, cuts[leaf.cell] + (cuts[leaf.cell + 1] - cuts[leaf.cell]) * part);
         }
     }
     left
+}
+
+/// Where a function is largest in a box in which it has one summit: by thirds.
+fn largest(at: impl Fn(f64) -> f64, (start, length): (f64, f64)) -> f64 {
+    /// A third of a box is left out each time: to a millionth of it.
+    const STEPS: usize = 34;
+    let (mut from, mut to) = (start, start + length);
+    for _ in 0..STEPS {
+        let third = (to - from) / 3.0;
+        if at(from + third) < at(to - third) { from += third } else { to -= third }
+    }
+    0.5 * (from + to)
 }
 
 /// How often the distance of points is to be halved for what is missed to fall by about this factor, with its square; at

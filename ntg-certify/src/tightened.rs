@@ -10,7 +10,7 @@ use ntg_runtime::solution::Solution;
 use ntg_splines::Table;
 use ntg_structure::{Affine, Call, Domain, Group, Instant, Kernel, Loop, Points, Row, Structure};
 
-use crate::change::{Change, Levels, Spared, cut, each_level, stretches};
+use crate::change::{Change, SAME, Spared, cut, each_level, stretches};
 
 /// A problem with changed constraints.
 pub struct Tightened<'p> {
@@ -96,17 +96,15 @@ impl<'p> Tightened<'p> {
             let Domain::Path { phase, points, .. } = &group.domain else { continue };
             let own = &self.structure.phases[phase.phase];
             // Sets that accompany Gauss points hold the same constraints again.
-            let intervals = match own.points[*points] {
-                Points::Uniform { points } => points.saturating_sub(1).max(1),
-                Points::Gauss { points } => most_intervals(own) * (points + 1),
+            let nodes = match own.points[*points] {
+                Points::Uniform { points } => Nodes { intervals: points.saturating_sub(1).max(1), are_held: true },
+                Points::Gauss { points } => Nodes { intervals: most_intervals(own) * (points + 1), are_held: false },
                 _ => continue,
             };
             for (change, rows) in alike(&group, changes) {
-                for (members, levels) in by_levels(&group, &change) {
-                    for level in each_level(&levels) {
-                        let set = self.set(phase.phase, Points::Uniform { points: (intervals << level) + 1 });
-                        self.hold(&members, (set, &rows), (&change, Some((level, &levels))));
-                    }
+                for (members, times) in by_times(&group, &change, nodes) {
+                    let set = self.set(phase.phase, Points::Times { times });
+                    self.hold(&members, (set, &rows), (&change, true));
                 }
             }
         }
@@ -128,35 +126,26 @@ impl<'p> Tightened<'p> {
             let Domain::Path { points, .. } = &group.domain else { continue };
             for (change, rows) in alike(&group, changes) {
                 if change.spares_ends() && change.below.max(change.above) > 0.0 {
-                    self.hold(&group, (*points, &rows), (&change, None));
+                    self.hold(&group, (*points, &rows), (&change, false));
                 }
             }
         }
     }
 
-    /// Adds groups that hold some rows of a group at other points: where a change has a level, or where it is not
-    /// spared.
-    fn hold(
-        &mut self,
-        group: &Group,
-        (set, rows): (usize, &[usize]),
-        (change, level): (&Change, Option<(u8, &Levels)>),
-    ) {
+    /// Adds groups that hold some rows of a group at other points where a change does not spare it, or `everywhere`.
+    fn hold(&mut self, group: &Group, (set, rows): (usize, &[usize]), (change, everywhere): (&Change, bool)) {
         let Domain::Path { phase, part, .. } = &group.domain else { return };
         let copy = self.selection(group, rows);
         let (from, to) = inside(&self.structure.phases[phase.phase], change.ends);
-        let parts = level.map_or(vec![*part], |(level, levels)| stretches(levels, level, part));
-        for part in parts {
-            for (times, is_inside) in [((0.0, from), false), ((from, to), true), ((to, 1.0), false)] {
-                let Some(mut part) = cut(&part, times).filter(|_| is_inside || level.is_some()) else { continue };
-                if is_inside {
-                    part.with_first &= change.ends[0] == Spared::Nothing || part.from != Instant::START;
-                    part.with_last &= change.ends[1] == Spared::Nothing || part.to != Instant::END;
-                    self.inside.insert(self.structure.groups.len());
-                }
-                let domain = Domain::Path { phase: phase.clone(), points: set, part };
-                self.structure.groups.push(Group { domain, ..copy.clone() });
+        for (times, is_inside) in [((0.0, from), false), ((from, to), true), ((to, 1.0), false)] {
+            let Some(mut part) = cut(part, times).filter(|_| is_inside || everywhere) else { continue };
+            if is_inside {
+                part.with_first &= change.ends[0] == Spared::Nothing || part.from != Instant::START;
+                part.with_last &= change.ends[1] == Spared::Nothing || part.to != Instant::END;
+                self.inside.insert(self.structure.groups.len());
             }
+            let domain = Domain::Path { phase: phase.clone(), points: set, part };
+            self.structure.groups.push(Group { domain, ..copy.clone() });
         }
     }
 
@@ -209,20 +198,53 @@ fn alike(group: &Group, changes: &BTreeMap<usize, Change>) -> Vec<(Change, Vec<u
     found
 }
 
-/// The members of a group that are held at more points, by the levels of their points: the group itself where all have the
-/// same, a group for each member else.
-fn by_levels(group: &Group, change: &Change) -> Vec<(Group, Levels)> {
+/// Equally spaced points of which levels have multiples.
+#[derive(Clone, Copy)]
+struct Nodes {
+    /// Into how many parts they divide a phase.
+    intervals: usize,
+    /// Whether a group holds its constraints at them.
+    are_held: bool,
+}
+
+/// The members of a group that are held at more times: the group itself where all have the same, a group for each member
+/// else.
+fn by_times(group: &Group, change: &Change, nodes: Nodes) -> Vec<(Group, Vec<Instant>)> {
     let members = Solution::members(&group.loops);
-    let levels: Vec<Levels> = members.iter().map(|member| change.levels_of(member)).collect();
-    if let Some(first) = levels.first().filter(|first| levels.iter().all(|own| own == *first)) {
-        return vec![(group.clone(), *first)];
+    let times: Vec<Vec<Instant>> = members.iter().map(|member| times(change, member, nodes)).collect();
+    if let Some(first) = times.first().filter(|first| times.iter().all(|own| own == *first)) {
+        return if first.is_empty() { vec![] } else { vec![(group.clone(), first.clone())] };
     }
-    let only = |member: &[i64]| {
-        let alone = |index: &i64| Loop { first: Affine::constant(*index), last: Affine::constant(*index) };
-        Group { loops: member.iter().map(alone).collect(), ..group.clone() }
+    let held = members.iter().zip(times).filter(|(_, times)| !times.is_empty());
+    held.map(|(member, times)| (alone(group, member), times)).collect()
+}
+
+/// The times at which a member is held besides its own points, rising.
+fn times(change: &Change, member: &[i64], nodes: Nodes) -> Vec<Instant> {
+    let levels = change.levels_of(member);
+    let mut times: Vec<f64> = change.places_of(member).collect();
+    for level in each_level(&levels) {
+        let count = nodes.intervals << level;
+        for (from, to) in stretches(&levels, level) {
+            times.extend([from, to]);
+            let (first, last) = ((from * count as f64).ceil() as usize, (to * count as f64).floor() as usize);
+            times.extend((first..=last).map(|node| node as f64 / count as f64));
+        }
+    }
+    let is_held = |tau: f64| {
+        let node = tau * nodes.intervals as f64;
+        nodes.are_held && (node - node.round()).abs() <= SAME * nodes.intervals as f64
     };
-    let marked = members.iter().zip(levels).filter(|(_, own)| each_level(own).next().is_some());
-    marked.map(|(member, own)| (only(member), own)).collect()
+    times.retain(|tau| !is_held(*tau));
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|later, earlier| *later - *earlier <= SAME);
+    times.into_iter().map(Instant::new).collect()
+}
+
+/// One member of a group.
+fn alone(group: &Group, member: &[i64]) -> Group {
+    let only = |index: &i64| Loop { first: Affine::constant(*index), last: Affine::constant(*index) };
+    Group { loops: member.iter().map(only).collect(), ..group.clone() }
 }
 
 /// Scaled times between which bounds are tightened: without the first and the last interval where these are spared.

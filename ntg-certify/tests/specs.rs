@@ -30,7 +30,11 @@ struct Solved {
 
 fn solved(spec: &str) -> Solved {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs");
-    let text = std::fs::read_to_string(folder.join(spec)).expect("a spec");
+    solved_text(spec, std::fs::read_to_string(folder.join(spec)).expect("a spec"))
+}
+
+fn solved_text(spec: &str, text: String) -> Solved {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs");
     let source = Source::new(spec, text.clone());
     let program = ntg_compiler::compile(&source, &Beside(folder)).expect("a sound spec").program;
     let problem = Interpreted::new(&program);
@@ -95,6 +99,35 @@ fn what_fails_between_the_points_is_mended_at_little_cost() {
         }
         let checked = ntg_check::verify(&write::text(&found.certificate)).expect("a sound certificate");
         assert!(!checked.contains_key("refuted") && !checked.contains_key("undecided"), "{spec}: {checked:?}");
+    }
+}
+
+#[test]
+fn a_kink_is_held_at_its_own_time() {
+    // Beside the kinks of a ground of straight lines ever more points help little.
+    let of = solved("gallery/terrain_linear.ntg");
+    let task = Task { program: &of.program, problem: &of.problem, spec: &of.text };
+    let found = proved_from(task, of.report.clone(), &Settings::default(), &Guarantee::default()).expect("a problem");
+    assert_eq!(found.ending, Ending::Proved, "{:?}", found.rounds);
+    let (held, points) = found.changes.values().map(|change| (change.held(), change.points())).max().unwrap_or((0, 0));
+    assert!(held > 0 && points <= 8 && found.rounds.len() <= 4, "{held} times, {points}, {:?}", found.rounds);
+}
+
+#[test]
+fn what_is_missed_by_roundings_is_not_refuted() {
+    // Some last places below what the end of the last agent is: another arithmetic need not find them, and does not have to.
+    for last_places in 0..12 {
+        let latest = 3.0 - f64::from(last_places) * 3.0 * f64::EPSILON / 2.0;
+        let text = format!(
+            "problem Agents {{ const n = 3;
+                agent c[i in 1 .. n] {{ start in 0 .. 10 [s]; duration in 1 .. 4 [s];
+                    output x [m]: spline(order = 4, intervals = 1); minimize e [m^2/s^3]: integral(der(x, 2)^2);
+                    initial {{ x == 0; der(x) == 0; }} final {{ x == i * 1 [m]; der(x) == 0; }} }}
+                temporal {{ for i in 1 .. n - 1 {{ end(c[i + 1]) >= end(c[i]) + 1 [s]; }} end(c[n]) <= {latest:?} [s]; }} }}"
+        );
+        let certificate = certified(&solved_text("agents", text));
+        let checked = ntg_check::verify(&write::text(&certificate));
+        assert!(checked.is_ok(), "{last_places} below: {checked:?}");
     }
 }
 

@@ -196,6 +196,11 @@ pub(crate) fn of_guarantee(found: &Guaranteed<'_>) -> String {
             let points = change.points();
             done.push(format!("held at up to {points} times as many points in {percent} % of its time"));
         }
+        match change.held() {
+            0 => {}
+            1 => done.push("held at 1 time besides".to_owned()),
+            held => done.push(format!("held at {held} times besides")),
+        }
         for (side, by) in [("lower", change.below), ("upper", change.above)] {
             if by > 0.0 {
                 done.push(format!("{side} bound tightened by {:.2e} {symbol}", by / unit).trim_end().to_owned());
@@ -225,7 +230,7 @@ pub(crate) fn cost(found: &Guaranteed<'_>) -> Value {
         "changes": found.changes.iter().map(|(number, change)| json!({
             "constraint": found.report.solution.structure().constraints[*number].name,
             "line": found.report.solution.structure().constraints[*number].place.line,
-            "points": change.points(), "share": change.share(), "lower_raised": change.below, "upper_lowered": change.above,
+            "points": change.points(), "share": change.share(), "times": change.held(), "lower_raised": change.below, "upper_lowered": change.above,
         })).collect::<Vec<_>>(),
     })
 }

@@ -1,6 +1,6 @@
 //! Parameters, tables, variables, agents, phases, outputs.
 
-use crate::{Call, Family, Place, Unit};
+use crate::{Call, Family, Instant, Place, Unit};
 
 /// A value that a program may change without recompiling.
 #[derive(Clone, Debug, PartialEq)]
@@ -230,6 +230,11 @@ pub enum Points {
     Breakpoints,
     /// End of every interval but the last, from the left, no weights.
     LeftLimits,
+    /// Given times, from the right and the phase's end from the left, no weights.
+    Times {
+        /// Scaled times, rising.
+        times: Vec<Instant>,
+    },
 }
 
 /// A stretch of an agent's time with its own splines.

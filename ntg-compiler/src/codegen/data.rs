@@ -196,7 +196,7 @@ enums! {
         Start { value }
     }
     GuessScope {; Phase(phase); Agent { agent, index } }
-    Points { Breakpoints LeftLimits; ; Gauss { points } Uniform { points } }
+    Points { Breakpoints LeftLimits; ; Gauss { points } Uniform { points } Times { times } }
     ReduceOp { Sum Product Min Max;; }
     Row {; ;
         Cost { term }

@@ -190,6 +190,7 @@ impl Lowering<'_> {
                         Points::Gauss { .. } | Points::Uniform { .. } => "path",
                         Points::Breakpoints => "breakpoints",
                         Points::LeftLimits => "left_limits",
+                        Points::Times { .. } => "times",
                     };
                     let sets = &mut structure.phases[phase.phase].points;
                     let points = sets.iter().position(|p| *p == points).unwrap_or_else(|| {

@@ -357,7 +357,8 @@ fn grid(structure: &Structure, phase: &ntg_runtime::structure::Phase) -> Grid {
         Points::Gauss { points } => Some(format!("{points} Gauss points in each interval")),
         Points::Uniform { points } => Some(format!("{points} equally spaced points")),
         Points::Breakpoints => Some("both ends of each interval".to_owned()),
-        Points::LeftLimits => None, // They belong to the breakpoints.
+        Points::LeftLimits => None,   // They belong to the breakpoints.
+        Points::Times { .. } => None, // No spec has them.
     });
     let splines = phase.outputs.iter().filter(|output| !output.is_helper()).map(|output| {
         let spline = &output.spline;

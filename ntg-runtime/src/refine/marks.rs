@@ -24,7 +24,7 @@ fn is_held(output: &Output, points: &[Points]) -> bool {
     let has_several = |points: &Points| match points {
         Points::Gauss { points } => *points > 1,
         Points::Uniform { .. } => true,
-        Points::Breakpoints | Points::LeftLimits => false,
+        Points::Breakpoints | Points::LeftLimits | Points::Times { .. } => false,
     };
     output.spline.order == 1 && !output.is_helper() && points.iter().any(has_several)
 }

@@ -101,6 +101,10 @@ pub(crate) fn point_set(points: &Points, breakpoints: &[f64], phase: usize) -> V
         Points::LeftLimits => {
             breakpoints.get(1..last).unwrap_or(&[]).iter().map(|&tau| point(tau, Side::Left, f64::NAN)).collect()
         }
+        Points::Times { ref times } => {
+            let held = |time: &Instant| Point { weight: f64::NAN, ..Point::inside(phase, *time, breakpoints) };
+            times.iter().map(held).collect()
+        }
     }
 }
 
@@ -113,7 +117,7 @@ pub(crate) fn fine_set(points: &Points, breakpoints: &[f64], phase: usize, sampl
         Points::Uniform { points } => (samples * points).div_ceil(breakpoints.len() - 1),
         // These sets have one point an interval and accompany Gauss points that are refined.
         Points::Breakpoints => samples,
-        Points::LeftLimits => return vec![], // The sets they accompany take both limits here.
+        Points::LeftLimits | Points::Times { .. } => return vec![], // The sets they accompany have these times, too.
     };
     let rule = equidistant(stretches);
     let (last, has_weights) = (rule.nodes.len() - 1, !matches!(points, Points::Breakpoints));
@@ -141,7 +145,7 @@ pub(crate) fn fine_quadrature(points: &Points, breakpoints: &[f64], phase: usize
     let (order, parts) = match *points {
         Points::Gauss { points } => (points.max(POINTS), samples.div_ceil(SAMPLES)),
         Points::Uniform { points } => (POINTS, (samples * points).div_ceil(STRETCHES * (breakpoints.len() - 1))),
-        Points::Breakpoints | Points::LeftLimits => return vec![],
+        Points::Breakpoints | Points::LeftLimits | Points::Times { .. } => return vec![],
     };
     let refined: Vec<f64> = breakpoints
         .windows(2)
@@ -266,6 +270,18 @@ mod tests {
         assert_eq!(set.iter().map(|p| p.tau).collect::<Vec<_>>(), THIRDS[1..3]);
         assert!(set.iter().all(|p| p.side == Side::Left));
         assert!(point_set(&Points::LeftLimits, &[0.0, 1.0], 0).is_empty());
+    }
+
+    #[test]
+    fn given_times_are_held_from_the_right_but_at_the_end() {
+        let times = [0.0, 1.0 / 3.0 + 1e-15, 0.4, 1.0].map(Instant::new).to_vec();
+        let set = point_set(&Points::Times { times: times.clone() }, &THIRDS, 0);
+        let places: Vec<(f64, Side)> = set.iter().map(|point| (point.tau, point.side)).collect();
+        assert_eq!(places, [(0.0, Side::Right), (THIRDS[1], Side::Right), (0.4, Side::Right), (1.0, Side::Left)]);
+        assert!(set.iter().all(|point| point.weight.is_nan()));
+        let half = Part { from: Instant::new(0.2), to: Instant::new(0.4), ..Part::WHOLE };
+        let inner = within(&half, &Points::Times { times }, set, 0, &THIRDS);
+        assert_eq!(inner.len(), 1, "the ends of a part are no times of their own");
     }
 
     #[test]
