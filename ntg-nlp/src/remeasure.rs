@@ -116,11 +116,13 @@ pub(crate) fn until_measured<N: Nlp>(
         iterations += outcome.iterations;
         (outcome.iterations, outcome.seconds) = (iterations, began.elapsed().as_secs_f64());
         if let Some((wide, _)) = wide {
-            return unless_worse(left_saddle, narrower(wide, outcome));
+            let end =
+                if is_worse(&outcome, &wide) { Outcome { status: Status::StepTooSmall, ..outcome } } else { outcome };
+            return unless_worse(left_saddle, narrower(wide, end));
         }
         let measure = match large.take() {
             Some(before) if is_zero(&outcome, nothing) => {
-                return unless_worse(left_saddle, zero(before, outcome));
+                return unless_worse(left_saddle, zero(before, outcome, &options));
             }
             Some(before) if !outcome.status.has_solution() => match confirmed(before, &outcome, &options) {
                 Confirmed::By(end) => return unless_worse(left_saddle, end),
@@ -154,6 +156,8 @@ pub(crate) fn until_measured<N: Nlp>(
                     _ => outcome,
                 };
                 let Some(objective) = small_objective(&end, &options) else { return unless_worse(left_saddle, end) };
+                // The lower tolerance is by the scale that the objective had.
+                resized.measure_objective(end.objective_factor.recip());
                 wide = Some((end, objective.max(LEAST_OBJECTIVE)));
                 continue;
             }
@@ -275,11 +279,13 @@ fn is_zero(end: &Outcome, nothing: f64) -> bool {
     objective <= nothing && end.residuals.unscaled.worth <= SAME * objective
 }
 
-/// An end whose objective is 0 by its scale at the start: the last solution, at the lesser objective where that is one too.
-fn zero(before: Outcome, end: Outcome) -> Outcome {
+/// An end whose objective is 0 by its scale at the start: the end where it is a solution, or keeps the constraints with no
+/// larger objective; else the last solution.
+fn zero(before: Outcome, end: Outcome, options: &Options) -> Outcome {
     let (iterations, seconds) = (end.iterations, end.seconds);
-    let best = if end.status == Status::Solved { end } else { before };
-    Outcome { iterations, seconds, ..best }
+    let is_better = end.residuals.scaled.primal <= options.constraint_tolerance && end.objective <= before.objective;
+    let best = if end.status == Status::Solved || is_better { end } else { before };
+    Outcome { status: Status::Solved, iterations, seconds, ..best }
 }
 
 /// How much of the objective may change in a solve that confirms it: the tolerance of acceptable ends.
@@ -304,6 +310,11 @@ fn confirmed(before: Outcome, end: &Outcome, options: &Options) -> Confirmed {
         }
         _ => Confirmed::Not(before),
     }
+}
+
+/// Whether an end has a larger objective than the one from which the solve went on, by more than the gaps of both.
+fn is_worse(end: &Outcome, from: &Outcome) -> bool {
+    end.objective > from.objective + end.residuals.unscaled.gap.max(from.residuals.unscaled.gap)
 }
 
 /// The end of a solve with lower tolerances, or with a larger scale, of a small objective; where that is none, the end from

@@ -5,9 +5,15 @@ use crate::outcome::IterationRecord;
 use crate::status::Status;
 use std::time::Instant;
 
-/// A scaled objective this far below zero, or variables this large, at points that are feasible beside the size of their
-/// variables, mean that there is no minimum.
+/// A scaled objective this far below zero, or variables this large, at points that are feasible but for the rounding of
+/// their variables, mean that there is no minimum.
 const UNBOUNDED: f64 = 1e10;
+
+/// What rounding of scaled variables of the size 1 leaves of a row of the slope 1: a hundred roundings. A choice: rows have
+/// tens of terms.
+const ROUNDINGS: f64 = 100.0 * f64::EPSILON;
+/// What no rounding excuses, for rows of the slope 1. A choice.
+const NEAR: f64 = 1e-2;
 
 /// How far a solve has come.
 pub(crate) struct Stage<'a> {
@@ -34,7 +40,7 @@ impl Stage<'_> {
             return Some(Status::Solved);
         }
         let largest = self.x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-        let is_near = found.primal <= options.constraint_tolerance * largest.max(1.0);
+        let is_near = found.primal <= options.constraint_tolerance.max((ROUNDINGS * largest).min(NEAR));
         if is_near && (self.objective < -UNBOUNDED || largest > UNBOUNDED) {
             return Some(Status::Unbounded);
         }

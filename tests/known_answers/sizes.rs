@@ -326,3 +326,49 @@ fn a_tight_measurement_leaves_the_others_what_they_say() {
         }
     }
 }
+
+/// A point and its weight in an objective whose other term is 0 at the solution and has any weight.
+#[test]
+fn a_weight_on_what_ends_at_nothing_hides_no_other_term() {
+    for power in [0, 4, 8, 10, 12] {
+        let spec = Shipped::text(&format!(
+            "problem Beside {{ duration T = 1; variable k in 0 .. 10; output x: spline(order = 4, intervals = 10);
+             initial {{ x == 0; }} final {{ x == 1; }}
+             minimize (k - 3)^2 + 1e{power} * integral(der(x, 2)^2); guess {{ k = 8; }} }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert_eq!(report.status, Status::Solved, "1e{power}: {report}");
+        close(report.objective + 1.0, 1.0, 1e-6);
+    }
+}
+
+/// The least time to a place with a limit of speed, and a little weight on jerk, by splines of a high order on many short
+/// intervals: slopes by coefficients are then 1e8 times those by the time. Whatever the mesh, the answer is one.
+#[test]
+fn a_tighter_solve_keeps_the_scale_of_the_one_from_which_it_goes_on() {
+    for intervals in [20, 60, 100, 120, 130, 150] {
+        let spec = Shipped::text(&format!(
+            "problem Axis {{ duration T in 0.5 .. 10; output x: spline(order = 7, intervals = {intervals});
+             trajectory {{ der(x) <= 4; }} initial {{ x == 0; der(x) == 0; }} final {{ x == 7; der(x) == 0; }}
+             minimize T + 1e-4 * integral(der(x, 3)^2); guess {{ x = 7 * tau; T = 8; }} }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert!(report.is_solved(), "{intervals}: {report}");
+        close(report.objective, 2.171, 1e-2);
+    }
+}
+
+/// What pushes with a soft start, on meshes whose simulation runs off to 1e24: whatever the end, an objective within bounds
+/// does not fall without limit.
+#[test]
+fn an_objective_within_bounds_is_not_unbounded() {
+    for intervals in [10, 12, 15, 16, 20, 24] {
+        let spec = Shipped::text(&format!(
+            "problem Push {{ duration T = 1; state x; input f in 0 .. 5; collocation gauss(points = 3, intervals = {intervals});
+             dynamics {{ der(x) == 0.01 * softplus((f - 3) / 0.01); }} initial {{ x == 0; }} final {{ x == 1; }}
+             minimize integral(f); }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert_ne!(report.status, Status::Unbounded, "{intervals}: {report}");
+    }
+}
