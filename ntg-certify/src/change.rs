@@ -21,7 +21,7 @@ pub struct Change {
     pub levels: BTreeMap<Vec<i64>, Levels>,
     /// Scaled times that hold it besides, for each of its members that needs them: where more points in all of a part did
     /// not suffice.
-    pub places: BTreeMap<Vec<i64>, Vec<f64>>,
+    pub times: BTreeMap<Vec<i64>, Vec<f64>>,
     /// How many members it has along its phases.
     pub members: usize,
     /// Where an end condition fixes it at the start of its phases and it meets a bound there, and the same at their end,
@@ -60,9 +60,9 @@ impl Change {
 
     /// Holds a member at a scaled time besides.
     pub(crate) fn hold(&mut self, member: &[i64], tau: f64) {
-        let places = self.places.entry(member.to_vec()).or_default();
-        if !places.iter().any(|own| (own - tau).abs() <= NEAR) {
-            places.push(tau);
+        let times = self.times.entry(member.to_vec()).or_default();
+        if !times.iter().any(|own| (own - tau).abs() <= NEAR) {
+            times.push(tau);
         }
     }
 
@@ -87,8 +87,8 @@ impl Change {
     }
 
     /// The scaled times that hold a member of a group besides, as [`Change::levels_of`].
-    pub(crate) fn places_of(&self, indices: &[i64]) -> impl Iterator<Item = f64> {
-        self.places.iter().filter(|(member, _)| agrees(member, indices)).flat_map(|(_, own)| own).copied()
+    pub(crate) fn times_of(&self, indices: &[i64]) -> impl Iterator<Item = f64> {
+        self.times.iter().filter(|(member, _)| agrees(member, indices)).flat_map(|(_, own)| own).copied()
     }
 
     /// How many times as many points hold it where there are most.
@@ -98,7 +98,7 @@ impl Change {
 
     /// At how many scaled times its members are held besides.
     pub fn held(&self) -> usize {
-        self.places.values().map(Vec::len).sum()
+        self.times.values().map(Vec::len).sum()
     }
 
     /// The part of the time of all of its members in which more points are.
@@ -204,7 +204,7 @@ mod tests {
         for tau in [0.5, 0.25, 0.5 + 1e-10] {
             change.hold(&[1, 2], tau);
         }
-        assert_eq!(change.places_of(&[1, 2, 7]).collect::<Vec<_>>(), [0.5, 0.25]);
-        assert_eq!((change.places_of(&[1, 1]).count(), change.held()), (0, 2));
+        assert_eq!(change.times_of(&[1, 2, 7]).collect::<Vec<_>>(), [0.5, 0.25]);
+        assert_eq!((change.times_of(&[1, 1]).count(), change.held()), (0, 2));
     }
 }

@@ -64,7 +64,7 @@ pub(crate) fn change(
         let is_dense = along && worst > coarse;
         let foreseen = if is_dense { mark(certificate, (number, coarse), (&now, change), wanted.points) } else { 0.0 };
         change.missed = worst;
-        let is_denser = change.levels != now.levels || change.places != now.places;
+        let is_denser = change.levels != now.levels || change.times != now.times;
         // A quarter more: the trajectory moves a little when it is held back.
         let tightened = |own: f64, missed: f64| match (is_denser, missed > 0.0) {
             (_, false) => own,

@@ -222,7 +222,7 @@ fn by_times(group: &Group, change: &Change, nodes: Nodes) -> Vec<(Group, Vec<Ins
 /// The times at which a member is held besides its own points, rising.
 fn times(change: &Change, member: &[i64], nodes: Nodes) -> Vec<Instant> {
     let levels = change.levels_of(member);
-    let mut times: Vec<f64> = change.places_of(member).collect();
+    let mut times: Vec<f64> = change.times_of(member).collect();
     for level in each_level(&levels) {
         let count = nodes.intervals << level;
         for (from, to) in stretches(&levels, level) {

@@ -318,8 +318,7 @@ fn is_worse(end: &Outcome, from: &Outcome) -> bool {
 }
 
 /// The end of a solve with lower tolerances, or with a larger scale, of a small objective; where that is none, the end from
-/// which it went on, whose
-/// objective is acceptable and no more.
+/// which it went on, whose objective is acceptable and no more.
 fn narrower(wide: Outcome, end: Outcome) -> Outcome {
     let (iterations, seconds) = (end.iterations, end.seconds);
     match end.status {
