@@ -319,8 +319,7 @@ fn again(
         return Ok(next);
     }
     if is_near {
-        let next =
-            solve_from(&warm.problem, &Guess::from(&report.solution), &brief).map_err(|error| error.to_string())?;
+        let next = warm.solve_from(&Guess::from(&report.solution)).map_err(|error| error.to_string())?;
         if next.is_solved() {
             return Ok(next);
         }
@@ -328,8 +327,8 @@ fn again(
             return Err(next.status.to_string());
         }
     }
-    let next = solve_from(&Tightened::new(task.problem, changes, false), &Guess::default(), settings)
-        .map_err(|error| error.to_string())?;
+    let mut cold = Solver::new(Tightened::new(task.problem, changes, false), settings);
+    let next = cold.solve_from(&Guess::default()).map_err(|error| error.to_string())?;
     if next.is_solved() { Ok(next) } else { Err(next.status.to_string()) }
 }
 

@@ -39,7 +39,8 @@ use crate::strategy::{Session, Task};
 /// # Errors
 /// [`Error`] if the problem cannot be set up; a solve that ends without solution is a report.
 pub fn solve(problem: &dyn Problem, settings: &Settings) -> Result<Report, Error> {
-    solve_and_refine(&mut Session::default(), Task { problem, guess: None }, settings)
+    let report = solve_and_refine(&mut Session::default(), Task { problem, guess: None }, settings)?;
+    report.confirmed(problem, settings)
 }
 
 /// Solves a problem from a program's guess.
@@ -47,7 +48,8 @@ pub fn solve(problem: &dyn Problem, settings: &Settings) -> Result<Report, Error
 /// # Errors
 /// As [`solve`], and where the guess does not fit the problem.
 pub fn solve_from(problem: &dyn Problem, guess: &Guess, settings: &Settings) -> Result<Report, Error> {
-    solve_and_refine(&mut Session::default(), Task { problem, guess: Some(guess) }, settings)
+    let report = solve_and_refine(&mut Session::default(), Task { problem, guess: Some(guess) }, settings)?;
+    report.confirmed(problem, settings)
 }
 
 /// Solves a problem on its own mesh, and on finer ones where the settings say so.

@@ -18,6 +18,7 @@ mod integrals;
 mod missile;
 mod norms;
 mod oscillator;
+mod out_of_reach;
 mod phases;
 mod places;
 mod resolve;

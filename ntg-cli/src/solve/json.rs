@@ -60,6 +60,14 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
     if let Some(sensitivity) = solved.sensitivity {
         document["sensitivity"] = super::sensitivity::document(sensitivity, solved.samples);
     }
+    if let Some(confirmation) = &report.confirmation {
+        document["confirmation"] = json!({
+            "output": confirmation.output, "defects": confirmation.defects, "halvings": confirmation.halvings,
+            "status": confirmation.status.label(), "objective": confirmation.objective,
+            "iterations": confirmation.iterations, "seconds": confirmation.seconds,
+            "refuted": confirmation.refutes(report.objective),
+        });
+    }
     if let Some(refined) = &report.refined {
         document["refinement"] = json!(ntg_report::run::Refinement::from(refined));
     }

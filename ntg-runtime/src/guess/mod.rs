@@ -17,6 +17,6 @@ mod statements;
 pub(crate) use defaults::bounds as constant_bounds;
 pub use program::Guess;
 pub(crate) use route::Route;
-pub(crate) use simulate::simulated;
+pub(crate) use simulate::{Defect, defect, simulated};
 pub use start::start;
 pub(crate) use start::{Curve, apply, finish, pointwise, set};

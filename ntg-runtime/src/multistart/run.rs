@@ -237,7 +237,11 @@ impl MultiReport {
     /// those that the settings refuse.
     fn finish(&mut self, problem: &dyn Problem, settings: &Settings, positions: &[String]) -> Result<(), Error> {
         if settings.refine.is_none() && settings.between == Between::Report {
-            return Ok(());
+            let confirm = |minimum: &mut super::Minimum| {
+                minimum.report = minimum.report.clone().confirmed(problem, settings)?;
+                Ok(())
+            };
+            return self.minima.par_iter_mut().try_for_each(confirm);
         }
         let coarse = std::mem::take(&mut self.minima);
         let refined = coarse.into_par_iter().map(|minimum| refined(problem, minimum.report, settings));

@@ -1,5 +1,6 @@
 //! What is made finer in each phase, and the structure that comes of it.
 
+use crate::transcribe::Transcription;
 use ntg_structure::{Output, Points, Structure};
 
 /// New breakpoints and finer rules of one phase.
@@ -16,6 +17,19 @@ impl Marks {
     pub(super) fn is_empty(&self) -> bool {
         self.at.is_empty() && self.doublings == 0
     }
+}
+
+/// What halves all intervals, for each declared phase; equally spaced points are doubled.
+pub(super) fn halved(nlp: &Transcription) -> Vec<Marks> {
+    let phases = &nlp.model.structure.phases;
+    let mut marks = vec![Marks::default(); phases.len()];
+    for member in &nlp.model.layout.phases {
+        let is_uniform = phases[member.phase].points.iter().any(|points| matches!(points, Points::Uniform { .. }));
+        let at = member.breakpoints.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        // Members of a family share their mesh.
+        marks[member.phase] = Marks { at, doublings: u32::from(is_uniform) };
+    }
+    marks
 }
 
 /// Whether an output has one value in each of its intervals although there are several points in each: a sampled input, whose

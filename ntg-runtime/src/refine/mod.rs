@@ -8,6 +8,7 @@
 //! Every round transcribes anew: breakpoints are plain data of the structure. The start of a round
 //! is the solution of the one before, which finer knots reproduce exactly.
 
+mod confirm;
 mod estimate;
 mod marks;
 

@@ -107,6 +107,9 @@ impl Report {
         });
         let cost = Missed::Objective(self.cost_missed());
         let equations = Missed::Objective(self.correction_part());
+        if self.confirmation.as_ref().is_some_and(|confirmation| confirmation.refutes(self.objective)) {
+            return Some(Resolution::Unresolved);
+        }
         Some(Resolution::of(constraints.chain([cost, equations]), self.between_tolerance))
     }
 

@@ -4,6 +4,7 @@
 //! are checked again between the points (docs/maths.md, section 9).
 
 mod by_own_points;
+mod confirmation;
 mod constraints;
 mod cost;
 mod display;
@@ -21,6 +22,7 @@ mod traces;
 mod warnings;
 
 pub use crate::transcribe::rows::member_words;
+pub use confirmation::Confirmation;
 pub use cost::cost_apart;
 pub use ending::{Missed, Resolution};
 pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
@@ -107,6 +109,9 @@ pub struct Report {
     pub(crate) told: Vec<(String, Place)>,
     /// What a simulation tells of the motion that was to be found.
     pub(crate) simulation: Option<String>,
+    /// What a solve on intervals half as long says of a solution that leaves its own equations of motion; none where that is in
+    /// no doubt, and from a kept solver.
+    pub confirmation: Option<Confirmation>,
     /// The residuals of the optimality conditions.
     pub residuals: Residuals,
     /// Iterations of all steps of a continuation.
@@ -335,6 +340,7 @@ impl Report {
             sizes,
             told,
             simulation: None,
+            confirmation: None,
             residuals: outcome.residuals,
             iterations: history.iter().map(|step| step.iterations).sum(),
             seconds: history.iter().map(|step| step.seconds).sum(),

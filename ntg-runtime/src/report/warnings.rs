@@ -32,7 +32,7 @@ impl Report {
     /// What is to be known beside the status: expressions that are singular at the guess, durations that are as short as
     /// they may be, variables of an estimate at their bounds, a fit that is worse than its deviations say, outputs that ran
     /// off where there is no solution, more equations than unknowns where they cannot be met, a simulated motion that the
-    /// mesh does not follow, constraints of a solution that are violated between the points by more than
+    /// mesh does not follow, a solution that leaves its own equations of motion, constraints of a solution that are violated between the points by more than
     /// `Settings::between_tolerance`, the worst first, and a refinement that has not come to its tolerance.
     pub fn warnings(&self) -> Vec<Warning> {
         let singular = self.singular.iter().map(|singular| Warning {
@@ -50,6 +50,12 @@ impl Report {
         let equation = self.constraints.iter().find(|constraint| constraint.block == Block::Trajectory);
         let coarse = self.simulation.iter().map(|message| Warning {
             message: message.clone(),
+            place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
+            constraint: String::new(),
+            time: None,
+        });
+        let left = self.confirmation.iter().map(|confirmation| Warning {
+            message: confirmation.words(self.objective),
             place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
@@ -72,7 +78,7 @@ impl Report {
             time: None,
         });
         let cost = self.cost_is_off().into_iter().chain(self.equations_are_off());
-        singular.chain(told).chain(saddle).chain(coarse).chain(cost).chain(between).chain(unmet).collect()
+        singular.chain(told).chain(saddle).chain(coarse).chain(left).chain(cost).chain(between).chain(unmet).collect()
     }
 
     /// Tells that the guess keeps all constraints and has a better objective than what was found.

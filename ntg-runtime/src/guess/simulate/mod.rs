@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! mod       phase by phase, and back to coefficients
+//! defect    by how much a solution leaves its equations
 //!   initial   where a phase begins
 //!   motion    its equations at places in time
 //!     call      a call of the structure with slots replaced
@@ -10,11 +11,14 @@
 //! ```
 
 mod call;
+mod defect;
 mod initial;
 mod motion;
 mod radau;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use defect::{Defect, defect};
 
 use super::start::{Curve, apply, finish, pointwise};
 use crate::transcribe::Transcription;

@@ -63,6 +63,8 @@ struct Step {
 /// Outputs over scaled time.
 pub(super) struct Track {
     steps: Vec<Step>,
+    /// All values where it ends.
+    pub(super) end: Vec<f64>,
     /// The start of a step and its stages, as fractions of its width.
     nodes: [f64; STAGES + 1],
 }
@@ -133,9 +135,9 @@ fn offsets(orders: &[usize]) -> Vec<usize> {
     orders.iter().map(begin).collect()
 }
 
-/// Integrates from values at scaled time 0, of which the highest derivatives are a first guess, to 1. None where the
-/// highest derivatives do not follow from the equations, or the solution cannot be followed to the end. `breaks` are the
-/// times at which data may jump, 0 and 1 among them.
+/// Integrates from values at the first of `breaks`, of which the highest derivatives are a first guess, to the last. None where
+/// the highest derivatives do not follow from the equations, or the solution cannot be followed to the end. `breaks` are the
+/// scaled times at which data may jump, with both ends.
 pub(super) fn integrate(motion: &mut impl Motion, initial: Vec<f64>, breaks: &[f64]) -> Option<Track> {
     let orders = motion.orders().to_vec();
     let method = Method::new(&orders);
@@ -177,7 +179,7 @@ pub(super) fn integrate(motion: &mut impl Motion, initial: Vec<f64>, breaks: &[f
         }
     }
     let [first, second, third] = integration.method.nodes;
-    Some(Track { steps, nodes: [0.0, first, second, third] })
+    Some(Track { steps, end: now, nodes: [0.0, first, second, third] })
 }
 
 struct Integration<'m, M> {
