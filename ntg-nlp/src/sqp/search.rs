@@ -16,6 +16,12 @@ const SHORTEST: f64 = 1e-8;
 const LONGEST: f64 = 1e12;
 const LONGER: f64 = 10.0;
 
+/// A step of more than this times the largest variable, or the size of one, is far: the default step limit of SNOPT (P. E. Gill,
+/// W. Murray and M. A. Saunders, *SIAM Review* 47, 2005, section 6).
+const FAR: f64 = 2.0;
+/// What rounding makes of each row along a step, relative to the step. A choice.
+const ROUNDING: f64 = 1e-10;
+
 /// A point that is tried.
 pub(super) struct Trial {
     pub(super) x: Vec<f64>,
@@ -135,13 +141,29 @@ impl<N: Nlp> Run<'_, N> {
             Ok(objective) => {
                 self.trial.failure = None;
                 self.trial.violation = violation(&self.program.limits, &self.trial.rows);
-                descent.accepts(alpha, objective, self.trial.violation)
+                self.is_near_enough(alpha, corrected) && descent.accepts(alpha, objective, self.trial.violation)
             }
             Err(what) => {
                 self.trial.failure = Some(what);
                 false
             }
         }
+    }
+
+    /// Whether the trial point is near, or violates rows by no more than the present point. The merit function may fall without
+    /// limit away from all feasible points, where the objective falls faster than violations grow, and what the model says
+    /// of points far away is no reason to go there.
+    fn is_near_enough(&self, alpha: f64, corrected: bool) -> bool {
+        let d = match (corrected, self.use_newton) {
+            (true, _) => &self.corrected.d,
+            (false, true) => &self.newton.d,
+            (false, false) => &self.convex.d,
+        };
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let length = alpha * largest(d);
+        let before = violation(&self.program.limits, &self.program.rows);
+        let rounding = ROUNDING * length * self.program.rows.len() as f64;
+        length <= FAR * (1.0 + largest(&self.x)) || self.trial.violation <= before + rounding
     }
 
     /// The second-order correction: the same step for the rows `c(x + d) - J d`, (6.11).
