@@ -119,6 +119,8 @@ pub struct Limits {
     /// The rows that are norms: roots of sums of squares, times or over smooth factors. Their squares are posed in their
     /// place (docs/maths.md, section 11.14). Empty where there are none.
     pub norms: Vec<bool>,
+    /// Equations over durations that may vanish, which are posed times a power of the duration (docs/maths.md, section 11.17).
+    pub shrinking: Vec<Shrinking>,
     /// Variables that objective and rows know by their sines and cosines alone, with the change that is a radian: a step
     /// turns them by little (docs/maths.md, section 11.15).
     pub angles: Vec<(u32, f64)>,
@@ -129,6 +131,19 @@ pub struct Limits {
     pub row_weight: Vec<f64>,
     /// A positive typical size of the objective; none: what it varies by at the start says.
     pub objective_size: Option<f64>,
+}
+
+/// A row that holds derivatives by a time whose scale is a variable: `c = 0` with terms over powers of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shrinking {
+    /// The row, of bounds 0.
+    pub row: u32,
+    /// The duration, above 0 by its bounds.
+    pub variable: u32,
+    /// The highest power of the duration that terms are over.
+    pub order: u8,
+    /// The duration below which the row is posed times this power, and above which it is posed as it is.
+    pub small: f64,
 }
 
 /// A number of an evaluation, by its indices.

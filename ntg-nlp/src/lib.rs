@@ -53,6 +53,7 @@ mod kkt;
 pub mod method;
 pub mod options;
 pub mod outcome;
+mod posed;
 mod reductions;
 mod remeasure;
 pub mod residuals;
@@ -62,11 +63,10 @@ mod sizes;
 pub mod sparse;
 #[cfg(feature = "sqp")]
 pub mod sqp;
-mod squares;
 pub mod status;
 mod stopping;
 
-pub use contract::{Block, BlockValues, Entry, Evaluation, Limits, Nlp, NotFinite, Target};
+pub use contract::{Block, BlockValues, Entry, Evaluation, Limits, Nlp, NotFinite, Shrinking, Target};
 pub use method::{solve, solve_from};
 pub use options::{Control, InertiaCorrection, Method, OnIteration, Options, Progress, Scaling, Violations};
 pub use outcome::{IterationRecord, Multipliers, Outcome, Start};

@@ -28,5 +28,6 @@ mod simulations;
 mod sizes;
 mod support;
 mod unresolved;
+mod vanishing;
 mod vectors;
 mod vehicles;

@@ -45,8 +45,8 @@ use crate::check::refusal;
 use crate::contract::Nlp;
 use crate::options::Options;
 use crate::outcome::{Outcome, Start};
+use crate::posed::Posed;
 use crate::remeasure::{Measure, until_measured};
-use crate::squares::Squares;
 use crate::status::Status;
 use line_search::SearchOutcome;
 #[cfg(feature = "sqp")]
@@ -80,7 +80,7 @@ pub fn solve_again<N: Nlp>(
     from: Start<'_>,
     options: &Options,
 ) -> Outcome {
-    match Squares::of(nlp, start) {
+    match Posed::of(nlp, start) {
         Some(posed) => posed.solve(start, from, |from| solve_posed(analysis, &posed, start, from, options)),
         None => solve_posed(analysis, nlp, start, from, options),
     }

@@ -28,8 +28,8 @@ use crate::contract::Nlp;
 use crate::ipm::below_saddle;
 use crate::options::Options;
 use crate::outcome::{Multipliers, Outcome, Start};
+use crate::posed::Posed;
 use crate::remeasure::{Measure, measure_at_end, until_measured};
-use crate::squares::Squares;
 use crate::status::Status;
 use run::Run;
 use std::time::Instant;
@@ -44,7 +44,7 @@ pub fn solve<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
 
 /// As [`solve`], with multipliers to start from, as after a small change of the program.
 pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
-    match Squares::of(nlp, start) {
+    match Posed::of(nlp, start) {
         Some(posed) => {
             let from = from.map_or(Start::Cold, Start::Warm);
             posed.solve(start, from, |from| solve_posed(&posed, start, from.multipliers(&posed), options))

@@ -30,9 +30,8 @@ const OTHER_OPTIMA: [(u32, f64); 13] = [
 const EXCEPTIONS_OF_IPM: [(u32, &str); 1] =
     [(13, "8e-5 above the optimum, where no multipliers exist, at the limit of iterations")];
 /// As above. Those of 13 and 116 are faults: they are called solved. So is that of 63.
-const EXCEPTIONS_OF_SQP: [(u32, &str); 6] = [
+const EXCEPTIONS_OF_SQP: [(u32, &str); 5] = [
     (13, "called solved 1e-5 beside the optimum, where no multipliers exist"),
-    (56, "a subproblem fails after one step"),
     (63, "called infeasible after 4 iterations"),
     (93, "a subproblem fails after one step"),
     (106, "290 iterations"),

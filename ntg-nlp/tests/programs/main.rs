@@ -4,6 +4,7 @@
 #[macro_use]
 mod support;
 
+mod durations;
 mod hs;
 mod laws;
 mod norms;

@@ -34,6 +34,7 @@ mod repeated;
 pub(crate) mod rows;
 mod scale;
 pub(crate) mod shape;
+mod shrinking;
 pub(crate) mod singular;
 mod sizes;
 pub(crate) mod slot_maps;
@@ -130,6 +131,7 @@ impl<'p> Transcription<'p> {
         let Decided { system: linear, met } = contradictions::decided(&frame, &elements, &bounds)?;
         let mut limits = limits(&model.structure, &elements, (&bounds, &met));
         limits.angles = angles(&model.structure, &model.layout);
+        limits.shrinking = shrinking::shrinking(&model.structure, &model.layout, &elements, &bounds);
         let mut transcription =
             Self { problem, model: Arc::new(model), elements, limits, has_named_size: vec![], linear };
         transcription.limits.alike = transcription.alike();
@@ -166,6 +168,7 @@ impl<'p> Transcription<'p> {
         let Limits { alike, angles, .. } = std::mem::take(&mut self.limits);
         self.limits =
             Limits { alike, angles, ..limits(&self.model.structure, &self.elements, (&bounds, &decided.met)) };
+        self.limits.shrinking = shrinking::shrinking(&model.structure, &model.layout, &self.elements, &bounds);
         self.model = Arc::new(model);
         Ok(Change::Data)
     }
@@ -320,6 +323,7 @@ fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f6
         row_lower,
         row_upper,
         norms: if structure.norms.is_empty() { vec![] } else { elements.rows.iter().map(is_norm).collect() },
+        shrinking: vec![],
         angles: vec![],
         row_scale: vec![1.0; elements.rows.len()],
         row_weight: vec![],

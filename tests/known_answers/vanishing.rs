@@ -1,0 +1,87 @@
+//! Phases that are of no use and vanish, and the programs that run off: both came to an end late or not at all.
+
+use ntg::prelude::*;
+use ntg::runtime::settings::Method;
+
+use crate::support::{Shipped, close};
+
+/// Accelerate, cruise at the greatest speed, brake: on a short way nothing is left of the cruise. The time is known.
+fn trapeze(way: f64, intervals: usize) -> Report {
+    let text = format!(
+        "problem Trapeze {{
+            duration T in 0.01 .. 200 [s];
+            state x [m], v [m/s];
+            collocation gauss(points = 3, intervals = {intervals});
+            phase up {{ duration in 0 .. 20 [s];  dynamics {{ der(x) == v;  der(v) == 2 [m/s^2]; }} }}
+            phase cruise after up {{ duration in 0 .. 20 [s];  dynamics {{ der(x) == v;  der(v) == 0; }} }}
+            phase down after cruise {{ duration in 0 .. 20 [s];  dynamics {{ der(x) == v;  der(v) == -2 [m/s^2]; }} }}
+            minimize T;
+            trajectory {{ v <= 5 [m/s]; }}
+            initial {{ x == 0;  v == 0; }}
+            final {{ x == {way} [m];  v == 0; }}
+        }}"
+    );
+    Shipped::text(&text).solve()
+}
+
+#[test]
+fn a_cruise_that_is_of_no_use_vanishes() {
+    for intervals in [3, 6, 20] {
+        let short = trapeze(8.0, intervals);
+        close(short.objective, 4.0, 1e-5);
+        assert!(short.iterations <= 100, "{intervals}: {short}");
+        // 2.5 s, 6.25 m of each ramp.
+        let long = trapeze(40.0, intervals);
+        close(long.objective, 5.0 + 27.5 / 5.0, 1e-6);
+        assert!(long.iterations <= 100, "{intervals}: {long}");
+    }
+}
+
+/// With little thrust in the second phase, all is done in the first: bang-bang in `2 sqrt(x)`.
+fn weak_second(way: f64, intervals: usize) -> Report {
+    let text = format!(
+        "problem Weak {{
+            duration T in 0.01 .. 20;
+            state x, v;
+            collocation gauss(points = 3, intervals = {intervals});
+            phase a {{ duration in 0 .. 10;  input u in -1 .. 1;  dynamics {{ der(x) == v;  der(v) == u; }} }}
+            phase b after a {{ duration in 0 .. 10;  input u in -0.2 .. 0.2;  dynamics {{ der(x) == v;  der(v) == u; }} }}
+            minimize T;
+            initial {{ x == 0;  v == 0; }}
+            final {{ x == {way};  v == 0; }}
+        }}"
+    );
+    Shipped::text(&text).solve()
+}
+
+#[test]
+fn the_multipliers_of_what_is_posed_otherwise_are_those_of_the_equation() {
+    for intervals in [8, 20] {
+        let report = weak_second(1.0, intervals);
+        close(report.objective, 2.0, 1e-4);
+        assert!(report.iterations <= 100, "{report}");
+        // A way that grows by itself, x' = v + e, takes e T of the way: dT/de = -T dT/dx, and dT/dx = 1 / sqrt(x). The
+        // derivative by a bound that is moved everywhere at once is the sum of the multipliers.
+        let rate = report.constraint("der(x) == v").expect("an equation of the spec");
+        close(rate.sensitivity.abs(), 2.0, 1e-3);
+    }
+}
+
+#[test]
+fn the_hanging_chain_does_not_run_off() {
+    // The penalty function falls without limit where the chain is long and low. 5.0685 is the published optimum (COPS).
+    for intervals in [5, 20, 40] {
+        let spec = Shipped::text(&format!(
+            "problem Chain {{
+                duration T = 1;
+                output x: spline(order = 4, intervals = {intervals});
+                let stretch = sqrt(1 + der(x)^2);
+                minimize integral(x * stretch);
+                initial {{ x == 1; }}
+                final {{ x == 3; }}
+                temporal {{ length: integral(stretch) == 4; }}
+            }}"
+        ));
+        close(spec.by(Method::Sqp).solve().objective, 5.0685, 1e-3);
+    }
+}
