@@ -1,7 +1,8 @@
 //! What is made finer in each phase, and the structure that comes of it.
 
 use crate::transcribe::Transcription;
-use ntg_structure::{Output, Points, Structure};
+use crate::transcribe::points::SAME;
+use ntg_structure::{At, Domain, Output, Points, Slot, Structure};
 
 /// New breakpoints and finer rules of one phase.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,6 +29,38 @@ pub(super) fn halved(nlp: &Transcription) -> Vec<Marks> {
         let at = member.breakpoints.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         // Members of a family share their mesh.
         marks[member.phase] = Marks { at, doublings: u32::from(is_uniform) };
+    }
+    marks
+}
+
+/// The times at which a spec itself lets inputs jump: ends of parts of a phase and the times of `at`, as far as intervals do not
+/// meet there. A phase with equally spaced points has none: it would have too few points in short intervals.
+pub(super) fn given(nlp: &Transcription) -> Vec<Marks> {
+    let structure = &nlp.model.structure;
+    let mut times = vec![];
+    for group in &structure.groups {
+        if let Domain::Path { phase, part, .. } = &group.domain {
+            times.extend([part.from, part.to].map(|instant| (phase.phase, instant.tau())));
+        }
+        times.extend(group.call.slots.iter().filter_map(|slot| match slot {
+            Slot::Flat { phase, at: At::Inside(instant), .. } => Some((phase.phase, instant.tau())),
+            _ => None,
+        }));
+    }
+    let mut marks = vec![Marks::default(); structure.phases.len()];
+    for member in &nlp.model.layout.phases {
+        let is_uniform = |points: &Points| matches!(points, Points::Uniform { .. });
+        if structure.phases[member.phase].points.iter().any(is_uniform) {
+            continue;
+        }
+        let own = &mut marks[member.phase].at;
+        let inside = times.iter().filter(|(phase, tau)| *phase == member.phase && *tau > 0.0 && *tau < 1.0);
+        for (_, tau) in inside {
+            let is_at = |other: &f64| (other - tau).abs() <= SAME;
+            if !member.breakpoints.iter().any(is_at) && !own.iter().any(is_at) {
+                own.push(*tau);
+            }
+        }
     }
     marks
 }

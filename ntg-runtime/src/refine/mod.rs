@@ -24,7 +24,7 @@ use crate::solution::Solution;
 use crate::status::Status;
 use crate::strategy::{Session, Task};
 use crate::transcribe::Transcription;
-use marks::{Marks, split};
+use marks::{Marks, given, split};
 use ntg_nlp::Nlp;
 use std::time::{Duration, Instant};
 
@@ -94,15 +94,18 @@ impl Run<'_> {
             self.beside = beside(&nlp, &self.report);
         }
         let found = round(&nlp, &self.report, (&self.rounds, self.beside));
-        let met = found.within(self.wanted.tolerance)
-            || (found.is_exact(self.wanted.tolerance) && !estimate::has_jumps(&nlp, &self.report));
+        let given = given(&nlp);
+        // Until a knot is there, an input cannot jump where the spec lets it, and no other knot does as well.
+        let is_settled = given.iter().all(Marks::is_empty)
+            && (found.within(self.wanted.tolerance)
+                || (found.is_exact(self.wanted.tolerance) && !estimate::has_jumps(&nlp, &self.report)));
         self.number = self.rounds.len();
         self.rounds.push(found);
         keep_best(&mut self.best, &self.report, &self.rounds, self.wanted.tolerance);
         if !can_go_on(&self.report) {
             return Ok(Some(ended(&self.report)));
         }
-        if met {
+        if is_settled {
             return Ok(Some(RefineStatus::Met));
         }
         if self.rounds.len() >= self.wanted.rounds {
@@ -113,7 +116,8 @@ impl Run<'_> {
             return Ok(Some(RefineStatus::Time));
         }
         let limits = (self.wanted.tolerance, self.settings.samples);
-        let marks = estimate::marks(&nlp, &self.report, &self.rounds[self.rounds.len() - 1], limits)?;
+        let mut marks = estimate::marks(&nlp, &self.report, &self.rounds[self.rounds.len() - 1], limits)?;
+        marks.iter_mut().zip(given).for_each(|(marks, given)| marks.at.extend(given.at));
         drop(nlp);
         if marks.iter().all(Marks::is_empty) {
             return Ok(Some(RefineStatus::Shortest));

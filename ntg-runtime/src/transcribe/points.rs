@@ -8,7 +8,7 @@ use ntg_splines::{Side, equidistant, gauss, trapezoid};
 use ntg_structure::{Instant, Part, Points};
 
 /// Breakpoints nearer to each other than this are one.
-const SAME: f64 = 1e-12;
+pub(crate) const SAME: f64 = 1e-12;
 
 /// One point of one phase, or of no phase at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
