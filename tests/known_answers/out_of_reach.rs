@@ -76,3 +76,27 @@ fn a_coarse_solution_is_told_of_with_what_shorter_intervals_say() {
     let told = report.warnings().into_iter().find(|warning| warning.message.contains("leaves its equations of motion"));
     assert!(told.is_some_and(|warning| warning.message.starts_with("`x` leaves")), "{report}");
 }
+
+#[test]
+fn no_motion_jumps_over_an_equilibrium_and_a_pole() {
+    // s = 0 is an equilibrium, and the rate has a pole at s = -K: no motion comes from 1 to -1.
+    for constant in [0.03, 0.1, 0.3] {
+        for intervals in [4, 8, 12, 16] {
+            let text = format!(
+                "problem Enzyme {{
+                    duration T = 4;
+                    state s;
+                    input e in 0 .. 1;
+                    collocation gauss(points = 3, intervals = {intervals});
+                    minimize integral(e^2);
+                    dynamics {{ der(s) == -e * s / ({constant} + s); }}
+                    initial {{ s == 1; }}
+                    final {{ s == -1; }}
+                }}"
+            );
+            let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
+            let is_refuted = !report.is_solved() || report.resolution() == Some(Resolution::Unresolved);
+            assert!(is_refuted, "{constant} on {intervals}\n{report}");
+        }
+    }
+}

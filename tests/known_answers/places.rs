@@ -1,6 +1,7 @@
 //! Points of time, parts of a trajectory and periods, on problems small enough for paper.
 
 use ntg::prelude::*;
+use ntg::runtime::refine::{Refined, Refinement};
 
 use crate::support::{Shipped, close};
 
@@ -153,4 +154,58 @@ fn along_the_way_only_what_pays_is_missed() {
     let report = spec.solve();
     close(report.objective, 0.75, 1e-6);
     close(report.solution.output("low_miss").expect("it is shown").derivative(0.3, 0), 0.5, 1e-5);
+}
+
+/// As far as possible in 20 s at up to 5 m/s, and at 1 m/s from 7.3 s to 16.8 s: 62 m.
+fn slowly(intervals: usize, input: &str) -> Report {
+    let text = format!(
+        "problem Slowly {{
+            duration T = 20 [s];
+            state x [m];
+            input u [m/s]{input};
+            collocation gauss(points = 3, intervals = {intervals});
+            maximize final(x);
+            dynamics {{ der(x) == u; }}
+            initial {{ x == 0; }}
+            trajectory {{ 0 <= u;  u <= 5 [m/s]; }}
+            trajectory from 7.3 [s] to 16.8 [s] {{ u <= 1 [m/s]; }}
+        }}"
+    );
+    let settings = Settings { refine: Some(Refinement::to(1e-5)), ..Settings::default() };
+    let plain = Shipped::text(&text).solve();
+    let refined = solve(Shipped::text(&text).problem(), &settings).expect("it can be set up");
+    close(refined.objective, 62.0, 1e-5);
+    assert!(refined.refined.as_ref().is_some_and(Refined::is_met), "{refined}");
+    plain
+}
+
+#[test]
+fn an_input_jumps_where_a_part_begins_and_ends_on_any_mesh() {
+    for intervals in [1, 2, 3, 7, 20] {
+        close(slowly(intervals, "").objective, 62.0, 1e-6);
+        // A spline that is written out keeps its knots; refinement adds to them.
+        let written = slowly(intervals + 3, &format!(": spline(order = 3, intervals = {intervals}, smoothness = 0)"));
+        assert!(written.objective < 62.0 - 0.5, "{written}");
+    }
+}
+
+#[test]
+fn an_input_bends_where_a_place_is_to_be_passed_on_any_mesh() {
+    // The least integral of u^2 through x = 3 after 1 of 4, from 0 to 4, x' = u: straight lines, 9 / 1 + 1 / 3.
+    for intervals in [1, 2, 5, 16] {
+        let text = format!(
+            "problem Passed {{
+                duration T = 4;
+                state x;
+                input u;
+                collocation gauss(points = 3, intervals = {intervals});
+                minimize integral(u^2);
+                dynamics {{ der(x) == u; }}
+                initial {{ x == 0; }}
+                at 1 {{ x == 3; }}
+                final {{ x == 4; }}
+            }}"
+        );
+        close(Shipped::text(&text).solve().objective, 9.0 + 1.0 / 3.0, 1e-6);
+    }
 }

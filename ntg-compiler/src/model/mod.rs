@@ -53,6 +53,7 @@ pub(crate) mod norms;
 mod objective;
 mod order;
 mod outputs;
+mod part_ends;
 mod parts;
 mod paths;
 mod periodic;
@@ -225,6 +226,7 @@ impl<'a> Elaborator<'a> {
         self.constraints();
         self.named();
         self.guesses();
+        self.part_ends();
         self.orders_needed();
         self.jumps_noted();
         self.check();

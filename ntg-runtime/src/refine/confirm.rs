@@ -20,14 +20,13 @@ const PATIENCE: f64 = 5.0;
 const LEAST: Duration = Duration::from_secs(1);
 
 impl Report {
-    /// The report with what solves on shorter intervals say, where a solution is in doubt: where it misses equations between the
-    /// points by more than is worth a warning, and leaves by as much where these equations lead, too. Only where the settings
-    /// ask nothing else of such a solution.
+    /// The report with what solves on shorter intervals say, where a solution leaves its equations of motion by more than is
+    /// worth a warning. What it misses between the points does not tell of that: a jump over a pole falls between all samples.
+    /// Only where the settings ask nothing else of such a solution.
     pub(crate) fn confirmed(mut self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
         let is_asked = settings.refine.is_none() && settings.between == Between::Report;
-        let misses = self.violated_between().iter().any(|constraint| constraint.is_equation);
-        let is_open = self.resolution() == Some(Resolution::Coarse) && !self.solution.structure().terms.is_empty();
-        if !(is_asked && misses && is_open) {
+        let is_open = self.resolution().is_some_and(|resolution| resolution < Resolution::Unresolved);
+        if !(is_asked && is_open) || self.solution.structure().terms.is_empty() {
             return Ok(self);
         }
         let began = Instant::now();

@@ -2,7 +2,7 @@
 
 use crate::transcribe::Transcription;
 use crate::transcribe::points::SAME;
-use ntg_structure::{At, Domain, Output, Points, Slot, Structure};
+use ntg_structure::{At, Domain, Output, Phase, Points, Slot, Structure};
 
 /// New breakpoints and finer rules of one phase.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,8 +33,8 @@ pub(super) fn halved(nlp: &Transcription) -> Vec<Marks> {
     marks
 }
 
-/// The times at which a spec itself lets inputs jump: ends of parts of a phase and the times of `at`, as far as intervals do not
-/// meet there. A phase with equally spaced points has none: it would have too few points in short intervals.
+/// The times at which a spec itself lets inputs jump: ends of parts of a phase and the times of `at`, as far as an
+/// output has no knot there. A phase with equally spaced points has none: it would have too few points in short intervals.
 pub(super) fn given(nlp: &Transcription) -> Vec<Marks> {
     let structure = &nlp.model.structure;
     let mut times = vec![];
@@ -47,22 +47,22 @@ pub(super) fn given(nlp: &Transcription) -> Vec<Marks> {
             _ => None,
         }));
     }
-    let mut marks = vec![Marks::default(); structure.phases.len()];
-    for member in &nlp.model.layout.phases {
-        let is_uniform = |points: &Points| matches!(points, Points::Uniform { .. });
-        if structure.phases[member.phase].points.iter().any(is_uniform) {
-            continue;
+    let of_phase = |(number, phase): (usize, &Phase)| {
+        let mut own = Marks::default();
+        if phase.points.iter().any(|points| matches!(points, Points::Uniform { .. })) {
+            return own;
         }
-        let own = &mut marks[member.phase].at;
-        let inside = times.iter().filter(|(phase, tau)| *phase == member.phase && *tau > 0.0 && *tau < 1.0);
-        for (_, tau) in inside {
+        let free = || phase.outputs.iter().filter(|output| !is_held(output, &phase.points));
+        for (_, tau) in times.iter().filter(|(of, tau)| *of == number && *tau > 0.0 && *tau < 1.0) {
             let is_at = |other: &f64| (other - tau).abs() <= SAME;
-            if !member.breakpoints.iter().any(is_at) && !own.iter().any(is_at) {
-                own.push(*tau);
+            let has_all = free().all(|output| output.spline.breakpoints.iter().any(is_at));
+            if !has_all && !own.at.iter().any(is_at) {
+                own.at.push(*tau);
             }
         }
-    }
-    marks
+        own
+    };
+    structure.phases.iter().enumerate().map(of_phase).collect()
 }
 
 /// Whether an output has one value in each of its intervals although there are several points in each: a sampled input, whose
@@ -93,7 +93,7 @@ pub(super) fn split(structure: &mut Structure, marks: &[Marks]) {
                 breakpoints.sort_by(f64::total_cmp);
             }
             breakpoints.sort_by(f64::total_cmp);
-            breakpoints.dedup();
+            breakpoints.dedup_by(|next, kept| (*next - *kept).abs() <= SAME);
         }
         for points in &mut phase.points {
             if let Points::Uniform { points } = points {
