@@ -28,6 +28,45 @@ fn ramp(unit: &str, intervals: usize) -> String {
     )
 }
 
+/// Legs of a flight and cars of a fleet whose members take from arrays of fewer elements: `{}` stands for what the
+/// index chooses.
+const LEGS: &str = "problem Legs {
+    const n = 3;
+    param h[n] = (1, 2, 4) [m];  param w[n - 1] = (1, 2);
+    param under[n] = (0, 1, 2) [m];  param over[n] = (1, 1, 2);  param more[n] = (1, 2, 0);  param long[n] = (2, 1, 2) [s];
+    output z [m]: spline(order = 6, intervals = 2);
+    phase leg[i in 1 .. n] after leg[i - 1] {
+        duration in 1 [s] .. LONG;
+        let below [m] = UNDER;
+        let above [m] = z - below;
+        initial { begin: z == UNDER; }
+        trajectory { above >= -5 [m];  z <= 10 [m] * OVER;  soft(1 [m/s^4]): low: z >= UNDER + 0.1 [m] * OVER; }
+        final { top: z == h[i]; }
+        minimize extra [m^2/s^3]: MORE * integral(der(z)^2) * 1 [1/s^2];
+        guess { z = UNDER + (h[i] - UNDER) * tau;  duration(leg[i]) = LONG * 0.9; }
+    }
+    minimize integral(der(z, 2)^2);
+}
+";
+const CARS: &str = "problem Cars {
+    const n = 3;
+    param h[n] = (1, 2, 4) [m];  param w[n - 1] = (1, 2);
+    param under[n] = (0, 1, 2) [m];  param over[n] = (1, 1, 2);  param more[n] = (1, 2, 0);  param long[n] = (2, 1, 2) [s];
+    agent car[i in 1 .. n] {
+        start = LONG;
+        duration T in 1 [s] .. 2 * LONG;
+        output x in -1 [m] .. 9 [m] * OVER: spline(order = 6, intervals = 2);
+        let below [m] = UNDER;
+        initial { x == below;  der(x) == 0; }
+        final { x == UNDER + h[i];  der(x) == 0; }
+        trajectory { soft(3 [s/m]): slow: der(x) <= 1 [m/s] * OVER; }
+        minimize effort [s]: T + integral(der(x, 2)^2) * 1 [s^4/m^2] * (1 + MORE);
+        guess { x = UNDER + h[i] * tau;  T = LONG; }
+    }
+    temporal { for i in 1 .. n { end(car[i]) <= 2.5 * LONG; } }
+}
+";
+
 fn ntg(here: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_ntg")).current_dir(here).args(arguments).output().expect("the command starts")
 }
@@ -96,4 +135,39 @@ fn a_result_never_replaces_a_spec() {
         assert!(told.contains("`m.ntg` is a spec by its ending; give the result another name"), "{told}");
     }
     assert_eq!(std::fs::read_to_string(here.join("m.ntg")).expect("it is there"), ramp("m", 5));
+}
+
+#[test]
+fn members_of_families_may_choose_by_their_index() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    // Elements that are not there are in the branch that is not taken.
+    let by_index = [
+        ("UNDER", "(if i == 1 { 0 } else { h[i - 1] })", "under[i]"),
+        ("OVER", "(if i == 1 { 1 } else { w[i - 1] })", "over[i]"),
+        ("MORE", "(if i == n { 0 } else { w[i] })", "more[i]"),
+        ("LONG", "(if i == 1 { 2 [s] } else { w[i - 1] * 1 [s] })", "long[i]"),
+    ];
+    for (spec, name, shown) in [(LEGS, "legs.ntg", "above"), (CARS, "cars.ntg", "car[2].below")] {
+        let written = |choose: bool| {
+            let text = by_index.iter().fold(spec.to_owned(), |text, (word, condition, element)| {
+                text.replace(word, if choose { condition } else { element })
+            });
+            std::fs::write(here.join(name), text).expect("written");
+            json(here, &["solve", name])
+        };
+        let (chosen, plain) = (written(true), written(false));
+        assert_eq!(chosen["status"], "solved", "{name}");
+        let objective = |run: &Value| run["objective"].as_f64().expect("a number");
+        assert!((objective(&chosen) - objective(&plain)).abs() < 1e-7 * objective(&plain), "{name}");
+        assert_eq!(
+            chosen["lets"][shown]["t"].as_array().map(Vec::len),
+            plain["lets"][shown]["t"].as_array().map(Vec::len)
+        );
+        assert_eq!(chosen["lets"].as_object().map(|lets| lets.len()), plain["lets"].as_object().map(|lets| lets.len()));
+        let names = |run: &Value| -> Vec<Value> {
+            run["terms"].as_array().expect("terms").iter().map(|term| term["name"].clone()).collect()
+        };
+        assert_eq!(names(&chosen), names(&plain), "{name}");
+    }
 }

@@ -63,9 +63,9 @@ fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
     scope.durations.extend(structure.agents[agent].duration_name.as_deref());
     // Numbers belong to the agent as a whole.
     let numbers = structure.named.iter().filter(|named| named.domain == Domain::Mission && named.agent == agent);
-    scope.named.extend(numbers);
+    scope.named.extend(by_name(numbers));
     let phases: Vec<usize> = (0..structure.phases.len()).filter(|p| structure.phases[*p].agent == agent).collect();
-    let along = |phase: usize| structure.named.iter().filter(move |named| phase_of(named) == Some(phase));
+    let along = |phase: usize| by_name(structure.named.iter().filter(move |named| phase_of(named) == Some(phase)));
 
     // What the first phase has belongs to the agent if all the others have it too.
     if let Some((first, others)) = phases.split_first() {
@@ -91,6 +91,16 @@ fn fill<'a>(scope: &mut Scope<'a>, structure: &'a Structure, agent: usize) {
         within.durations.extend(declared.duration_name.as_deref());
         scope.children.push(within);
     }
+}
+
+/// One for each name: parts of a family may have formulas of their own.
+fn by_name<'a>(list: impl Iterator<Item = &'a Named>) -> impl Iterator<Item = &'a Named> {
+    let mut known: Vec<&str> = vec![];
+    list.filter(move |named| {
+        let is_new = !known.contains(&named.name.as_str());
+        known.push(&named.name);
+        is_new
+    })
 }
 
 /// The phase along which an expression is defined.

@@ -31,6 +31,7 @@ pub(super) struct BodyKey {
     phase: Option<Form>,
     point: Point,
     allow: Allow,
+    parts_families: bool,
     derivatives_around: usize,
 }
 
@@ -83,6 +84,7 @@ impl<'a> Elaborator<'a> {
             phase: cx.phase.clone(),
             point: cx.point,
             allow: cx.allow,
+            parts_families: cx.parts_families,
             derivatives_around: self.derivatives_around,
         }
     }

@@ -131,7 +131,7 @@ impl<'a> Elaborator<'a> {
     pub(super) fn unit_of_bounds(&mut self, scope: ScopeId, name: &'a DeclaredName) -> (Option<Dimension>, Unit) {
         let Some(bounds) = &name.bounds else { return (Some(Dimension::NONE), Unit::default()) };
         let mut is_refused = false;
-        let cx = Context::of(scope, Allow::Parameters);
+        let cx = self.first_members(scope, Allow::Parameters);
         for end in bounds.upper.iter().chain(&bounds.lower) {
             let Some(shape) = self.shape(&cx, end) else { continue };
             let first = vec![Form::number(1); shape.axes().len()];

@@ -175,7 +175,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// What a comparison between indices and constants says; none where it is made of more, or of the index of a
-    /// family of phases or agents, whose members share one formula.
+    /// family of phases or agents where its members share one formula, as a duration.
     fn by_index(&mut self, cx: &Context<'a>, test: &Test) -> Option<Decision> {
         let difference = self.problem.dag.sub(test.lesser.node, test.greater.node);
         if self.kinds(difference) != Kind::INDEX {
@@ -194,7 +194,8 @@ impl<'a> Elaborator<'a> {
             form.iter().any(|form| form.terms.iter().any(|(index, _)| indices().any(|other| other == *index)))
         };
         let bound = |index| cx.loops.iter().any(|over| over.index == index);
-        if of_family(&cx.agent) || of_family(&cx.phase) || !indices().all(bound) {
+        let is_shared = !cx.parts_families && (of_family(&cx.agent) || of_family(&cx.phase));
+        if is_shared || !indices().all(bound) {
             return None;
         }
         let span = test.lesser.span.to(test.greater.span);

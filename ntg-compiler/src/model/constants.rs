@@ -76,6 +76,13 @@ impl Form {
         Self { constant, terms: self.terms.iter().copied().filter(|(own, _)| *own != index).collect() }
     }
 
+    /// The same with another form in the place of an index.
+    pub(super) fn replacing(&self, index: IndexId, other: &Self) -> Self {
+        let factor = self.terms.iter().find(|(own, _)| *own == index).map_or(0, |(_, factor)| *factor);
+        let rest = self.with(index, 0);
+        rest.plus(factor, other).unwrap_or(rest)
+    }
+
     /// The same divided by a number that divides it.
     fn divided(&self, divisor: i64) -> Option<Self> {
         let exact = |n: i64| (divisor != 0 && n.checked_rem(divisor)? == 0).then(|| n / divisor);

@@ -114,14 +114,19 @@ impl<'a> Elaborator<'a> {
 
     pub(super) fn statements(&mut self, cx: &Context<'a>, statements: &'a [Statement<ast::Constraint>], site: &Site) {
         for statement in statements {
-            match statement {
-                Statement::One(constraint) => self.constraint(cx, constraint, site),
-                Statement::For(inner) => {
-                    if let Some((over, _)) = self.range(cx, &inner.over) {
-                        let name = Some(inner.over.index.text.as_str());
-                        self.repeat(cx, name, &over, &mut |this, cx, _| this.statements(cx, &inner.body, site));
-                    }
-                }
+            self.for_families(cx, &mut |this, cx| this.statement(cx, statement, site));
+        }
+    }
+
+    fn statement(&mut self, cx: &Context<'a>, statement: &'a Statement<ast::Constraint>, site: &Site) {
+        match statement {
+            Statement::One(constraint) => self.constraint(cx, constraint, site),
+            Statement::For(inner) => {
+                let Some((over, _)) = self.range(cx, &inner.over) else { return };
+                let name = Some(inner.over.index.text.as_str());
+                self.repeat(cx, name, &over, &mut |this, cx, _| {
+                    inner.body.iter().for_each(|statement| this.statement(cx, statement, site));
+                });
             }
         }
     }

@@ -26,6 +26,7 @@ pub(super) struct MemoKey {
     phase: Option<Form>,
     point: Point,
     allow: Allow,
+    parts_families: bool,
     /// The indices of its family, then those of the element.
     place: Vec<Form>,
 }
@@ -70,6 +71,7 @@ impl<'a> Elaborator<'a> {
             phase: cx.phase.clone(),
             point: cx.point,
             allow,
+            parts_families: cx.parts_families,
             place: place.clone(),
         };
         match self.memo.get(&key) {
@@ -333,6 +335,7 @@ impl<'a> Elaborator<'a> {
     fn is_known(&self, cx: &Context<'a>, definition: usize) -> bool {
         let allow = if self.definitions[definition].is_const { Allow::Constants } else { cx.allow };
         let (scope, agent, phase, point) = (cx.scope, cx.agent.clone(), cx.phase.clone(), cx.point);
-        self.memo.contains_key(&MemoKey { definition, scope, agent, phase, point, allow, place: Vec::new() })
+        let (parts_families, place) = (cx.parts_families, Vec::new());
+        self.memo.contains_key(&MemoKey { definition, scope, agent, phase, point, allow, parts_families, place })
     }
 }

@@ -24,18 +24,15 @@ impl<'a> Elaborator<'a> {
     pub(super) fn dynamics(&mut self, scope: ScopeId, phase: usize, block: &'a ast::Block) {
         self.only_equations(&block.statements);
         let cx = self.phase_context(phase, Allow::All, Point::Path);
-        let around = cx.loops.len();
+        let copies = members(&cx.loops);
         let agent = Some(self.phases[phase].agent);
         let site = Site { block: Block::Trajectory, agent, phase: Some(phase), part: Part::WHOLE };
         let before = self.problem.constraints.len();
         self.noted.equations_of = Some(phase);
         self.statements(&Context { lexical: scope, ..cx }, &block.statements, &site);
         self.noted.equations_of = None;
-        let rows: i64 = self.problem.constraints[before..]
-            .iter()
-            .map(|row| members(&row.loops[around.min(row.loops.len())..]))
-            .sum();
-        *self.equations.entry(phase).or_default() += rows;
+        let rows: i64 = self.problem.constraints[before..].iter().map(|row| members(&row.loops)).sum();
+        *self.equations.entry(phase).or_default() += rows / copies.max(1);
         self.note_moved(phase, before);
     }
 
@@ -157,8 +154,10 @@ impl<'a> Elaborator<'a> {
                 continue;
             }
             self.note_bare_bounds(name);
-            self.for_elements(&cx, shape.axes(), &[], &mut |this, cx, at| {
-                this.bound_element(cx, (phase, output), name, &axes, at);
+            self.for_families(&cx, &mut |this, cx| {
+                this.for_elements(cx, shape.axes(), &[], &mut |this, cx, at| {
+                    this.bound_element(cx, (phase, output), name, &axes, at);
+                });
             });
             self.settle_open();
         }

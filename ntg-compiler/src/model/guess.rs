@@ -52,19 +52,24 @@ impl<'a> Elaborator<'a> {
 
     fn guess_statements(&mut self, cx: &Context<'a>, statements: &'a [Statement<Kind>]) {
         for statement in statements {
-            match statement {
-                Statement::One(Kind::Assign(assign)) => {
-                    self.assign(cx, assign);
-                }
-                Statement::One(Kind::Route(route)) => {
-                    self.route(cx, route);
-                }
-                Statement::For(inner) => {
-                    if let Some((over, _)) = self.range(cx, &inner.over) {
-                        let name = Some(inner.over.index.text.as_str());
-                        self.repeat(cx, name, &over, &mut |this, cx, _| this.guess_statements(cx, &inner.body));
-                    }
-                }
+            self.for_families(cx, &mut |this, cx| this.guess_statement(cx, statement));
+        }
+    }
+
+    fn guess_statement(&mut self, cx: &Context<'a>, statement: &'a Statement<Kind>) {
+        match statement {
+            Statement::One(Kind::Assign(assign)) => {
+                self.assign(cx, assign);
+            }
+            Statement::One(Kind::Route(route)) => {
+                self.route(cx, route);
+            }
+            Statement::For(inner) => {
+                let Some((over, _)) = self.range(cx, &inner.over) else { return };
+                let name = Some(inner.over.index.text.as_str());
+                self.repeat(cx, name, &over, &mut |this, cx, _| {
+                    inner.body.iter().for_each(|statement| this.guess_statement(cx, statement));
+                });
             }
         }
     }

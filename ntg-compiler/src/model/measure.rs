@@ -55,21 +55,29 @@ impl<'a> Elaborator<'a> {
         (agent, phase): (Option<usize>, Option<usize>),
     ) {
         for statement in statements {
-            match statement {
-                Statement::One(constraint) => {
-                    // What is no equality, or has no deviation, was told of.
-                    let Relation::Compare { left, right, .. } = &constraint.relation else { continue };
-                    let Some(sigma) = &constraint.sigma else { continue };
-                    self.measurement(cx, Measured { constraint, left, right, sigma, agent, phase });
-                }
-                Statement::For(inner) => {
-                    if let Some((over, _)) = self.range(cx, &inner.over) {
-                        let name = Some(inner.over.index.text.as_str());
-                        self.repeat(cx, name, &over, &mut |this, cx, _| {
-                            this.measurements(cx, &inner.body, (agent, phase));
-                        });
-                    }
-                }
+            self.for_families(cx, &mut |this, cx| this.measured(cx, statement, (agent, phase)));
+        }
+    }
+
+    fn measured(
+        &mut self,
+        cx: &Context<'a>,
+        statement: &'a Statement<ast::Constraint>,
+        (agent, phase): (Option<usize>, Option<usize>),
+    ) {
+        match statement {
+            Statement::One(constraint) => {
+                // What is no equality, or has no deviation, was told of.
+                let Relation::Compare { left, right, .. } = &constraint.relation else { return };
+                let Some(sigma) = &constraint.sigma else { return };
+                self.measurement(cx, Measured { constraint, left, right, sigma, agent, phase });
+            }
+            Statement::For(inner) => {
+                let Some((over, _)) = self.range(cx, &inner.over) else { return };
+                let name = Some(inner.over.index.text.as_str());
+                self.repeat(cx, name, &over, &mut |this, cx, _| {
+                    inner.body.iter().for_each(|statement| this.measured(cx, statement, (agent, phase)));
+                });
             }
         }
     }

@@ -135,6 +135,17 @@ impl<'a> Elaborator<'a> {
         }
     }
 
+    /// A context of a scope for the first members of its families: what is alike in all of them.
+    pub(super) fn first_members(&self, scope: ScopeId, allow: Allow) -> Context<'a> {
+        let first = |family: Option<&Loop>| family.map(|over| over.first.clone());
+        let (agent, phase) = (self.scopes[scope].agent, self.scopes[scope].phase);
+        Context {
+            agent: first(agent.and_then(|k| self.problem.agents.get(k)).and_then(|agent| agent.family.as_ref())),
+            phase: first(phase.and_then(|k| self.problem.phases.get(k)).and_then(|phase| phase.family.as_ref())),
+            ..Context::of(scope, allow)
+        }
+    }
+
     /// A context of a phase.
     pub(super) fn phase_context(&self, phase: usize, allow: Allow, point: Point) -> Context<'a> {
         let outer = self.agent_context(self.phases[phase].agent, allow);
@@ -261,23 +272,29 @@ impl<'a> Elaborator<'a> {
     fn duration(&mut self, cx: &Context<'a>, extent: &'a Extent, what: &str, span: Span) -> Duration {
         let none = self.problem.dag.constant(1.0);
         match extent {
-            Extent::Fixed(expr) => match self.bound(cx, expr, what).and_then(|value| self.as_time(value, what)) {
-                Some(value) => {
-                    self.note_clock(&value);
-                    self.positive(value.node, expr.span);
-                    Duration::Fixed(value.node)
-                }
-                None => Duration::Fixed(none),
-            },
+            Extent::Fixed(expr) => {
+                let [time] = self.of_each_member(cx, &mut |this, cx| {
+                    let Some(value) = this.bound(cx, expr, what).and_then(|value| this.as_time(value, what)) else {
+                        return [None];
+                    };
+                    this.note_clock(&value);
+                    this.positive(value.node, expr.span);
+                    [Some(value.node)]
+                });
+                Duration::Fixed(time.unwrap_or(none))
+            }
             Extent::Free(bounds) => {
-                let (nodes, joined) = self.bounds(cx, bounds, what);
-                if let Some(time) = joined.and_then(|joined| self.as_time(joined.at(bounds.span), what)) {
-                    self.note_clock(&time);
-                }
-                if let Some(upper) = nodes.upper {
-                    self.positive(upper, bounds.upper.as_ref().map_or(span, |e| e.span));
-                }
-                Duration::Free(nodes)
+                let [lower, upper] = self.of_each_member(cx, &mut |this, cx| {
+                    let (nodes, joined) = this.bounds(cx, bounds, what);
+                    if let Some(time) = joined.and_then(|joined| this.as_time(joined.at(bounds.span), what)) {
+                        this.note_clock(&time);
+                    }
+                    if let Some(upper) = nodes.upper {
+                        this.positive(upper, bounds.upper.as_ref().map_or(span, |e| e.span));
+                    }
+                    [nodes.lower, nodes.upper]
+                });
+                Duration::Free(Bounds { lower, upper })
             }
         }
     }
@@ -339,15 +356,21 @@ impl<'a> Elaborator<'a> {
     fn start(&mut self, cx: &Context<'a>, extent: &'a Extent) -> Start {
         match extent {
             Extent::Fixed(expr) => {
-                let value = self.bound(cx, expr, "a start time");
-                Start::Fixed(value.and_then(|value| self.as_time(value, "a start time")).map(|value| value.node))
+                let [time] = self.of_each_member(cx, &mut |this, cx| {
+                    let value = this.bound(cx, expr, "a start time");
+                    [value.and_then(|value| this.as_time(value, "a start time")).map(|value| value.node)]
+                });
+                Start::Fixed(time)
             }
             Extent::Free(bounds) => {
-                let (nodes, joined) = self.bounds(cx, bounds, "a start time");
-                if let Some(joined) = joined {
-                    self.as_time(joined.at(bounds.span), "a start time");
-                }
-                Start::Free(nodes)
+                let [lower, upper] = self.of_each_member(cx, &mut |this, cx| {
+                    let (nodes, joined) = this.bounds(cx, bounds, "a start time");
+                    if let Some(joined) = joined {
+                        this.as_time(joined.at(bounds.span), "a start time");
+                    }
+                    [nodes.lower, nodes.upper]
+                });
+                Start::Free(Bounds { lower, upper })
             }
         }
     }

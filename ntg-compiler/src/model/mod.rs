@@ -29,6 +29,7 @@ mod element;
 mod element_text;
 mod epigraph;
 mod expression;
+mod families;
 mod files;
 mod function_habits;
 mod functions;

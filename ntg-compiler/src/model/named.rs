@@ -6,6 +6,8 @@
 //! of an agent are one function of its time, shown in one unit.
 //! Finds: definitions of one name that are different kinds of quantities in two phases.
 
+use std::rc::Rc;
+
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::kinds::Kind;
@@ -21,6 +23,9 @@ use ntg_structure::Unit;
 
 /// The most elements of a vector written one by one that results show: a formula for each is part of every one.
 const MOST_SHOWN: i64 = 32;
+
+/// A context, the loop over the members of a definition that is a family, and its value there.
+type InContext<'a> = (Context<'a>, Option<Loop>, Value);
 
 /// How the first definition of a name in an agent is shown: the others of that name follow it.
 pub(super) struct Shown {
@@ -106,12 +111,10 @@ impl<'a> Elaborator<'a> {
         });
         let template = own.is_some() && self.agents[agent].scope != scope && self.has(self.agents[agent].scope, name);
         let shared = others || template;
-        let mut along: Vec<(Context<'a>, Option<Loop>, Value)> = Vec::new();
+        let mut along: Vec<InContext<'a>> = Vec::new();
         for phase in phases {
             let cx = self.phase_context(phase, Allow::All, Point::Path);
-            if let Some((cx, over, value)) = self.in_context(&cx, definition) {
-                along.push((cx, over, value));
-            }
+            along.extend(self.in_contexts(&cx, definition));
         }
         if along.is_empty() {
             return; // A helper that is not shown, or told of.
@@ -127,12 +130,13 @@ impl<'a> Elaborator<'a> {
                 Some(phase) => self.phase_context(phase, Allow::All, Point::Nowhere),
                 None => self.agent_context(agent, Allow::All),
             };
-            if let Some((cx, over, value)) = self.in_context(&outer, definition)
-                && value.is_sound()
-                // What depends on the member of a family of phases is no single number.
-                && (!in_family || along.iter().all(|(_, _, member)| member.node == value.node))
-            {
-                self.push_named(definition, (agent, &cx, over), &value, shown);
+            let members = self.in_contexts(&outer, definition);
+            // What depends on the member of a family of phases is no single number.
+            let is_single = |value: &Value| !in_family || along.iter().all(|(_, _, member)| member.node == value.node);
+            if !members.is_empty() && members.iter().all(|(_, _, value)| value.is_sound() && is_single(value)) {
+                for (cx, over, value) in members {
+                    self.push_named(definition, (agent, &cx, over), &value, shown);
+                }
                 return;
             }
         }
@@ -150,8 +154,36 @@ impl<'a> Elaborator<'a> {
         self.scopes[scope].names.contains_key(name)
     }
 
+    /// The value of a definition in a context; for parts of the families around it where an index must be known.
+    fn in_contexts(&mut self, cx: &Context<'a>, definition: usize) -> Vec<InContext<'a>> {
+        let found = self.in_context(&cx.parting(), definition);
+        let flaw = found.as_ref().and_then(|(_, _, value)| value.flaw.clone());
+        let open = self.opened.or(match flaw {
+            Some(Flaw::Open(open)) => Some(open),
+            _ => None,
+        });
+        let Some(open) = open.filter(|open| cx.loops.iter().any(|over| over.index == open.index)) else {
+            self.settle_open();
+            return found.into_iter().collect();
+        };
+        self.opened = None;
+        let mut all = vec![];
+        for (inner, part) in self.parted(cx, &open) {
+            let at = cx.loops.iter().position(|over| over.index == open.index).unwrap_or_default();
+            let is_one = inner.loops.len() < cx.loops.len();
+            for (mut inner, over, value) in self.in_contexts(&inner, definition) {
+                if is_one {
+                    // Results count members by the loops around, those of one member too.
+                    Rc::make_mut(&mut inner.loops).insert(at, part.clone());
+                }
+                all.push((inner, over, value));
+            }
+        }
+        all
+    }
+
     /// The value of a definition, for its own index where it is a family.
-    fn in_context(&mut self, cx: &Context<'a>, definition: usize) -> Option<(Context<'a>, Option<Loop>, Value)> {
+    fn in_context(&mut self, cx: &Context<'a>, definition: usize) -> Option<InContext<'a>> {
         let span = self.definitions[definition].name.span;
         self.event = None;
         let axes = self.checked_axes(cx, definition)?;
@@ -182,7 +214,6 @@ impl<'a> Elaborator<'a> {
                     let value = this.definition(cx, definition, place.collect(), span);
                     this.settle(value, super::settle::Use::Point);
                 });
-                self.settle_open();
                 None
             }
         }

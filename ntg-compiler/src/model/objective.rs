@@ -7,14 +7,15 @@
 use ntg_structure::Unit;
 
 use super::elaborator::Elaborator;
-use super::problem::Term;
+use super::problem::{Loop, Term};
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
 use super::units;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::Fold;
 use crate::source::Span;
-use crate::syntax::ast::{self, BlockPlace, ItemKind, Sense};
+use crate::syntax::ast::{self, BlockPlace, Expr, ItemKind, Sense};
 
 impl<'a> Elaborator<'a> {
     /// All terms, scope by scope.
@@ -77,9 +78,7 @@ impl<'a> Elaborator<'a> {
             (None, Some(agent)) => self.agent_context(agent, Allow::All),
             (None, None) => Context::of(scope, Allow::All),
         };
-        let mut value = self.usable(&cx, &objective.value, Use::Objective)?;
-        self.event = None;
-        self.settle_open();
+        let (mut value, loops) = self.term_of_families(&cx, &objective.value)?;
         if let Some(unit) = &objective.unit {
             let what = objective.name.as_ref().map_or("this term".to_owned(), |name| format!("`{}`", name.text));
             value = self.declared_unit(value, unit, &what);
@@ -100,7 +99,34 @@ impl<'a> Elaborator<'a> {
             Some(agent) => self.path_name(agent, phase, &name.text),
             None => name.text.clone(),
         });
-        self.problem.objective.push(Term { name, span, unit, loops: (*cx.loops).clone(), body, written: None });
+        self.problem.objective.push(Term { name, span, unit, loops, body, written: None });
         Some(value.at(objective.value.span))
+    }
+
+    /// The value of a term with the loops under which it adds up; where the members of a family must be parted, the sum
+    /// over its parts.
+    fn term_of_families(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Option<(Value, Vec<Loop>)> {
+        let cx = &cx.parting();
+        let value = self.usable(cx, expr, Use::Objective);
+        self.event = None;
+        let Some(open) = self.opened.filter(|open| cx.loops.iter().any(|over| over.index == open.index)) else {
+            self.settle_open();
+            return value.map(|value| (value, (*cx.loops).clone()));
+        };
+        self.opened = None;
+        let mut total: Option<Value> = None;
+        for (inner, _) in self.parted(cx, &open) {
+            let (value, loops) = self.term_of_families(&inner, expr)?;
+            let node = loops.iter().rev().fold(value.node, |node, over| self.folded(Fold::Sum, over, node));
+            let value = Value { node, ..value };
+            total = Some(match total {
+                None => value,
+                Some(so_far) => {
+                    let node = self.problem.dag.add(so_far.node, value.node);
+                    self.alike("add", so_far, &value, node)
+                }
+            });
+        }
+        total.map(|total| (total, vec![]))
     }
 }

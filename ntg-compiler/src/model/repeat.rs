@@ -12,7 +12,7 @@ use super::value::OpenIndex;
 use crate::diagnostic::{Code, Diagnostic};
 
 /// How much there is of everything that a loop may push.
-struct Mark {
+pub(super) struct Mark {
     constraints: usize,
     guesses: usize,
     named: usize,
@@ -27,7 +27,7 @@ struct Mark {
 const MOST_MEMBERS: i64 = 20_000;
 
 impl<'a> Elaborator<'a> {
-    fn mark(&self) -> Mark {
+    pub(super) fn mark(&self) -> Mark {
         let problem = &self.problem;
         Mark {
             constraints: problem.constraints.len(),
@@ -41,7 +41,7 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    fn take_back(&mut self, mark: &Mark) {
+    pub(super) fn take_back(&mut self, mark: &Mark) {
         self.problem.constraints.truncate(mark.constraints);
         self.problem.guesses.truncate(mark.guesses);
         self.problem.named.truncate(mark.named);

@@ -175,6 +175,8 @@ pub(super) struct Context<'a> {
     pub(super) locals: Option<Rc<Local<'a>>>,
     /// The members around the expression that are made one by one.
     pub(super) members: Rc<Vec<i64>>,
+    /// Whether what an index of a family of phases or agents decides is chosen now, and the family parted there.
+    pub(super) parts_families: bool,
     /// The library whose text it is: its names are looked up there, and nowhere else.
     pub(super) library: Option<ScopeId>,
 }
@@ -192,6 +194,7 @@ impl<'a> Context<'a> {
             loops: Rc::default(),
             locals: None,
             members: Rc::default(),
+            parts_families: false,
             library: None,
         }
     }

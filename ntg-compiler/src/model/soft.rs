@@ -30,6 +30,8 @@ const LINE: usize = 2;
 pub(super) struct Slack {
     /// Where the statement stands, in which phase (none: a variable), and the members that are made one by one.
     key: (Span, Option<usize>, Vec<i64>),
+    /// Where the loops over the other members begin: parts of a range have slacks of their own.
+    firsts: Vec<Option<i64>>,
     /// Index into the outputs of the phase, or into the variables.
     place: usize,
     name: String,
@@ -63,13 +65,12 @@ impl<'a> Elaborator<'a> {
             Domain::Path(at, _) => Some(at.phase),
             _ => None,
         };
-        let outer = match phase {
-            Some(phase) if cx.phase.as_ref().is_none_or(|form| form.as_number().is_none()) => {
-                self.phase_context(phase, Allow::All, Point::Path).loops.len()
-            }
-            Some(phase) => self.agent_context(self.phases[phase].agent, Allow::All).loops.len(),
-            None => 0,
+        // The members of a phase each have the output of their own.
+        let is_family = |over: &&Loop| {
+            let forms = cx.agent.iter().chain(&cx.phase);
+            forms.flat_map(|form| &form.terms).any(|(index, _)| *index == over.index)
         };
+        let outer = if phase.is_some() { cx.loops.iter().take_while(is_family).count() } else { 0 };
         let Some(members) = self.members_missed(&cx.loops[outer.min(cx.loops.len())..], constraint.span) else {
             return;
         };
@@ -78,16 +79,17 @@ impl<'a> Elaborator<'a> {
             indices.extend(cx.phase.iter().chain(&cx.agent).filter_map(Form::as_number));
         }
         let key = (constraint.span, phase, indices);
-        let place = match self.slacks.iter().find(|slack| slack.key == key) {
+        let firsts: Vec<Option<i64>> = members.loops.iter().map(|over| over.first.as_number()).collect();
+        let place = match self.slacks.iter().find(|slack| slack.key == key && slack.firsts == firsts) {
             Some(slack) => slack.place,
             None => {
                 let Some(prices) = self.prices(cx, softness, dimension, phase.is_some()) else { return };
-                let name = self.slack_name(constraint, &key);
+                let name = self.slack_name(constraint, &key, &firsts);
                 let place = match phase {
                     Some(phase) => self.missed_along((phase, dimension, unit), &members, (&name, constraint), &prices),
                     None => self.missed_once(cx, (site, unit), &members, (&name, constraint), &prices),
                 };
-                self.slacks.push(Slack { key, place, name });
+                self.slacks.push(Slack { key, firsts, place, name });
                 place
             }
         };
@@ -148,8 +150,13 @@ impl<'a> Elaborator<'a> {
     }
 
     /// A name for what is missed that nothing else has; phases of an agent share it.
-    fn slack_name(&self, constraint: &ast::Constraint, (span, _, members): &(Span, Option<usize>, Vec<i64>)) -> String {
-        let same = |slack: &&Slack| slack.key.0 == *span && slack.key.2 == *members;
+    fn slack_name(
+        &self,
+        constraint: &ast::Constraint,
+        (span, _, members): &(Span, Option<usize>, Vec<i64>),
+        firsts: &[Option<i64>],
+    ) -> String {
+        let same = |slack: &&Slack| slack.key.0 == *span && slack.key.2 == *members && slack.firsts == firsts;
         if let Some(known) = self.slacks.iter().find(same) {
             return known.name.clone();
         }

@@ -68,6 +68,20 @@ fn the_branch_that_is_not_chosen_is_not_looked_at() {
 }
 
 #[test]
+fn a_member_of_phases_or_agents_is_held_against_the_branch_that_it_takes() {
+    let of = |element: &str| {
+        findings(&format!(
+            "problem P {{ const n = 3; param h[n] = 1; output z: spline(order = 5, intervals = 2); \
+             phase leg[i in 1 .. n] after leg[i - 1] {{ duration = 1; initial {{ z == {element}; }} }} \
+             minimize integral(der(z, 2)^2); }}"
+        ))
+    };
+    assert_eq!(of("if i == 1 { 0 } else { h[i - 1] }"), "");
+    let told = of("if i <= 2 { 0 } else { h[i + 1] }");
+    assert!(told.contains("error[E028]: `i + 1` is outside the indices of `h`"), "{told}");
+}
+
+#[test]
 fn families_need_their_members_before_them() {
     same(
         "let w[i in 1 .. 3, 2] [m] = if i == 1 { (r[1], r[2]) } else { 2 * w[i - 1] };  trajectory { w[3] <= 1 [m]; }",

@@ -122,3 +122,14 @@ fn soft_stays_a_name_without_parenthesis_and_colon() {
     let text = "fn soft(a) = a * 2; trajectory { soft: p <= 2 [m];  soft(p) <= 3 [m];  soft(w): soft: p >= -3 [m]; }";
     assert_eq!(findings(&format!("problem P {{ {CART} {text} initial {{ p == 0; }} }}")), "");
 }
+
+#[test]
+fn members_before_and_behind_a_condition_on_their_index_are_missed_each_by_itself() {
+    let program = program(
+        "problem P { duration T = 1; output x[1 .. 5]: spline(order = 4, intervals = 2); minimize integral(x[1]^2); \
+         final { for i in 1 .. 5 { soft(1): low: x[i] >= if i == 3 { 1 } else { 2 }; } } }",
+    );
+    let members =
+        |variable: &ntg_structure::Variable| variable.family.map_or(1, |family| family.last - family.first + 1);
+    assert_eq!(program.structure.variables.iter().map(members).sum::<i64>(), 5);
+}
