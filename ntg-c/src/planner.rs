@@ -221,8 +221,7 @@ fn put(structure: &mut Structure, values: &[f64]) -> Result<(), Failure> {
     for parameter in &structure.parameters {
         let (own, others) = rest.split_at(parameter.value.len());
         if let Some(i) = own.iter().position(|value| !(value * parameter.unit.factor).is_finite()) {
-            let index = if parameter.array { format!("[{}]", i + 1) } else { String::new() };
-            let message = format!("parameter `{}{index}` is {}, which is no finite number", parameter.name, own[i]);
+            let message = format!("parameter `{}` is {}, which is no finite number", parameter.element(i), own[i]);
             return Err(Failure::new(Code::BadParameter, message));
         }
         rest = others;

@@ -54,10 +54,13 @@ impl<'a> Collector<'a> {
         let mut parameters = vec![];
         for parameter in &solution.structure().parameters {
             parameters.push(out.numbers.len());
-            out.numbers.extend(parameter.value.iter().enumerate().map(|(i, value)| Number {
-                name: if parameter.array { format!("{}[{}]", parameter.name, i + 1) } else { parameter.name.clone() },
-                value: *value,
-            }));
+            out.numbers.extend(
+                parameter
+                    .value
+                    .iter()
+                    .enumerate()
+                    .map(|(i, value)| Number { name: parameter.element(i), value: *value }),
+            );
         }
         let durations = out.numbers.len();
         for phase in solution.phases() {

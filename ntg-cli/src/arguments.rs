@@ -181,9 +181,9 @@ pub(crate) struct Solve {
     /// and solve again, until all is proved.
     #[arg(long, conflicts_with_all = ["count", "refine"])]
     pub(crate) guarantee: bool,
-    /// Differentiate the solution by all parameters, or by some: `--sensitivity=v_max,start[2]`.
-    #[arg(long, value_name = "PARAMETERS", num_args = 0..=1, require_equals = true, value_delimiter = ',',
-        default_missing_value = "", conflicts_with = "guarantee")]
+    /// Differentiate the solution by all parameters, or by some: `--sensitivity=v_max,start[2],B[1,2]`.
+    #[arg(long, value_name = "PARAMETERS", num_args = 0..=1, require_equals = true, default_missing_value = "",
+        conflicts_with = "guarantee")]
     pub(crate) sensitivity: Option<Vec<String>>,
     /// What becomes of a solution that violates constraints between the points of the transcription.
     #[arg(long, value_enum, default_value_t = Between::Report)]

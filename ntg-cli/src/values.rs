@@ -31,7 +31,7 @@ impl Assignments {
         self.parameters.iter().try_for_each(|assignment| self.put_one(problem, assignment))
     }
 
-    /// Sets a parameter, all members of an array (`a=1,2,3`), or one member (`a[2]=1`).
+    /// Sets a parameter, all members of an array (`a=1,2,3`), or one member (`a[2]=1`, of a matrix `A[2,1]=1`).
     pub(crate) fn put_one(&self, problem: &mut Interpreted, assignment: &str) -> Result<(), String> {
         let say = |message: String| format!("--set {assignment}: {message}");
         let (target, text) = assignment

@@ -147,3 +147,37 @@ fn a_table_of_numbers_is_no_spec() {
         assert!(err.contains("`data/run.csv` is a table of numbers; name a spec"), "{command:?}: {err}");
     }
 }
+
+#[test]
+fn elements_of_a_matrix_are_set_by_row_and_column() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let spec = "problem M { param B[2, 3] = ((1, 2, 3), (4, 5, 6)) [m]; param c[2] = (1, 2); duration T = 1 [s]; output x: spline(order = 2, intervals = 1); \
+                variable v[6] [m]; minimize sum(i in 1 .. 6, v[i]^2); initial { x == 0; } final { x == 1; } \
+                temporal { for i in 1 .. 2 { for j in 1 .. 3 { v[3 * i + j - 3] == B[i, j] * c[1]; } } } }";
+    std::fs::write(folder.path().join("m.ntg"), spec).expect("written");
+    let run = |arguments: &[&str], status: i32| said(&ntg(folder.path(), arguments), status);
+    let (out, _) = run(&["solve", "m.ntg", "--set", "B[2,1]=0.3 km", "--set", "B[1, 3]=7", "--format", "json"], 0);
+    let found: Value = serde_json::from_str(&out).expect("JSON");
+    let value = |k: usize| found["variables"][format!("v[{k}]")]["value"].as_f64().expect("a number");
+    for (k, wanted) in [1.0, 2.0, 7.0, 300.0, 5.0, 6.0].into_iter().enumerate() {
+        assert!((value(k + 1) - wanted).abs() < 1e-6, "{k}: {} {found}", value(k + 1));
+    }
+    run(&["sweep", "m.ntg", "--set", "B[2,2]=1:3:3", "-o", "rows.csv"], 0);
+    let rows = std::fs::read_to_string(folder.path().join("rows.csv")).expect("written");
+    assert!(rows.lines().next().is_some_and(|head| head.contains("\"B[2,2]\"")), "{rows}");
+    let (out, _) = run(&["solve", "m.ntg", "--sensitivity=B[2,3]"], 0);
+    assert!(out.contains("B[2, 3]"), "{out}");
+    let wrong = [
+        ("B[1]=1", "--set B[1]=1: `B` is a matrix and takes two indices, a row and a column: `B[1, 1]` to `B[2, 3]`"),
+        ("B[3,1]=1", "--set B[3,1]=1: there is no `B[3, 1]`; the members are `B[1, 1]` to `B[2, 3]`"),
+        ("B[1,4]=1", "--set B[1,4]=1: there is no `B[1, 4]`; the members are `B[1, 1]` to `B[2, 3]`"),
+        ("c[1,1]=1", "--set c[1,1]=1: `c` takes one index: `c[1]` to `c[2]`"),
+        ("B[1;1]=1", "an index is a whole number in brackets, as in `B[2]`, of a matrix `B[2, 1]`"),
+    ];
+    for (set, words) in wrong {
+        let (_, err) = run(&["solve", "m.ntg", "--set", set], 2);
+        assert!(err.contains(words), "{set}: {err}");
+    }
+    let (_, err) = run(&["sweep", "m.ntg", "--set", "B[1]=1:3:3", "-o", "no.csv"], 2);
+    assert!(err.contains("`B` is a matrix and takes two indices"), "{err}");
+}

@@ -3,6 +3,7 @@
 use ntg_structure::{Duration, Parameter, Structure};
 
 use crate::Interpreted;
+use crate::text::written;
 
 /// Why a parameter could not be set.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +16,9 @@ pub enum SetError {
     Fixed(String, Vec<String>),
     /// An array got the wrong number of values: name, wanted, got.
     Count(String, usize, usize),
-    /// An index outside the array, or an index for a parameter that is no array: name, index, members.
-    Index(String, i64, Option<usize>),
+    /// Indices outside the array, as many as it has or not, or of a parameter that is no array: the parameter's name, the
+    /// indices, the first and the last member as they are written, if there are any.
+    Index(String, Vec<i64>, Option<(String, String)>),
     /// A value that is not finite.
     NotFinite(String),
 }
@@ -46,11 +48,21 @@ impl std::fmt::Display for SetError {
                     (if *wanted == 1 { "value" } else { "values" }, if *got == 1 { "is" } else { "are" });
                 write!(f, "`{name}` holds {wanted} {values}, but {got} {are} given")
             }
-            Self::Index(name, index, Some(members)) => {
-                write!(f, "there is no `{name}[{index}]`; the members are `{name}[1]` to `{name}[{members}]`")
+            Self::Index(name, indices, Some((first, last))) => {
+                let (own, takes) = (written(indices), first.matches(',').count() + 1);
+                match takes == indices.len() {
+                    true => write!(f, "there is no `{name}{own}`; the members are `{first}` to `{last}`"),
+                    false if takes == 2 => {
+                        write!(
+                            f,
+                            "`{name}` is a matrix and takes two indices, a row and a column: `{first}` to `{last}`"
+                        )
+                    }
+                    false => write!(f, "`{name}` takes one index: `{first}` to `{last}`"),
+                }
             }
-            Self::Index(name, index, None) => {
-                write!(f, "there is no `{name}[{index}]`: `{name}` is one number, not an array")
+            Self::Index(name, indices, None) => {
+                write!(f, "there is no `{name}{}`: `{name}` is one number, not an array", written(indices))
             }
             Self::NotFinite(name) => write!(f, "`{name}` must be a finite number"),
         }
@@ -69,18 +81,18 @@ pub struct Place {
 }
 
 impl Interpreted {
-    /// Where the number stands that a name (`v_max`) or a member (`start_x[2]`) is.
+    /// Where the number stands that a name (`v_max`) or a member (`start_x[2]`, of a matrix `A[2, 1]`) is.
     ///
     /// # Errors
     /// Unknown name, an index outside the array; an array without an index.
-    pub fn place(&self, name: &str, index: Option<i64>) -> Result<Place, SetError> {
+    pub fn place(&self, name: &str, indices: &[i64]) -> Result<Place, SetError> {
         let parameter = self.find(name)?;
         let declared = &self.structure.parameters[parameter];
         let factor = declared.unit.factor;
-        let member = match index {
-            None if declared.value.len() == 1 => 0,
-            None => return Err(SetError::Count(name.to_owned(), declared.value.len(), 1)),
-            Some(index) => member(declared, index)?,
+        let member = match indices {
+            [] if declared.value.len() == 1 => 0,
+            [] => return Err(SetError::Count(name.to_owned(), declared.value.len(), 1)),
+            indices => member(declared, indices)?,
         };
         Ok(Place { parameter, member, factor })
     }
@@ -115,17 +127,17 @@ impl Interpreted {
         Ok(())
     }
 
-    /// Sets one member of an array parameter (counted from 1), in SI units.
+    /// Sets one member of an array parameter by its indices (counted from 1), in SI units.
     ///
     /// # Errors
     /// Unknown name, an index outside the array, a value that is not finite.
-    pub fn set_member(&mut self, name: &str, index: i64, value: f64) -> Result<(), SetError> {
+    pub fn set_member(&mut self, name: &str, indices: &[i64], value: f64) -> Result<(), SetError> {
         let parameter = self.find(name)?;
         let parameter = &mut self.structure.parameters[parameter];
         if !value.is_finite() {
             return Err(SetError::NotFinite(name.to_owned()));
         }
-        let member = member(parameter, index)?;
+        let member = member(parameter, indices)?;
         parameter.value[member] = value;
         Ok(())
     }
@@ -163,17 +175,52 @@ fn other(structure: &Structure, name: &str) -> Option<Other> {
     }
 }
 
-/// Which number of an array an index from 1 is.
-fn member(parameter: &Parameter, index: i64) -> Result<usize, SetError> {
-    let members = parameter.array.then_some(parameter.value.len());
-    let member = usize::try_from(index).ok().and_then(|index| index.checked_sub(1));
-    let member = member.filter(|member| members.is_some_and(|members| *member < members));
-    member.ok_or_else(|| SetError::Index(parameter.name.clone(), index, members))
+/// Which number of an array is meant by its indices, counted from 1.
+fn member(parameter: &Parameter, indices: &[i64]) -> Result<usize, SetError> {
+    let count = parameter.value.len();
+    let at = |index: i64| usize::try_from(index).ok().and_then(|index| index.checked_sub(1));
+    let member = match (indices, parameter.grid) {
+        (&[index], None) => at(index),
+        (&[row, column], Some(grid)) => {
+            let columns = usize::try_from(grid.columns).unwrap_or(0);
+            let place = at(row).zip(at(column).filter(|column| *column < columns));
+            place.and_then(|(row, column)| row.checked_mul(columns)?.checked_add(column))
+        }
+        _ => None,
+    };
+    member.filter(|member| parameter.array && *member < count).ok_or_else(|| {
+        let ends = parameter.array.then(|| (parameter.element(0), parameter.element(count.saturating_sub(1))));
+        SetError::Index(parameter.name.clone(), indices.to_vec(), ends)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn elements_of_a_matrix_have_two_indices() {
+        let matrix = Parameter {
+            name: "B".into(),
+            doc: String::new(),
+            unit: ntg_structure::Unit::default(),
+            array: true,
+            grid: Some(ntg_structure::Grid { row: 1, column: 1, columns: 3 }),
+            value: vec![0.0; 6],
+        };
+        assert_eq!([[1, 1], [1, 3], [2, 1], [2, 3]].map(|place| member(&matrix, &place)), [Ok(0), Ok(2), Ok(3), Ok(5)]);
+        assert_eq!([0, 2, 5].map(|k| matrix.element(k)), ["B[1, 1]", "B[1, 3]", "B[2, 3]"]);
+        for outside in [[0, 1], [1, 0], [1, 4], [3, 1], [i64::MAX, 3], [-1, -1]] {
+            let words = member(&matrix, &outside).map_err(|error| error.to_string());
+            let [row, column] = outside;
+            assert_eq!(words, Err(format!("there is no `B[{row}, {column}]`; the members are `B[1, 1]` to `B[2, 3]`")));
+        }
+        for count in [&[1][..], &[1, 1, 1]] {
+            let words = member(&matrix, count).map_err(|error| error.to_string());
+            let wanted = "`B` is a matrix and takes two indices, a row and a column: `B[1, 1]` to `B[2, 3]`";
+            assert_eq!(words, Err(wanted.to_owned()));
+        }
+    }
 
     #[test]
     fn an_index_that_is_none_is_told_what_there_is() {
@@ -182,13 +229,14 @@ mod tests {
             doc: String::new(),
             unit: ntg_structure::Unit::default(),
             array,
+            grid: None,
             value: vec![1.0, 2.0],
         };
-        assert_eq!([1, 2].map(|index| member(&of(true), index)), [Ok(0), Ok(1)]);
+        assert_eq!([1, 2].map(|index| member(&of(true), &[index])), [Ok(0), Ok(1)]);
         for index in [i64::MIN, -1, 0, 3, i64::MAX] {
-            let words = member(&of(true), index).map_err(|error| error.to_string());
+            let words = member(&of(true), &[index]).map_err(|error| error.to_string());
             assert_eq!(words, Err(format!("there is no `a[{index}]`; the members are `a[1]` to `a[2]`")));
-            let words = member(&of(false), index).map_err(|error| error.to_string());
+            let words = member(&of(false), &[index]).map_err(|error| error.to_string());
             assert_eq!(words, Err(format!("there is no `a[{index}]`: `a` is one number, not an array")));
         }
     }

@@ -7,36 +7,45 @@ use ntg_structure::Unit;
 use crate::Interpreted;
 
 impl Interpreted {
-    /// Sets a parameter, all members of an array (`a`, `1, 2, 3`), or one member (`a[2]`, `1`); numbers without a
+    /// Sets a parameter, all members of an array (`a`, `1, 2, 3`), or one member (`a[2]`, `1`; of a matrix `A[1, 2]`); numbers without a
     /// unit are in the declared one.
     ///
     /// # Errors
     /// In words: unknown names, values that cannot be read, units that do not fit.
     pub fn assign(&mut self, target_text: &str, text: &str) -> Result<(), String> {
-        let (name, index) = target(target_text.trim())?;
+        let (name, indices) = target(target_text.trim())?;
         let unit = self.structure.parameters.iter().find(|p| p.name == name).map(|p| p.unit.clone());
         let values = quantity(text, &unit.unwrap_or_default())?;
-        let done = match (index, values.as_slice()) {
-            (None, values) => self.set(name, values),
-            (Some(index), [value]) => self.set_member(name, index, *value),
-            (Some(index), values) => {
-                return Err(format!("`{name}[{index}]` takes one value, but {} are given", values.len()));
+        let done = match (indices.as_slice(), values.as_slice()) {
+            ([], values) => self.set(name, values),
+            (indices, [value]) => self.set_member(name, indices, *value),
+            (indices, values) => {
+                return Err(format!("`{name}{}` takes one value, but {} are given", written(indices), values.len()));
             }
         };
         done.map_err(|error| error.to_string())
     }
 }
 
-/// `name` or `name[index]`.
+/// `name`, `name[index]` or `name[row, column]`: the name and its indices.
 ///
 /// # Errors
 /// In words: an index that is no whole number in brackets.
-pub fn target(target: &str) -> Result<(&str, Option<i64>), String> {
-    let Some((name, rest)) = target.split_once('[') else { return Ok((target, None)) };
-    let index = rest.strip_suffix(']').and_then(|i| i.trim().parse().ok());
-    let index =
-        index.ok_or_else(|| format!("`{target}`: the index is a whole number in brackets, as in `{name}[2]`"))?;
-    Ok((name.trim(), Some(index)))
+pub fn target(target: &str) -> Result<(&str, Vec<i64>), String> {
+    let Some((name, rest)) = target.split_once('[') else { return Ok((target, vec![])) };
+    let indices = rest.strip_suffix(']').map(|inside| inside.split(',').map(|i| i.trim().parse().ok()).collect());
+    let indices: Option<Vec<i64>> = indices.flatten();
+    let message = || {
+        let name = name.trim();
+        format!("`{target}`: an index is a whole number in brackets, as in `{name}[2]`, of a matrix `{name}[2, 1]`")
+    };
+    Ok((name.trim(), indices.ok_or_else(message)?))
+}
+
+/// Indices as the language writes them: `[2]`, `[2, 1]`.
+pub(crate) fn written(indices: &[i64]) -> String {
+    let numbers: Vec<String> = indices.iter().map(i64::to_string).collect();
+    format!("[{}]", numbers.join(", "))
 }
 
 /// Values in SI units; numbers without a unit are in `unit`.

@@ -140,8 +140,8 @@ fn disagreements(problem: Interpreted, what: Compared) -> Vec<String> {
     let (problem, active) = (solver.problem.clone(), pushing(&report));
     let mut found = vec![];
     for (k, parameter) in sensitivity.parameters().iter().enumerate() {
-        let (name, index) = ntg_interp::target(&parameter.name).expect("a name of the structure");
-        let place = problem.place(name, index).expect("a parameter of the problem");
+        let (name, indices) = ntg_interp::target(&parameter.name).expect("a name of the structure");
+        let place = problem.place(name, &indices).expect("a parameter of the problem");
         let (mut errors, mut compared) = (vec![f64::INFINITY; numbers.len()], false);
         for step in STEPS {
             if errors.iter().all(|error| *error <= MOST) {
@@ -370,7 +370,7 @@ fn what_is_kept_between_solutions_changes_no_bit() {
         let mut differentiator = Differentiator::new(&problem);
         let coarse = solved(&problem);
         let parameter = coarse.solution.structure().parameters[0].clone();
-        let place = problem.place(&parameter.name, parameter.array.then_some(1)).expect("a parameter");
+        let place = problem.place(&parameter.name, if parameter.array { &[1] } else { &[] }).expect("a parameter");
         for change in [1.0, 1.001, 0.999] {
             problem.put(place, change * parameter.value[0] / parameter.unit.factor).expect("a finite number");
             let report = solved(&problem);
@@ -398,7 +398,7 @@ fn predictions_miss_by_a_square_and_are_warm_starts() {
     let problem = shipped("low_observable");
     let report = solved(&problem);
     let by = report.sensitivity(&problem).unwrap_or_else(|error| panic!("{error}"));
-    let place = problem.place("x_start", None).expect("a parameter");
+    let place = problem.place("x_start", &[]).expect("a parameter");
     let missed = |change: f64| {
         let mut moved = problem.clone();
         moved.put(place, -100.0 + change).expect("a finite number");

@@ -166,7 +166,7 @@ fn set(problem: &mut Interpreted, name: &str, value: &Bound<'_, PyAny>) -> Resul
         return Err(format!("{bad} is no finite number"));
     }
     // One number, the usual case, needs no parser.
-    let place = ntg_interp::target(name).ok().and_then(|(base, index)| problem.place(base, index).ok());
+    let place = ntg_interp::target(name).ok().and_then(|(base, indices)| problem.place(base, &indices).ok());
     match (place, &numbers[..]) {
         (Some(place), [number]) => problem.put(place, *number).map_err(|error| error.to_string()),
         _ => problem.assign(name, &text.join(", ")),

@@ -177,8 +177,8 @@ fn given_blocks(study: &Study, lengths: &[usize]) -> Vec<Block> {
 }
 
 fn place(problem: &Interpreted, name: &str) -> Result<Place, String> {
-    let (base, index) = ntg_interp::target(name)?;
-    problem.place(base, index).map_err(|error| error.to_string())
+    let (base, indices) = ntg_interp::target(name)?;
+    problem.place(base, &indices).map_err(|error| error.to_string())
 }
 
 fn put(problem: &mut Interpreted, places: &[Place], set: &[f64]) -> Result<(), String> {

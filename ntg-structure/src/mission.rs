@@ -1,6 +1,6 @@
 //! Parameters, tables, variables, agents, phases, outputs.
 
-use crate::{Call, Family, Instant, Place, Unit};
+use crate::{Call, Family, Grid, Instant, Place, Unit};
 
 /// A value that a program may change without recompiling.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,9 +13,26 @@ pub struct Parameter {
     pub unit: Unit,
     /// `true` for an array (indexed from 1), even of one member.
     pub array: bool,
+    /// The indices of a matrix, whose elements are the members row by row.
+    pub grid: Option<Grid>,
     /// Its value in SI units, one number or the members of the array: the spec's default, or
     /// what the program has set.
     pub value: Vec<f64>,
+}
+
+impl Parameter {
+    /// The members of an array as a family, counted from 1.
+    pub fn family(&self) -> Option<Family> {
+        let last = i64::try_from(self.value.len()).unwrap_or(i64::MAX);
+        self.array.then(|| Family { grid: self.grid, ..Family::of(1, last) })
+    }
+
+    /// What one of its numbers, counted from 0, is called: `v_max`, `start[2]`, of a matrix `A[2, 1]`.
+    pub fn element(&self, member: usize) -> String {
+        let index =
+            self.family().map(|family| family.index(i64::try_from(member).unwrap_or(i64::MAX).saturating_add(1)));
+        format!("{}{}", self.name, index.unwrap_or_default())
+    }
 }
 
 /// How an axis of a table goes on.

@@ -16,11 +16,21 @@ pub(super) fn differentiated(
     report: &Report,
     problem: &Interpreted,
 ) -> Option<Result<Sensitivity, SensitivityError>> {
-    let names: Vec<&str> = wanted?.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+    let names: Vec<&str> = wanted?.iter().flat_map(|text| listed(text)).filter(|name| !name.is_empty()).collect();
     Some(match names.is_empty() || !report.has_solution() {
         true => report.sensitivity(problem),
         false => report.solution.sensitivity_by(problem, &names),
     })
+}
+
+/// The names of a list; the indices of an element of a matrix have commas too.
+fn listed(text: &str) -> impl Iterator<Item = &str> {
+    let mut is_inside = false;
+    let parts = text.split(move |c| {
+        is_inside = if is_inside { c != ']' } else { c == '[' };
+        c == ',' && !is_inside
+    });
+    parts.map(str::trim)
 }
 
 /// What is differentiated, with its derivatives: the objective, durations, variables, named numbers, and outputs at

@@ -79,8 +79,8 @@ fn product(rows: &[Vec<f64>], others: &[Vec<f64>]) -> Vec<Vec<f64>> {
 /// Where the number of a parameter or member stands.
 pub(super) fn place(problem: &Interpreted, name: &str) -> Result<Place, String> {
     parameter(problem, name)?;
-    let (base, index) = target(name)?;
-    problem.place(base, index).map_err(|error| error.to_string())
+    let (base, indices) = target(name)?;
+    problem.place(base, &indices).map_err(|error| error.to_string())
 }
 
 /// The parameter that a name or member belongs to.

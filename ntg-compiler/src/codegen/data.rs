@@ -114,7 +114,7 @@ structs! {
     Angle { phase, output, radian, turn }
     Named { name, doc, unit, family, agent, loops, domain, call }
     Output { name, doc, unit, family, vector, spline }
-    Parameter { name, doc, unit, array, value }
+    Parameter { name, doc, unit, array, grid, value }
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }
     Reduction { op, over, body }
     Shared { phase, output, until }

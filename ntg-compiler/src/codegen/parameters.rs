@@ -36,7 +36,7 @@ pub(super) fn fields(structure: &Structure, place_of: &dyn Fn(&str) -> Span) -> 
 
 /// A parameter that is a number or an array of numbers.
 fn number(i: usize, parameter: &Parameter, place_of: &dyn Fn(&str) -> Span) -> Field {
-    let Parameter { name, doc, unit, array, value } = parameter;
+    let Parameter { name, doc, unit, array, value, .. } = parameter;
     let ident = ident_at(name, place_of(name));
     let shown: Vec<f64> = value.iter().map(|si| in_unit(*si, unit)).collect();
     let literals: Vec<TokenStream> = shown.iter().map(|number| float(*number)).collect();

@@ -36,8 +36,14 @@ struct Numbers {
 impl<'a> Elaborator<'a> {
     /// All parameters; nothing but constants is needed for them.
     pub(super) fn parameters(&mut self) {
-        let blank =
-            Parameter { name: String::new(), doc: String::new(), unit: Unit::default(), array: false, value: vec![] };
+        let blank = Parameter {
+            name: String::new(),
+            doc: String::new(),
+            unit: Unit::default(),
+            array: false,
+            grid: None,
+            value: vec![],
+        };
         self.problem.parameters = vec![blank; self.parameters.len()];
         self.parameter_axes = vec![Vec::new(); self.parameters.len()];
         let mut done = vec![false; self.parameters.len()];
@@ -179,8 +185,10 @@ impl<'a> Elaborator<'a> {
         }
         let dimension = numbers.dimension.unwrap_or(Dimension::NONE);
         let unit = numbers.unit.map_or_else(|| units::si(&dimension), |unit| (*unit).clone());
+        let grid = grid_of(&self.parameter_axes[k]);
         self.parameters[k].1 = Some(dimension);
-        self.problem.parameters[k] = Parameter { name: name.clone(), doc, unit, array: axes.is_some(), value: values };
+        self.problem.parameters[k] =
+            Parameter { name: name.clone(), doc, unit, array: axes.is_some(), grid, value: values };
     }
 
     /// Constants of one dimension, in SI units.
@@ -227,7 +235,8 @@ impl<'a> Elaborator<'a> {
         if let Some(doc) = declares {
             let unit = numbers.unit.map_or_else(|| units::si(&dimension), |unit| (*unit).clone());
             self.parameters[k].1 = Some(dimension);
-            self.problem.parameters[k] = Parameter { name: name.clone(), doc, unit, array: false, value: vec![0.0] };
+            self.problem.parameters[k] =
+                Parameter { name: name.clone(), doc, unit, array: false, grid: None, value: vec![0.0] };
         }
         let (place, name) = (continuation.values.span, continuation.name.span);
         self.pending.push(Steps { parameter: k, values: numbers.values, dimension, place, name });

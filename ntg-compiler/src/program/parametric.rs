@@ -12,8 +12,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use ntg_structure::{
-    Bounds, Call, Data, Duration, Family, Kernel, Parameter, PhaseRef, Place, Reduction, Slot, Start, Structure, Unit,
-    Variable,
+    Bounds, Call, Data, Duration, Kernel, Parameter, PhaseRef, Place, Reduction, Slot, Start, Structure, Unit, Variable,
 };
 
 use super::derive::{Formulas, derive};
@@ -195,12 +194,11 @@ fn without_held_second(shape: &mut Kernel, body: &mut KernelBody, first: usize) 
 
 /// The variable that a parameter becomes.
 fn variable(parameter: &Parameter) -> Variable {
-    let last = i64::try_from(parameter.value.len()).unwrap_or(i64::MAX);
     Variable {
         name: parameter.name.clone(),
         doc: parameter.doc.clone(),
         unit: parameter.unit.clone(),
-        family: parameter.array.then_some(Family::of(1, last)),
+        family: parameter.family(),
         bounds: Bounds::default(),
         place: Place::default(),
     }

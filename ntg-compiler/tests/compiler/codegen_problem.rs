@@ -12,7 +12,7 @@ fn unit(symbol: &str, factor: f64) -> Unit {
 }
 
 fn parameter(name: &str, unit: Unit, array: bool, value: &[f64]) -> Parameter {
-    Parameter { name: name.into(), doc: String::new(), unit, array, value: value.to_vec() }
+    Parameter { name: name.into(), doc: String::new(), unit, array, grid: None, value: value.to_vec() }
 }
 
 fn named(name: &str, domain: Domain, loops: usize, family: Option<Family>) -> Named {

@@ -110,9 +110,9 @@ impl Solution {
         let (mut parameters, mut variables, mut all) = (vec![], vec![], vec![]);
         for (declared, first) in self.structure().parameters.iter().zip(first) {
             for (member, value) in declared.value.iter().enumerate() {
-                let index = declared.array.then(|| i64::try_from(member).unwrap_or(i64::MAX).saturating_add(1));
-                let name = names::indexed(&declared.name, index);
-                let is_wanted = |names: &[&str]| names.iter().any(|wanted| *wanted == name || *wanted == declared.name);
+                let name = declared.element(member);
+                let is_own = |wanted: &str| is_called(wanted, &name) || wanted == declared.name;
+                let is_wanted = |names: &[&str]| names.iter().any(|wanted| is_own(wanted));
                 if names.is_some() {
                     all.extend([declared.name.clone(), name.clone()]);
                 }
@@ -122,7 +122,7 @@ impl Solution {
                 }
             }
         }
-        match names.into_iter().flatten().find(|name| all.iter().all(|known| known != *name)) {
+        match names.into_iter().flatten().find(|name| all.iter().all(|known| !is_called(name, known))) {
             Some(unknown) => {
                 let known = self.structure().parameters.iter().map(|parameter| parameter.name.clone()).collect();
                 Err(SensitivityError::UnknownParameter((*unknown).to_owned(), known))
@@ -159,6 +159,12 @@ impl Sensitivity {
     pub fn solution(&self) -> &Solution {
         &self.solution
     }
+}
+
+/// Whether a name is written for a parameter or an element of one: blanks in its brackets do not count.
+fn is_called(written: &str, name: &str) -> bool {
+    let letters = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+    written == name || (written.contains('[') && letters(written) == letters(name))
 }
 
 /// What is weakly active, each constraint once.

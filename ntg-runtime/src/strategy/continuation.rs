@@ -49,8 +49,14 @@ mod tests {
     use ntg_structure::{Continuation, Parameter, Unit};
 
     fn structure(value: f64) -> Structure {
-        let parameter =
-            Parameter { name: "w".into(), doc: String::new(), unit: Unit::default(), array: false, value: vec![value] };
+        let parameter = Parameter {
+            name: "w".into(),
+            doc: String::new(),
+            unit: Unit::default(),
+            array: false,
+            grid: None,
+            value: vec![value],
+        };
         let continuations = vec![Continuation { parameter: 0, steps: vec![20.0, 5.0, 1.0] }];
         Structure { parameters: vec![parameter], continuations, ..Structure::default() }
     }

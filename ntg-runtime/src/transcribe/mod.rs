@@ -336,8 +336,7 @@ impl Model {
         for parameter in &structure.parameters {
             for (i, value) in parameter.value.iter().enumerate() {
                 if !value.is_finite() {
-                    let index = parameter.array.then(|| i64::from(layout::narrow(i)) + 1);
-                    let what = format!("parameter `{}`", names::indexed(&parameter.name, index));
+                    let what = format!("parameter `{}`", parameter.element(i));
                     return Err(SetupError::NotFinite { what, value: *value, place: Place::default() });
                 }
             }

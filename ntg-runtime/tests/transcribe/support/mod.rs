@@ -38,7 +38,14 @@ impl Double {
     pub fn parameter(&mut self, name: &str, value: &[f64], unit: Unit) -> usize {
         let array = value.len() > 1;
         let value = value.to_vec();
-        self.structure.parameters.push(Parameter { name: name.into(), doc: String::new(), unit, array, value });
+        self.structure.parameters.push(Parameter {
+            name: name.into(),
+            doc: String::new(),
+            unit,
+            array,
+            grid: None,
+            value,
+        });
         self.structure.parameters.len() - 1
     }
 
