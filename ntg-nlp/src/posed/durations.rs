@@ -203,8 +203,11 @@ mod tests {
         program
     }
 
-    /// The Lagrangian's gradient and the lower triangle of its Hessian, with the row's value.
-    fn lagrangian<N: Nlp>(nlp: &N, x: &[f64], multiplier: f64) -> (f64, Vec<f64>, Vec<((usize, usize), f64)>) {
+    /// The lower triangle of a matrix: its entries by row and column.
+    type Triangle = Vec<((usize, usize), f64)>;
+
+    /// The row's value, the Lagrangian's gradient and the lower triangle of its Hessian.
+    fn lagrangian<N: Nlp>(nlp: &N, x: &[f64], multiplier: f64) -> (f64, Vec<f64>, Triangle) {
         let (mut work, mut at) = nlp.workspace();
         nlp.derivatives(x, 1.0, &[multiplier], &mut work, &mut at).expect("finite");
         let (block, values) = (&nlp.blocks()[0], &at.blocks[0]);

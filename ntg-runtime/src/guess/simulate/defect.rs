@@ -53,8 +53,8 @@ fn of_phase(nlp: &Transcription, phase: usize, x: &[f64]) -> Option<Defect> {
         }
     }
     let sizes = equations.sizes();
-    let moving = equations.outputs.iter().zip(&equations.orders).zip(sizes).enumerate();
-    let states = moving.flat_map(|(_, ((output, order), size))| (0..*order).map(move |of| (*output, of, *size)));
+    let moving = equations.outputs.iter().zip(&equations.orders).zip(sizes);
+    let states = moving.flat_map(|((output, order), size)| (0..*order).map(move |of| (*output, of, *size)));
     let own = states.map(|(output, of, size)| {
         let column = equations.columns[&(output, of)];
         // Of a derivative the size is not known.
