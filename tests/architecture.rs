@@ -145,7 +145,7 @@ fn no_floor_of_the_solver_knows_a_floor_above_it() {
         &["check", "scaling", "sizes"],
         &["kkt", "residuals"],
         &["outcome"],
-        &["remeasure", "sensitivity", "squares", "stopping"],
+        &["posed", "remeasure", "sensitivity", "stopping"],
         &["ipm"],
         &["sqp"],
         &["method"],

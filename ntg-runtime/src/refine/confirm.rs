@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::guess::{Defect, defect};
 use crate::problem::{Problem, WithStructure};
 use crate::report::{Confirmation, Report, Resolution};
-use crate::settings::{Between, Settings};
+use crate::settings::{Between, Method, Settings};
 use crate::status::Status;
 use crate::transcribe::{Transcription, names};
 use std::time::{Duration, Instant};
@@ -53,7 +53,9 @@ impl Report {
             drop(nlp);
             let finer = mesh.edited(|structure| split(structure, &marks));
             let left = until.saturating_duration_since(Instant::now()).max(Duration::from_nanos(1));
-            let settings = Settings { time_limit: Some(left), on_iteration: None, ..settings.clone() };
+            // By any method: what is asked is what the solution is worth, and one method may be slow on finer meshes.
+            let settings =
+                Settings { time_limit: Some(left), on_iteration: None, method: Method::Auto, ..settings.clone() };
             let next = from(&finer, last.as_ref().unwrap_or(&self.solution), &settings)?;
             let is_late = matches!(next.status, Status::TimeLimit | Status::Cancelled);
             if is_late && found.halvings > 0 {
