@@ -21,6 +21,7 @@ mod oscillator;
 mod out_of_reach;
 mod phases;
 mod places;
+mod poles;
 mod resolve;
 mod saddles;
 mod scenarios;

@@ -68,8 +68,9 @@ impl Guards {
     }
 }
 
-/// Operations that can give infinity or NaN from finite operands: first their values, then the
-/// factors in which their derivatives are singular.
+/// Operations that can give infinity or NaN from finite operands, then the factors in which their derivatives are
+/// singular. Of an operation with a divisor, `1 / d` or a negative power of it and the tangent with its cosine, the probe is
+/// the inverse of the divisor: a change of its sign is a pole, whatever the dividend does.
 pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span>) -> (Vec<NodeId>, Vec<Span>) {
     // What the compiler has made itself, such as `1 / T`, is of no help to a person.
     let guards = Guards::of(dag, values);
@@ -77,7 +78,11 @@ pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span
     let (mut nodes, mut spans) = (Vec::new(), Vec::new());
     for id in &schedule {
         if may_fail(dag, dag.node(*id)) {
-            nodes.extend(guards.around(dag, *id, *id));
+            let probe = match divisor(dag, *id) {
+                Some(divisor) => inverse(dag, divisor),
+                None => *id,
+            };
+            nodes.extend(guards.around(dag, *id, probe));
             spans.resize(nodes.len(), origin[id]);
         }
     }
@@ -91,12 +96,30 @@ pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span
             }
             _ => continue,
         };
-        let one = dag.constant(1.0);
-        let inverse = dag.div(one, singular);
+        let inverse = inverse(dag, singular);
         nodes.extend(guards.around(dag, id, inverse));
         spans.resize(nodes.len(), origin[&id]);
     }
     (nodes, spans)
+}
+
+fn inverse(dag: &mut Dag, of: NodeId) -> NodeId {
+    let one = dag.constant(1.0);
+    dag.div(one, of)
+}
+
+/// What an operation divides by.
+fn divisor(dag: &mut Dag, id: NodeId) -> Option<NodeId> {
+    match *dag.node(id) {
+        // An even power of what changes its sign does not.
+        Node::Binary(Binary::Div, _, divisor) => match *dag.node(divisor) {
+            Node::Powi(base, exponent) if exponent > 0 => Some(base),
+            _ => Some(divisor),
+        },
+        Node::Powi(base, exponent) if exponent < 0 => Some(base),
+        Node::Unary(Unary::Tan, angle) => Some(dag.unary(Unary::Cos, angle)),
+        _ => None,
+    }
 }
 
 /// Overflow of sums and products is left out: the row itself tells of it.

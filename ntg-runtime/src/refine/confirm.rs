@@ -9,6 +9,7 @@ use crate::problem::{Problem, WithStructure};
 use crate::report::{Confirmation, Report, Resolution};
 use crate::settings::{Between, Method, Settings};
 use crate::status::Status;
+use crate::transcribe::crossed::crossed;
 use crate::transcribe::{Transcription, names};
 use std::time::{Duration, Instant};
 
@@ -35,6 +36,11 @@ impl Report {
             structure.continuations.clear();
         });
         let mut nlp = Transcription::new(&mesh)?;
+        self.poles = crossed(&nlp, self.solution.coefficients())?;
+        if !self.poles.is_empty() {
+            self.seconds += began.elapsed().as_secs_f64();
+            return Ok(self.advised());
+        }
         let own = defect(&nlp, self.solution.coefficients()).filter(|own| own.relative > settings.between_tolerance);
         let Some(Defect { phase, output, relative }) = own else { return Ok(self) };
         let mut found = Confirmation {

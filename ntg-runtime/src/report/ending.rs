@@ -1,7 +1,7 @@
 //! How a solve ended, as the heads of texts, pages and files say it: what is missed between the points is no good end.
 
-use super::Report;
 use super::cost::cost_apart;
+use super::{Confirmation, Report};
 
 /// How far a solution of the transcription is one of the problem itself: what the check on the finer grid found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -107,7 +107,8 @@ impl Report {
         });
         let cost = Missed::Objective(self.cost_missed());
         let equations = Missed::Objective(self.correction_part());
-        if self.confirmation.as_ref().is_some_and(|confirmation| confirmation.refutes(self.objective)) {
+        let refutes = |confirmation: &Confirmation| confirmation.refutes(self.objective);
+        if !self.poles.is_empty() || self.confirmation.as_ref().is_some_and(refutes) {
             return Some(Resolution::Unresolved);
         }
         Some(Resolution::of(constraints.chain([cost, equations]), self.between_tolerance))

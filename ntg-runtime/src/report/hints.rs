@@ -8,7 +8,7 @@ use crate::digits::{brief, brief_in};
 use crate::transcribe::Transcription;
 use crate::transcribe::instances::family_members;
 use crate::transcribe::rows::RowKind;
-use crate::transcribe::{SetupError, names, singular};
+use crate::transcribe::{SetupError, Singular, names, singular};
 use ntg_structure::{Block, Place};
 
 /// A value this near to a bound, in sizes of the variable, is at it: the method stays inside by its last barrier parameter.
@@ -142,16 +142,17 @@ pub(super) fn ran_off(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
 pub(super) fn poles(nlp: &Transcription, x: &[f64]) -> Result<Vec<(String, Place)>, SetupError> {
     /// Places looked at to a point of the transcription.
     const SAMPLES: usize = 2;
-    let told = singular::poles(nlp, x, SAMPLES)?.into_iter().map(|pole| {
-        let point = if pole.point.is_empty() { String::new() } else { format!(" at {}", pole.point) };
-        let message = format!(
-            "`{}` (line {}, column {}) is singular in the motion that was found{point}: no points tell of what happens \
-             there; keep its argument away from that by a bound, or write the formula without it",
-            pole.place.text, pole.place.line, pole.place.column
-        );
-        (message, pole.place)
-    });
-    Ok(told.collect())
+    Ok(singular::poles(nlp, x, SAMPLES)?.into_iter().map(|pole| (in_motion(&pole), pole.place)).collect())
+}
+
+/// What a person should know of a pole in the motion that was found.
+pub(super) fn in_motion(pole: &Singular) -> String {
+    let point = if pole.point.is_empty() { String::new() } else { format!(" at {}", pole.point) };
+    format!(
+        "`{}` (line {}, column {}) is singular in the motion that was found{point}: no points tell of what happens there; \
+         keep its argument away from that by a bound, or write the formula without it",
+        pole.place.text, pole.place.line, pole.place.column
+    )
 }
 
 #[cfg(test)]

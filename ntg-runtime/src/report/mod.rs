@@ -107,6 +107,9 @@ pub struct Report {
     /// What is to be looked at beside constraints and residuals, in words, each with its place in the spec: durations without
     /// a lower bound that are as short as they may be, variables of an estimate at their bounds, outputs that ran off.
     pub(crate) told: Vec<(String, Place)>,
+    /// Poles of equations of motion and integrands that the curves of the solution cross between the points: such curves are
+    /// no motion. None from a kept solver, which does not look for them.
+    pub poles: Vec<Singular>,
     /// What a simulation tells of the motion that was to be found.
     pub(crate) simulation: Option<String>,
     /// What a solve on intervals half as long says of a solution that leaves its own equations of motion; none where that is in
@@ -339,6 +342,7 @@ impl Report {
             is_saddle: outcome.is_saddle,
             sizes,
             told,
+            poles: vec![],
             simulation: None,
             confirmation: None,
             residuals: outcome.residuals,

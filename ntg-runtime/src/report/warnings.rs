@@ -1,11 +1,11 @@
 //! What a person should know about a report although it is a solution.
 
-use super::{ConstraintReport, RefineStatus, Report};
+use super::{ConstraintReport, RefineStatus, Report, hints};
 use crate::digits::brief;
-use crate::transcribe::Transcription;
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::{member_words, shortest_duration};
 use crate::transcribe::times::phase_words;
+use crate::transcribe::{Singular, Transcription};
 use ntg_structure::{Block, Independent, Place};
 use std::fmt;
 
@@ -47,6 +47,14 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
+        // What is told already was found at the points of the check.
+        let is_new = |pole: &&Singular| !self.told.iter().any(|(_, place)| *place == pole.place);
+        let poles = self.poles.iter().filter(is_new).map(|pole| Warning {
+            message: hints::in_motion(pole),
+            place: pole.place.clone(),
+            constraint: String::new(),
+            time: None,
+        });
         let equation = self.constraints.iter().find(|constraint| constraint.block == Block::Trajectory);
         let coarse = self.simulation.iter().map(|message| Warning {
             message: message.clone(),
@@ -78,7 +86,16 @@ impl Report {
             time: None,
         });
         let cost = self.cost_is_off().into_iter().chain(self.equations_are_off());
-        singular.chain(told).chain(saddle).chain(coarse).chain(left).chain(cost).chain(between).chain(unmet).collect()
+        singular
+            .chain(told)
+            .chain(poles)
+            .chain(saddle)
+            .chain(coarse)
+            .chain(left)
+            .chain(cost)
+            .chain(between)
+            .chain(unmet)
+            .collect()
     }
 
     /// Tells that the guess keeps all constraints and has a better objective than what was found.

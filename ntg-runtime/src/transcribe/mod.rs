@@ -15,6 +15,7 @@ pub(crate) mod batch;
 mod calls;
 pub(crate) mod compose;
 mod contradictions;
+pub(crate) mod crossed;
 mod curvatures;
 pub(crate) mod elements;
 mod error;

@@ -104,7 +104,7 @@ pub(crate) fn poles(this: &Transcription, x: &[f64], samples: usize) -> Result<V
 /// A probe, by its kernel and its place there.
 type Probe = (usize, usize);
 /// Takes a probe of a node, where it stands, and its values.
-type Visit<'a> = dyn FnMut(&Node, Probe, &Place, &[f64]) + 'a;
+pub(super) type Visit<'a> = dyn FnMut(&Node, Probe, &Place, &[f64]) + 'a;
 
 /// Places at which a value is no number.
 fn not_finite(values: &[f64]) -> Vec<usize> {
@@ -128,7 +128,7 @@ fn far_out(values: &[f64], largest: f64) -> Vec<usize> {
 }
 
 /// Calls `visit` with the values of every probe of a kernel and of the reductions below it, by node.
-fn each_probe(this: &Transcription, (node, work): (&Node, &NodeWork), visit: &mut Visit<'_>) {
+pub(super) fn each_probe(this: &Transcription, (node, work): (&Node, &NodeWork), visit: &mut Visit<'_>) {
     for (edge, below) in node.edges.iter().zip(&work.edges) {
         each_probe(this, (&edge.child, &below.child), visit);
     }
@@ -142,6 +142,12 @@ fn each_probe(this: &Transcription, (node, work): (&Node, &NodeWork), visit: &mu
     for (probe, (place, values)) in places.iter().zip(probes.chunks_exact(lanes)).enumerate() {
         visit(node, (node.kernel, probe), place, values);
     }
+}
+
+/// Whether a kernel, or that of a reduction below it, has expressions to look at.
+pub(super) fn has_probes(this: &Transcription, node: &Node) -> bool {
+    let own = !this.model.structure.kernels[node.kernel].probes.is_empty();
+    own || node.edges.iter().any(|edge| has_probes(this, &edge.child))
 }
 
 /// Adds an expression that is singular at some lanes of a node.
