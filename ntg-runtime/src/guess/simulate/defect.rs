@@ -5,7 +5,8 @@ use super::radau::{Motion, integrate};
 use crate::transcribe::Transcription;
 use ntg_splines::Side;
 
-/// What of an output is no variation: below this part of its size it is at rest. A choice.
+/// What is no variation: an output is at rest below this part of its size, a derivative below this part of itself and of the
+/// size in one phase. A choice.
 const AT_REST: f64 = 1e-3;
 
 /// By how much an output leaves the equations of motion.
@@ -38,6 +39,9 @@ fn of_phase(nlp: &Transcription, phase: usize, x: &[f64]) -> Option<Defect> {
         columns.iter().map(value).collect()
     };
     let mut low = at(0.0, Side::Right);
+    if !equations.decide(&low) {
+        return None;
+    }
     let mut high = low.clone();
     let mut missed = vec![0.0; columns.len()];
     for pair in layout.phases[phase].breakpoints.windows(2) {
@@ -57,8 +61,9 @@ fn of_phase(nlp: &Transcription, phase: usize, x: &[f64]) -> Option<Defect> {
     let states = moving.flat_map(|((output, order), size)| (0..*order).map(move |of| (*output, of, *size)));
     let own = states.map(|(output, of, size)| {
         let column = equations.columns[&(output, of)];
-        // Of a derivative the size is not known.
-        let rest = if of == 0 { AT_REST * size } else { f64::MIN_POSITIVE };
+        // By scaled time; the value of an output may be far from 0 while it rests.
+        let own = if of == 0 { 0.0 } else { high[column].abs().max(low[column].abs()) };
+        let rest = AT_REST * size.max(own);
         Defect { phase, output, relative: missed[column] / (high[column] - low[column]).max(rest) }
     });
     own.reduce(|most, own| if own.relative > most.relative { own } else { most })

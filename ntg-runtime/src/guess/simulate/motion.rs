@@ -11,6 +11,7 @@ use crate::transcribe::points::Point;
 use crate::transcribe::rows::group_bounds;
 use crate::transcribe::shape::trace;
 use crate::transcribe::slots::Source;
+use nalgebra::{DMatrix, DVector};
 use ntg_structure::{At, Domain, Group, Row};
 use std::collections::BTreeMap;
 
@@ -109,6 +110,29 @@ impl<'a> Equations<'a> {
         let sizes = orders.keys().map(size).collect();
         let (outputs, orders) = orders.into_iter().unzip();
         Some(Self { frame, x, phase, members, outputs, orders, sizes, columns, calls: vec![] })
+    }
+
+    /// Whether the equations decide the highest derivatives for these values at the start: where they do not, as equations
+    /// of a constrained motion, they cannot be simulated.
+    pub(super) fn decide(&mut self, values: &[f64]) -> bool {
+        /// A pivot below this part of the largest is 0. A choice, far from rounding and from rates in SI.
+        const SINGULAR: f64 = 1e-12;
+        let count = self.outputs.len();
+        let start = Point::start(self.phase);
+        let mut out = [Linear { residual: DVector::zeros(count), jacobian: DMatrix::zeros(count, self.columns.len()) }];
+        let placed = self.place(&[Instant { tau: start.tau, side: start.side }]);
+        if placed.and_then(|()| self.evaluate(&[values.to_vec()], &mut out)).is_none() {
+            return false;
+        }
+        let highest = self.outputs.iter().zip(&self.orders).map(|(output, order)| self.columns[&(*output, *order)]);
+        let columns: Vec<usize> = highest.collect();
+        let mut matrix = out[0].jacobian.select_columns(&columns);
+        for mut row in matrix.row_iter_mut() {
+            let largest = row.amax();
+            row /= largest.max(f64::MIN_POSITIVE);
+        }
+        let pivots = matrix.full_piv_lu().u().diagonal();
+        pivots.amin() > SINGULAR * pivots.amax()
     }
 
     /// What the guess says about all values at the start.
