@@ -143,6 +143,8 @@ codes! {
     UnboundedInList "N007" "a name in a list without the bounds of the next one";
     UnitLikeSize "N008" "a unit that is also the name of a size";
     BareAngle "N009" "a bare number beside an angle, of more than a turn";
+    GuessOutside "N010" "a guess outside of its bounds";
+    SoftName "N011" "a constraint named `soft` that has no price";
 }
 
 impl Code {

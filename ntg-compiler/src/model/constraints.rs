@@ -299,6 +299,7 @@ impl<'a> Elaborator<'a> {
         if let Some(softness) = &constraint.softness {
             return self.push_soft(cx, constraint, softness, (site, domain, bodies));
         }
+        self.note_soft_name(constraint);
         for Body { value: body, bounds, unit } in bodies {
             let name = self.constraint_name(cx, constraint, site);
             self.origin(body.node, constraint.span);

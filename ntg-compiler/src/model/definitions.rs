@@ -7,7 +7,9 @@
 use std::collections::HashSet;
 use std::rc::Rc;
 
+use super::dimension::Dimension;
 use super::elaborator::{Definition, Elaborator};
+use super::expression::GRAM;
 use super::mention::mentioned;
 use super::problem::Form;
 use super::scope::{Allow, Context, Entity, Local, Meaning, Point, ScopeId, look_up};
@@ -162,6 +164,8 @@ impl<'a> Elaborator<'a> {
                 .label(value.span, format!("this is {}", dimension.describe()))
                 .help(if let Some(size) = self.declared_symbol(unit) {
                     format!("`[{size}]` is a unit here; as a size write `[1 .. {size}]`")
+                } else if shown.symbol == "g" && dimension == Dimension::of([0, 1, -2, 0, 0, 0, 0]) {
+                    GRAM.to_owned()
                 } else if dimension.is_none() {
                     "remove the unit, or multiply by one".to_owned()
                 } else {

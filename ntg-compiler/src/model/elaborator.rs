@@ -447,6 +447,14 @@ impl<'a> Elaborator<'a> {
                     {
                         finding.help(format!("as a size write `[1 .. {}]`", name.text))
                     }
+                    [ast::UnitFactor { base: ast::UnitBase::Symbol(name), power: 1, .. }]
+                        if let Some(family) = self.family_without_range(&name.text) =>
+                    {
+                        finding.help(format!(
+                            "a value for each index is written `let {family}[{} in 1 .. 3] = ...;`",
+                            name.text
+                        ))
+                    }
                     _ => finding,
                 };
                 self.report(finding);

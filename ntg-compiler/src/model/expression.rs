@@ -14,6 +14,9 @@ use crate::expr::NodeId;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, ExprKind, MulOp, Number, Sign};
 
+/// What `[g]` is, where an acceleration was meant.
+pub(super) const GRAM: &str = "`g` is the gram; the acceleration of gravity is written `9.80665 [m/s^2]`";
+
 impl<'a> Elaborator<'a> {
     /// The meaning of an expression that is one number.
     pub(super) fn value(&mut self, cx: &Context<'a>, expr: &'a Expr) -> Value {
@@ -150,6 +153,11 @@ impl<'a> Elaborator<'a> {
         if let Some(help) = self.forgotten_rate(a, b).filter(|_| verb == "compare") {
             return help;
         }
+        if verb == "add" && [a, b].iter().any(|side| self.text(side.span).contains(" sigma ")) {
+            let unit = [a, b].iter().find_map(|side| side.dimension.filter(|dimension| !dimension.is_none()));
+            let unit = unit.map_or_else(String::new, |unit| format!(", `e / 1 [{unit}]`"));
+            return format!("beside `measure` the objective is a pure number: divide its other terms{unit}");
+        }
         let ends = [a, b].into_iter().flat_map(|side| [self.text(side.span), self.other_end(side.span)]);
         if let Some(help) = ends.into_iter().find_map(|text| unit_of_divisor(&text)) {
             return help;
@@ -177,6 +185,11 @@ impl<'a> Elaborator<'a> {
                 }
                 return format!("multiply the pure number by a unit: `{text} * 1 [{}]`", unit_of(other));
             }
+        }
+        let is_acceleration = |v: &Value| v.dimension == Some(Dimension::of([0, 1, -2, 0, 0, 0, 0]));
+        let in_grams = |v: &Value| matches!(&v.unit, Some(unit) if unit.symbol == "g");
+        if [(a, b), (b, a)].iter().any(|(grams, other)| in_grams(grams) && is_acceleration(other)) {
+            return GRAM.to_owned();
         }
         let is_temperature = |v: &Value| v.dimension == Some(Dimension::of([0, 0, 0, 0, 1, 0, 0]));
         for (coulombs, other) in [(a, b), (b, a)] {

@@ -166,7 +166,11 @@ impl<'a> Elaborator<'a> {
             let message = format!("`{name}` is {}, not a function", entity.describe());
             let finding = Diagnostic::new(Code::NoFunction, span, message);
             let has_members = self.axes_of(cx, entity, name).is_some_and(|axes| !axes.is_empty());
-            let help = self.help_of_called(name, &call.arguments, (entity == Entity::Output, has_members));
+            let varies = match entity {
+                Entity::Definition(definition) => !self.definitions[definition].is_const,
+                other => other == Entity::Output,
+            };
+            let help = self.help_of_called(name, &call.arguments, (varies, has_members));
             return self.refuse(finding.help(help), call.span);
         }
         let finding = Diagnostic::new(Code::NoFunction, span, format!("unknown function `{name}`"));

@@ -36,6 +36,7 @@ impl<'a> Elaborator<'a> {
     /// All guesses, scope by scope.
     pub(super) fn guesses(&mut self) {
         for scope in 0..self.scopes.len() {
+            self.guessed_twice(scope);
             let cx = match (self.scopes[scope].phase, self.scopes[scope].agent) {
                 (Some(phase), _) => self.phase_context(phase, Allow::Guess, Point::Nowhere),
                 (None, Some(agent)) => self.agent_context(agent, Allow::Guess),
@@ -110,6 +111,7 @@ impl<'a> Elaborator<'a> {
                 let target = self.wanted_time(path.span);
                 let node = self.guess_value(&at, value, &[], &target)?;
                 let scope = self.guess_scope(&at)?;
+                self.guessed_duration(&scope, node, (path.span, value.span));
                 self.push_guess(cx, scope, GuessKind::Duration(node));
             }
             other => {
@@ -207,6 +209,9 @@ impl<'a> Elaborator<'a> {
         let unit = self.problem.variables.get(variable).map(|variable| variable.unit.clone());
         let target = self.wanted(dimension, unit, span);
         let node = self.guess_value(inner, value, at, &target)?;
+        if let Some(bounds) = self.problem.variables.get(variable).map(|variable| variable.bounds.clone()) {
+            self.guessed_within(&bounds, node, (span, value.span));
+        }
         let scope = self.any_scope(inner);
         self.push_guess(cx, scope, GuessKind::Variable(variable, index, node));
         Some(())
@@ -300,7 +305,10 @@ impl<'a> Elaborator<'a> {
         let target = self.wanted_time(span);
         let node = self.guess_value(&inner, value, &[], &target)?;
         match (event, &scope) {
-            (Event::Duration, _) => self.push_guess(cx, scope, GuessKind::Duration(node)),
+            (Event::Duration, _) => {
+                self.guessed_duration(&scope, node, (span, value.span));
+                self.push_guess(cx, scope, GuessKind::Duration(node));
+            }
             (Event::Start, GuessScope::Agent(..)) => self.push_guess(cx, scope, GuessKind::Start(node)),
             _ => {
                 let message = format!("`{}` follows from durations: it cannot be guessed", self.text(span));

@@ -10,11 +10,12 @@ use std::rc::Rc;
 use ntg_structure::Unit;
 
 use super::dimension::{Dimension, Ratio};
-use super::elaborator::Elaborator;
+use super::elaborator::{Definition, Elaborator};
+use super::scope::Entity;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::ast::{DeclaredName, Expr, ExprKind, Role, ShapeAxis};
+use crate::syntax::ast::{DeclaredName, Expr, ExprKind, Role, Segment, ShapeAxis};
 
 /// What helps need to know about the spec.
 #[derive(Default)]
@@ -35,22 +36,58 @@ pub(super) struct Noted {
 
 impl<'a> Elaborator<'a> {
     /// What may be meant by a quantity that is written as a function of these arguments.
-    pub(super) fn help_of_called(
-        &self,
-        name: &str,
-        arguments: &[Expr],
-        (is_output, has_members): (bool, bool),
-    ) -> String {
+    pub(super) fn help_of_called(&self, name: &str, arguments: &[Expr], (varies, has_members): (bool, bool)) -> String {
         let multiply = format!("to multiply, write `{name} * (...)`");
         let ends = format!("`initial({name})` or `final({name})`");
-        match arguments {
-            [only] if has_members => format!("an element is `{name}[{}]`", self.text(only.span)),
-            [Expr { kind: ExprKind::Number(_), .. }] if is_output => format!("at an end write {ends}; {multiply}"),
-            [time @ Expr { kind: ExprKind::Path(_), .. }] if is_output => {
-                let time = self.text(time.span);
-                format!("at a time write `at({time}, {name})`, at an end {ends}; {multiply}")
-            }
+        let [only] = arguments else { return multiply };
+        let text = self.text(only.span);
+        let at = format!("at a time write `at({text}, {name})`");
+        match &only.kind {
+            _ if has_members && !(varies && self.is_time_like(only)) => format!("an element is `{name}[{text}]`"),
+            ExprKind::Number(number) if varies && number.unit.is_some() => format!("{at}; {multiply}"),
+            ExprKind::Number(_) if varies => format!("at an end write {ends}; {multiply}"),
+            ExprKind::Path(_) if varies => format!("{at}, at an end {ends}; {multiply}"),
+            _ if varies && self.is_time_like(only) => format!("{at}; {multiply}"),
             _ => multiply,
+        }
+    }
+
+    /// Whether an argument is no index but a time: `0`, `3 [s]`, `T`, `T / 2`, `tf`.
+    fn is_time_like(&self, argument: &Expr) -> bool {
+        if let ExprKind::Number(number) = &argument.kind {
+            return number.unit.is_some() || self.text(argument.span) == "0";
+        }
+        let is_time =
+            |name: &&str| matches!(*name, "t0" | "t_0" | "tf" | "t_f" | "t_end" | "tend") || self.is_duration(name);
+        super::mention::names_in(argument).is_some_and(|names| names.iter().any(is_time))
+    }
+
+    /// Whether a name is that of a duration somewhere.
+    fn is_duration(&self, name: &str) -> bool {
+        let mut found = self.scopes.iter().filter_map(|scope| scope.names.get(name));
+        found.any(|found| matches!(found.entity, Entity::Duration(_)))
+    }
+
+    /// The definition whose brackets hold only the name of an index: `let z[i] = r[i];`
+    pub(super) fn family_without_range(&self, index: &str) -> Option<&'a str> {
+        let is_it = |definition: &&Definition<'a>| {
+            let unit = definition.unit.map(|unit| self.text(unit.span));
+            !definition.is_const
+                && !super::units::is_symbol(index)
+                && unit.is_some_and(|unit| unit == format!("[{index}]"))
+        };
+        let found = self.definitions.iter().find(is_it)?;
+        Some(&found.name.text)
+    }
+
+    /// The value at an end that is meant by `x[0]` or `x[T]`.
+    pub(super) fn end_for_index(&self, segment: &Segment) -> Option<String> {
+        let [index] = segment.indices.as_slice() else { return None };
+        let name = &segment.name.text;
+        match self.text(index.span).as_str() {
+            "0" => Some(format!("its value at the start is `initial({name})`")),
+            text if self.is_duration(text) => Some(format!("its value at the end is `final({name})`")),
+            _ => None,
         }
     }
 

@@ -288,6 +288,7 @@ impl<'a> Elaborator<'a> {
                     let (nodes, joined) = this.bounds(cx, bounds, what);
                     if let Some(time) = joined.and_then(|joined| this.as_time(joined.at(bounds.span), what)) {
                         this.note_clock(&time);
+                        this.no_negative_time(nodes.lower, nodes.upper, bounds);
                     }
                     if let Some(upper) = nodes.upper {
                         this.positive(upper, bounds.upper.as_ref().map_or(span, |e| e.span));
@@ -320,7 +321,20 @@ impl<'a> Elaborator<'a> {
         None
     }
 
-    fn positive(&mut self, node: NodeId, span: Span) {
+    /// Tells of a lower bound below 0, where the upper one has not been told of.
+    fn no_negative_time(&mut self, lower: Option<NodeId>, upper: Option<NodeId>, bounds: &ast::Bounds) {
+        let is = |node: Option<NodeId>, told: fn(f64) -> bool| {
+            node.and_then(|node| self.problem.dag.is_constant(node)).is_some_and(told)
+        };
+        let Some(written) = bounds.lower.as_ref().filter(|_| is(lower, |value| value < 0.0)) else { return };
+        if !is(upper, |value| value <= 0.0) {
+            let finding = Diagnostic::new(Code::WrongDuration, written.span, "a duration is greater than 0");
+            self.report(finding.help("write the shortest that is meant, or leave this bound out"));
+        }
+    }
+
+    /// Tells of a duration that is known not to be positive.
+    pub(super) fn positive(&mut self, node: NodeId, span: Span) {
         if self.problem.dag.is_constant(node).is_some_and(|value| value <= 0.0) {
             let finding = Diagnostic::new(Code::WrongDuration, span, "a duration is greater than 0");
             self.report(finding.help("write a positive time"));

@@ -37,6 +37,7 @@ mod given;
 #[cfg(test)]
 mod growth;
 mod guess;
+mod guess_checks;
 mod helps;
 mod impulses;
 mod independent;

@@ -27,6 +27,10 @@ const HABITS: &[(&[&str], &str)] = &[
     (&["inf", "Inf", "infinity", "Infinity", "oo"], "leave the bound out: `1 ..` or `.. 5`"),
     (&["free"], "what is free is written with `in`, between bounds: `in 1 .. 9`"),
     (&["Pi", "PI", "π"], "did you mean `pi`?"),
+    (
+        &["exp", "sin", "cos", "tan", "sqrt", "log", "abs"],
+        "a function has its argument in parentheses, and powers behind them: `sin(x)^2`",
+    ),
     (&["e"], "write `exp(1)`, and `exp(x)` for a power of it"),
     (
         &["true", "false", "True", "False"],
@@ -42,6 +46,20 @@ fn dotted(name: &str) -> Option<String> {
     once.or_else(|| letters.strip_suffix('\u{308}').map(|base| format!("{base}_ddot")))
 }
 
+/// `x0`, `x_0` and `x_f` mean values of `x` at the ends, where there is an `x`.
+fn as_end(name: &str, known: &[&str]) -> Option<String> {
+    let of = |endings: &[&str]| {
+        let behind = endings.iter().find_map(|ending| name.strip_suffix(ending));
+        behind.filter(|base| known.contains(base)).map(str::to_owned)
+    };
+    let told = |end: &str, word: &str, base: String| {
+        format!("its value at the {end} is `{word}({base})`, and `{base}` alone inside `{word} {{ }}`")
+    };
+    let first = of(&["_0", "0", "_init", "_initial", "_start"]).map(|base| told("start", "initial", base));
+    let last = || of(&["_f", "_T", "_N", "f", "_end", "_final"]).map(|base| told("end", "final", base));
+    first.or_else(last)
+}
+
 /// `r_dot`, `rddot` and the `dr` of `dr/dt` mean derivatives of `r`, where there is one.
 fn as_derivative(name: &str, known: &[&str]) -> Option<String> {
     if name == "dt" {
@@ -49,11 +67,13 @@ fn as_derivative(name: &str, known: &[&str]) -> Option<String> {
     }
     let is_known = |base: &&str| known.contains(base);
     let behind = |ending: &str| name.strip_suffix(ending).map(|base| base.trim_end_matches('_')).filter(is_known);
-    let twice = behind("ddot").or_else(|| name.strip_prefix("d2").filter(is_known));
+    let twice = ["d2", "dd"].iter().find_map(|front| name.strip_prefix(front).filter(is_known));
+    let twice = behind("ddot").or(twice);
     if let Some(base) = twice {
         return Some(format!("write `der({base}, 2)` for the second derivative"));
     }
-    let once = behind("dot").or_else(|| name.strip_prefix('d').filter(is_known));
+    let once = behind("dot").or_else(|| name.strip_prefix('d')?.strip_suffix("_dt").filter(is_known));
+    let once = once.or_else(|| name.strip_prefix('d').filter(is_known));
     once.map(|base| format!("write `der({base})` for the derivative"))
 }
 
@@ -127,7 +147,8 @@ impl<'a> Elaborator<'a> {
             self.scopes[scope].order.clone()
         };
         let finding = Diagnostic::new(Code::UnknownName, segment.name.span, format!("unknown name `{text}`"));
-        if self.is_of_broken_library(scope, text) || self.is_told_in_statement(text, segment.name.span) {
+        let is_told = self.is_told_in_statement(text, segment.name.span);
+        if is_told || self.is_of_broken_library(scope, text) || self.family_without_range(text).is_some() {
             return self.poison(segment.span);
         }
         let near = nearest(text, names.iter().copied());
@@ -143,7 +164,11 @@ impl<'a> Elaborator<'a> {
         let elsewhere = elsewhere.or_else(|| as_derivative(&dotted(text).unwrap_or_else(|| text.clone()), &names));
         let habit =
             || HABITS.iter().find(|(wrong, _)| wrong.contains(&text.as_str())).map(|(_, help)| (*help).to_owned());
-        let elsewhere = elsewhere.or_else(habit);
+        let after = self.source.text.get(segment.span.end as usize..).unwrap_or_default();
+        let divides =
+            text == "d" && after.trim_start().strip_prefix('/').is_some_and(|by| by.trim_start().starts_with('d'));
+        let elsewhere = elsewhere.or_else(|| divides.then(|| "write `der(x)` for the derivative".to_owned()));
+        let elsewhere = elsewhere.or_else(habit).or_else(|| as_end(text, &self.outputs_in_sight(scope)));
         let elsewhere = elsewhere.or_else(|| self.in_standard(text, VALUES).map(|help| behind_near(near, help)));
         let finding = match (elsewhere, near) {
             (Some(help), _) => finding.help(help),
@@ -152,6 +177,12 @@ impl<'a> Elaborator<'a> {
             (None, None) => finding.help(format!("known names are {}", listed(&names))),
         };
         self.refuse(finding, segment.span)
+    }
+
+    /// The names of outputs, states and inputs that are in sight.
+    fn outputs_in_sight(&self, scope: ScopeId) -> Vec<&'a str> {
+        let names = visible(&self.scopes, scope).into_iter();
+        names.filter(|(_, entity)| *entity == Entity::Output).map(|(name, _)| name).collect()
     }
 
     /// What to write for a name in a template that one phase defines and another does not.
@@ -335,6 +366,7 @@ impl<'a> Elaborator<'a> {
             (m, n) => format!("`{name}` takes {m} indices, not {n}"),
         };
         let help = match axes {
+            0 if let Some(end) = self.end_for_index(segment) => end,
             0 if self.is_unit_text(segment) => {
                 let unit = segment.indices.iter().map(|index| self.text(index.span)).collect::<Vec<_>>().join(", ");
                 format!("a quantity has its unit already; `let z [{unit}] = {name};` shows it in another")

@@ -65,10 +65,19 @@ impl<'a> Elaborator<'a> {
 
     fn both_senses(&mut self, span: Span, before: Span) {
         let message = "a problem is minimised or maximised, not both";
-        let finding = Diagnostic::new(Code::MixedSenses, span, message)
-            .label(span, "this term has the other sense")
-            .label(before, "the first term");
-        self.report(finding.help("change the sign of this term and write the other word"));
+        let finding = Diagnostic::new(Code::MixedSenses, span, message);
+        let is_measured = |span: Span| self.source.slice(span).starts_with("measure");
+        let finding = match (is_measured(span), is_measured(before)) {
+            (false, false) => finding
+                .label(span, "this term has the other sense")
+                .label(before, "the first term")
+                .help("change the sign of this term and write the other word"),
+            (measured, _) => finding
+                .label(if measured { before } else { span }, "this is maximised")
+                .label(if measured { span } else { before }, "what is measured is met by minimising")
+                .help("a problem with `measure` is minimised: change the sign of the term and write `minimize`"),
+        };
+        self.report(finding);
     }
 
     fn term(&mut self, scope: usize, objective: &'a ast::Objective, span: Span) -> Option<Value> {

@@ -147,6 +147,9 @@ impl<'a> Elaborator<'a> {
             Some(near) => finding.help(format!("did you mean `{near}`?")),
             None if paths.is_empty() => match outer {
                 Some(outer) => finding.help(format!("`{0}` has no phases: write `{0}` alone", outer.name.text)),
+                None if after.trim_start().trim_start_matches(',').trim_start().starts_with("t)") => {
+                    finding.help(format!("an integral is over time without saying so: write `integral({name})`"))
+                }
                 None => finding.help("this problem has one phase: leave the name out"),
             },
             None => finding.help(format!("phases and agents are `{}`", paths.join("`, `"))),

@@ -51,6 +51,14 @@ struct Prices {
 }
 
 impl<'a> Elaborator<'a> {
+    /// Notes a constraint that has the name `soft` and no price.
+    pub(super) fn note_soft_name(&mut self, constraint: &ast::Constraint) {
+        if let Some(name) = constraint.name.as_ref().filter(|name| name.text == "soft") {
+            let note = Diagnostic::new(Code::SoftName, name.span, "this constraint is named `soft`, and must hold");
+            self.report(note.help("a constraint that may be missed has a price: `soft(200 [1/s]): x <= 1;`"));
+        }
+    }
+
     /// The rows of a soft constraint.
     pub(super) fn push_soft(
         &mut self,

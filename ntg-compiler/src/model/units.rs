@@ -198,6 +198,52 @@ const HABITS: &[(&str, &str)] = &[
     ("mile", "mi"),
     ("miles", "mi"),
     ("lbs", "lb"),
+    ("pound", "lb"),
+    ("pounds", "lb"),
+    ("in", "inch"),
+    ("inches", "inch"),
+    ("yards", "yd"),
+    ("meters", "m"),
+    ("metres", "m"),
+    ("gram", "g"),
+    ("grams", "g"),
+    ("gramme", "g"),
+    ("volts", "V"),
+    ("watts", "W"),
+    ("joules", "J"),
+    ("amp", "A"),
+    ("amps", "A"),
+    ("ampere", "A"),
+    ("Amps", "A"),
+    ("pascal", "Pa"),
+    ("Pascal", "Pa"),
+    ("liter", "L"),
+    ("litre", "L"),
+    ("liters", "L"),
+    ("litres", "L"),
+    ("tonne", "t"),
+    ("tons", "t"),
+    ("rps", "rev/s"),
+    ("cycles", "rev"),
+];
+
+/// Units that the language does not have, and the number that stands for one of them, to six digits (NIST SP 811,
+/// appendix B.8).
+const NUMBERS: &[(&[&str], &str)] = &[
+    (&["gee", "gees", "g0", "gn", "g_0", "g_n"], "9.80665 [m/s^2]"),
+    (&["kgf", "kp"], "9.80665 [N]"),
+    (&["slug", "slugs"], "14.5939 [kg]"),
+    (&["oz", "ounce"], "28.3495 [g]"),
+    (&["gal", "gallon", "gallons"], "3.78541 [L]"),
+    (&["cal"], "4.184 [J]"),
+    (&["kcal"], "4184 [J]"),
+    (&["BTU", "Btu"], "1055.06 [J]"),
+    (&["torr", "Torr", "mmHg"], "133.322 [Pa]"),
+    (&["inHg"], "3386.39 [Pa]"),
+    (&["grad", "gon"], "0.9 [deg]"),
+    (&["week", "weeks"], "7 [day]"),
+    (&["yr", "year", "years"], "365.25 [day]"),
+    (&["percent"], "0.01"),
 ];
 
 /// The meaning of a unit, or what is wrong with it.
@@ -263,8 +309,9 @@ pub(super) fn offered() -> impl Iterator<Item = &'static str> {
 fn unknown(text: &str, span: Span) -> Diagnostic {
     let found = Diagnostic::new(Code::UnknownUnit, span, format!("unknown unit `{text}`"));
     // `m2` for the square.
+    let is_number = NUMBERS.iter().any(|(names, _)| names.contains(&text));
     let base = text.trim_end_matches(|c: char| c.is_ascii_digit());
-    if base.len() < text.len() && symbol(base).is_some() {
+    if !is_number && base.len() < text.len() && symbol(base).is_some() {
         return found.help(format!("a power has its sign: `{base}^{}`", &text[base.len()..]));
     }
     if matches!(text, "degC" | "degF" | "celsius" | "Celsius" | "fahrenheit" | "Fahrenheit") {
@@ -272,6 +319,12 @@ fn unknown(text: &str, span: Span) -> Diagnostic {
             if text.contains(['F', 'f']) { "(68 + 459.67) * 5 / 9 * 1 [K]` for 68" } else { "293.15 [K]` for 20" };
         let help = format!("temperatures count from absolute zero: write `{in_kelvin} degrees; a unit has no offset");
         return found.help(help);
+    }
+    if let Some((_, number)) = NUMBERS.iter().find(|(names, _)| names.contains(&text)) {
+        return found.help(format!("it is no unit here; one of them is `{number}`"));
+    }
+    if matches!(text, "unitless" | "dimensionless" | "none" | "None" | "px" | "dB") {
+        return found.help("a pure number has no unit, or `[1]`");
     }
     let near = habit(text).or_else(|| alike(text));
     let near = near.or_else(|| nearest(text, offered().filter(|unit| !another_prefix(text, unit))).map(str::to_owned));
@@ -340,7 +393,7 @@ mod tests {
             assert!(!all[..i].contains(symbol), "{symbol} is listed twice");
             assert!(super::symbol(symbol).is_some(), "{symbol} has no meaning");
         }
-        for (wrong, _) in HABITS {
+        for wrong in HABITS.iter().map(|(wrong, _)| wrong).chain(NUMBERS.iter().flat_map(|(names, _)| *names)) {
             assert!(symbol(wrong).is_none(), "{wrong} is a symbol and a habit");
         }
     }

@@ -7,15 +7,19 @@
 use super::grammar::{Rule, Stuck};
 use super::recover::{Body, text};
 use super::scan::{Scan, Token, TokenKind};
-use super::words::{ITEM_WORDS, OTHER_ITEM_WORDS, is_reserved, nearest_item_word};
+use super::words::{ITEM_WORDS, OTHER_ITEM_WORDS, is_reserved};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 
 mod brackets;
 mod conditions;
+mod declared;
 mod expected;
 mod habits;
 pub(super) mod imports;
+mod loops;
+mod openers;
+mod places;
 mod ranges;
 mod relations;
 
@@ -40,6 +44,7 @@ pub(super) fn explain(scan: &Scan, stuck: &Stuck, base: usize) -> Diagnostic {
     let here = Here { scan, index, token: scan.tokens.get(index), before, expected };
     here.missing_semicolon()
         .or_else(|| here.stray_doc())
+        .or_else(|| here.reserved_label())
         .or_else(|| here.reserved())
         .or_else(|| here.unit())
         .or_else(|| here.unit_alone())
@@ -67,7 +72,7 @@ pub(super) fn misplaced(scan: &Scan, body: Body, at: usize, end: usize) -> Optio
         let finding = Diagnostic::new(Code::OneProblem, token.span, "a problem does not stand in another one");
         return Some(finding.help("a spec is exactly one `problem Name { ... }`"));
     }
-    (!is_item).then(|| no_item(scan, token, word, at, end))
+    (!is_item).then(|| openers::no_item(scan, token, word, at, end))
 }
 
 /// A declaration in a block of constraints, a guess or a table.
@@ -78,6 +83,9 @@ fn foreign_item(scan: &Scan, body: Body, token: &Token, word: &str) -> Option<Di
     if !ITEM_WORDS.contains(&word) && !is_block {
         return None;
     }
+    if body == Body::Constraints && follows.is_some_and(|next| text(scan, next) == ":") {
+        return Some(places::reserved_name(token.span, word));
+    }
     let place = match body {
         Body::Guess => "a guess",
         Body::Rows => "a table",
@@ -85,79 +93,6 @@ fn foreign_item(scan: &Scan, body: Body, token: &Token, word: &str) -> Option<Di
     };
     let finding = Diagnostic::new(Code::Misplaced, token.span, format!("`{word}` may not stand in {place}"));
     Some(finding.help("write it before or after, in the problem, the agent or the phase"))
-}
-
-/// A statement among the items that begins with no item's word: a slip of the pen, or a constraint.
-fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: usize) -> Diagnostic {
-    let statement =
-        scan.tokens[at..end].iter().map(|token| text(scan, token)).take_while(|text| !matches!(*text, ";" | "{"));
-    let follows = |at: usize, word: &str, sign: &str| {
-        let own = (at..end).find(|index| text(scan, &scan.tokens[*index]) == word);
-        own.and_then(|own| scan.tokens.get(own + 1)).is_some_and(|next| text(scan, next) == sign)
-    };
-    let mut relates = false;
-    for part in statement {
-        relates |= matches!(part, "==" | "<=" | ">=" | "<" | ">" | "!=");
-    }
-    if relates && word != "if" {
-        let finding = Diagnostic::new(Code::Misplaced, token.span, "a constraint stands in no block");
-        return finding.help("write it in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`");
-    }
-    let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
-    match nearest_item_word(word) {
-        _ if follows(at, word, "=") => finding.help(format!(
-            "say what it is: `const {word} = ...;`, `param {word} = ...;` if it may be set, `let {word} = ...;` if it is made of others, `duration {word} = ...;`"
-        )),
-        _ if matches!(word, "measurement" | "measurements" | "measured" | "observations") => {
-            finding.help("what was measured stands in `measure { }`")
-        }
-        _ if word == "use" => finding.help("libraries stand before the problem: `use std::constants;`"),
-        _ if matches!(word, "control" | "controls") => finding.help("what is chosen freely is an `input`"),
-        _ if matches!(word, "parameter" | "parameters" | "constant") => {
-            finding.help("a number that may be set is a `param`, one that never changes a `const`")
-        }
-        _ if matches!(word, "Real" | "real" | "var" | "variables" | "free") => {
-            finding.help("what moves is a `state`, an `input` or an `output`, a number that is sought a `variable`, a time a `duration`")
-        }
-        _ if matches!(word, "objective" | "cost" | "J" | "mayer" | "lagrange" | "bolza" | "Min" | "Max" | "min" | "max") => finding.help("write `minimize name: e;` or `maximize name: e;`"),
-        _ if matches!(word, "subject_to" | "subject" | "such" | "constraint" | "constraints" | "path" | "boundary" | "bounds" | "events") => {
-            finding.help("constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`")
-        }
-        _ if matches!(word, "terminal" | "endpoint" | "goal" | "target") => {
-            finding.help("what holds at the end stands in `final { }`")
-        }
-        _ if matches!(word, "init" | "begin" | "initially") => {
-            finding.help("what holds at the start stands in `initial { }`")
-        }
-        _ if matches!(word, "equation" | "equations" | "ode" | "system") => {
-            finding.help("equations of motion stand in `dynamics { der(x) == ...; }`")
-        }
-        _ if matches!(word, "vector" | "matrix") => {
-            finding.help("a vector is declared by its size: `output r[3]: ...`, `param J[3, 3] = ...`")
-        }
-        _ if imports::IMPORTING.contains(&word) => {
-            let target = imports::as_use(scan, at);
-            finding.help(format!("a library is used before the problem: {target}"))
-        }
-        _ if matches!(word, "solver" | "options" | "option" | "nlp" | "tolerance") => {
-            finding.help("how it is solved is said where it is solved: `ntg solve --help`")
-        }
-        _ if matches!(word, "mesh" | "grid" | "transcription") => {
-            finding.help("points and intervals stand in `collocation gauss(points = 3, intervals = 20);`")
-        }
-        _ if matches!(word, "time" | "horizon") => {
-            finding.help("how long it takes is the duration: `duration T = 5;`, or `duration T in 1 .. 9;`")
-        }
-        _ if matches!(word, "link" | "linkage" | "link_phases") => {
-            finding.help("phases follow one another by `phase coast after boost { ... }`")
-        }
-        _ if matches!(word, "function" | "def" | "func") => finding.help("write `fn f(a) = a / 2;`"),
-        _ if word == "in" => finding.help("how long a phase lasts has its word: `duration in 1 .. 9 [s];`"),
-        _ if word == "if" => finding.help("an `if` is a value: `let y = if a <= b { ... } else { ... };`"),
-        _ if word == "for" => finding.help("loops stand in blocks of constraints and in `guess`"),
-        Some(meant) => finding.help(format!("did you mean `{meant}`?")),
-        None => finding.help("a statement begins with a word such as `let`, `output`, `param` or `trajectory`"),
-    }
 }
 
 /// A `///` that stands before nothing that could be documented.
@@ -210,7 +145,7 @@ impl Here<'_> {
             return None;
         }
         let finding = Diagnostic::new(Code::ReservedWord, token.span, format!("`{word}` is a reserved word"));
-        if let Some(help) = self.behind_a_point(word) {
+        if let Some(help) = self.behind_a_point(word).or_else(|| self.instead_of_reserved(word)) {
             return Some(finding.help(help));
         }
         Some(match word {
@@ -233,8 +168,18 @@ impl Here<'_> {
         if this == "**" {
             return Some(finding.help("write `^` for a power: `[m/s^2]`"));
         }
-        if this == "-" {
+        if this == "-" || (this == "]" && self.index > 0 && self.word(self.index - 1) == "[") {
             return Some(finding.help("a pure number has no unit, or `[1]`"));
+        }
+        let has_power = self.scan.tokens[..self.index].iter().rev().map(|token| text(self.scan, token));
+        let has_power = has_power.take_while(|word| *word != "[").any(|word| word == "^");
+        if self.token.is_some_and(|token| token.kind == TokenKind::Number) && !has_power {
+            return Some(
+                finding.help("a number stands before the brackets, `1000 [m]`; in them it is a power, `[m^2]`"),
+            );
+        }
+        if this == "in" {
+            return Some(finding.help("a range has both of its ends: `[i in 1 .. 3]`"));
         }
         if this == "." || self.token.is_some_and(|token| token.kind == TokenKind::Word) {
             return Some(finding.help("a product of units has its sign: `[N*m]`"));
@@ -292,9 +237,6 @@ impl Here<'_> {
             Some("domain") => {
                 return Some("write the name of the independent variable and its unit: `domain s [m];`".into());
             }
-            Some("periodic") if this == ";" && before == "periodic" => {
-                return Some("write what ends as it begins: `periodic x, y;`".into());
-            }
             Some("jump") if this == ";" && before == "jump" => {
                 return Some("write what may jump at the start of the phase: `jump x, y;`".into());
             }
@@ -310,8 +252,14 @@ impl Here<'_> {
         if self.first_word() == Some("soft") && self.expected.has(Rule::relation) {
             return Some("a soft constraint is `soft(w): c`, with two prices `soft(linear = v, square = w): c`".into());
         }
-        if this == "at" && self.expected.has(Rule::part) {
+        if this == "at" && self.expected.has(Rule::part) && self.first_word() != Some("measure") {
             return Some("one time has a block of its own: `at 2.5 [s] { ... }`".into());
+        }
+        let advice = self.advice_on_kinds(this, before).or_else(|| self.advice_on_periodic(this, before));
+        let advice =
+            advice.or_else(|| self.advice_on_loops(this, before)).or_else(|| self.advice_on_times(this, before));
+        if let Some(advice) = advice.or_else(|| self.advice_on_constraints(this, before)) {
+            return Some(advice);
         }
         if let Some(advice) = self.advice_on_lists(this).or_else(|| self.advice_on_units(this, before)) {
             return Some(advice);

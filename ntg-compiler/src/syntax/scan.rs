@@ -214,5 +214,6 @@ impl<'a> Scanner<'a> {
 
 /// How many bytes at the front of `text` belong to a name, its first character not considered.
 fn name_length(text: &str) -> usize {
-    text.find(|c| !unicode_ident::is_xid_continue(c)).unwrap_or(text.len())
+    // The dot of products is a letter to Unicode, and to no engineer.
+    text.find(|c| !unicode_ident::is_xid_continue(c) || c == '·').unwrap_or(text.len())
 }

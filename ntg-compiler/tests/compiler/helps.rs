@@ -350,3 +350,29 @@ fn a_unit_behind_a_quotient_belongs_to_the_divisor() {
         "a unit belongs to the number before it, here to 2 alone: write `1 [m/s] / 2`",
     );
 }
+
+#[test]
+fn what_is_measured_is_minimised_as_a_pure_number() {
+    let measuring = "    duration T = 5 [s];\n    output x [m]: spline(order = 5, intervals = 4);
+    measure { at(2 [s], x) == 3 [m] sigma 1 [cm]; }\n    ";
+    let both = told(&format!("{measuring}maximize final(x) / 1 [m];"));
+    let help = "a problem with `measure` is minimised: change the sign of the term and write `minimize`";
+    says(&both, "error[E061]: a problem is minimised or maximised, not both", "spec.ntg:5:5", help);
+    let help = "beside `measure` the objective is a pure number: divide its other terms, `e / 1 [m]`";
+    let length = told(&format!("{measuring}minimize final(x);"));
+    says(&length, "error[E041]: a length [m] cannot be added to a pure number", "spec.ntg:5:14", help);
+    assert_eq!((errors(&both), errors(&length)), (1, 1));
+    assert_eq!(told(&format!("{measuring}minimize final(x) / 1 [m];")), "");
+}
+
+#[test]
+fn ends_of_functions_of_time_are_written_as_the_helps_say() {
+    for right in
+        ["initial { initial(x) == 0;  x == 0; }", "final { final(x) == 0; }", "temporal { at(T / 2, x) == 0; }"]
+    {
+        let findings = told(&format!("{MOVING}\n    {right}"));
+        assert_eq!(errors(&findings), 0, "{findings}");
+    }
+    let text = format!("{MOVING}\n    let d = a / 2;\n    let b = d2 / 3;");
+    assert!(!told(&text).contains("der("), "{}", told(&text));
+}

@@ -37,7 +37,9 @@ impl Here<'_> {
                 "bounds are written `in 0 .. 1`, with one end `in 0 ..` or `in .. 1`".into()
             }
             "=" if matches!(first, "state" | "input" | "output") && has(Rule::kw_in) => {
-                let name = self.word(self.statement_start() + 1);
+                let behind_size =
+                    if before == "]" { self.size_before().and_then(|open| open.checked_sub(1)) } else { None };
+                let name = self.word(behind_size.unwrap_or(self.index - 1));
                 format!(
                     "a value at the start is a condition, `initial {{ {name} == 0; }}`; bounds are written `in 0 .. 1`"
                 )
@@ -153,6 +155,11 @@ impl Here<'_> {
             }
         }
         None
+    }
+
+    /// The bracket that opens what closes just before.
+    fn size_before(&self) -> Option<usize> {
+        (self.statement_start()..self.index).rev().find(|at| self.word(*at) == "[")
     }
 
     /// The token behind the next such word.

@@ -24,8 +24,13 @@ impl Here<'_> {
             return false;
         }
         let this = self.word(self.index);
-        if this == "for" || this == "soft" {
+        // Behind its constraint neither begins another one: `x >= 0 for i in 1 .. 3;`, `x <= 1 soft 3;`
+        let rest = |sign: &str| (self.index..self.statement_end() + 1).any(|at| self.word(at) == sign);
+        if (this == "for" && rest("{")) || (this == "soft" && rest(":")) {
             return self.relates(self.statement_start(), self.index);
+        }
+        if this == "for" || this == "soft" {
+            return false;
         }
         let begins = match self.word(self.index + 1) {
             "(" => BEGINNING.contains(&this) || self.is_declared(this),
@@ -35,7 +40,7 @@ impl Here<'_> {
     }
 
     /// Whether the innermost open brace is that of a block of relations.
-    fn is_in_relations(&self) -> bool {
+    pub(super) fn is_in_relations(&self) -> bool {
         let block = self.block_around();
         matches!(
             block,
@@ -56,7 +61,7 @@ impl Here<'_> {
     }
 
     /// The token that ends the statement.
-    fn statement_end(&self) -> usize {
+    pub(super) fn statement_end(&self) -> usize {
         let last = self.scan.tokens.len();
         (self.index..last).find(|at| matches!(self.word(*at), ";" | "{" | "}")).unwrap_or(last)
     }

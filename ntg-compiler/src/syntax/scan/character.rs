@@ -18,6 +18,12 @@ impl Scanner<'_> {
                 length = quoted.len() + 2;
             }
         }
+        if c == '°' && self.text[self.pos + c.len_utf8()..].starts_with(['C', 'F']) {
+            help = "temperatures count from absolute zero: write `293.15 [K]` for 20 degrees Celsius".to_owned();
+        }
+        if c == '|' && count == 2 {
+            help = "write `norm(v)` for the length of a vector; two constraints are two statements".to_owned();
+        }
         if c == '@' {
             help = self.at_sign().map_or(help, str::to_owned);
         }
@@ -80,8 +86,9 @@ fn is_unseen(c: char) -> bool {
 /// not put in: long chains of them would nest without having been counted.
 fn advice(c: char) -> (&'static str, String) {
     let (instead, help) = match c {
-        '≤' => ("<=", "write `<=`"),
-        '≥' => (">=", "write `>=`"),
+        '≤' | '⩽' | '≦' => ("<=", "write `<=`"),
+        '≥' | '⩾' | '≧' => (">=", "write `>=`"),
+        '≡' | '≔' => ("==", "write `==` for what shall hold, `=` for what is defined"),
         '≠' => ("==", "a constraint is written with `==`, `<=` or `>=`"),
         '×' | '·' | '∗' | '⋅' => ("*", "write `*`"),
         '÷' | '∕' => ("/", "write `/`"),
@@ -102,7 +109,7 @@ fn advice(c: char) -> (&'static str, String) {
         '%' => ("", "write a share as a number, `0.05`; comments begin with `//`"),
         '#' => ("", "comments begin with `//`"),
         '@' => ("*", "write `*`, which is the product of matrices too"),
-        '~' => (
+        '~' | '≈' | '≃' | '≅' => (
             "",
             "say which side is meant, with `<=` or `>=`; how uncertain a measurement is stands behind it: `x == 2 [cm] sigma 1 [cm]`",
         ),
