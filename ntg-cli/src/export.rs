@@ -17,6 +17,7 @@ use ntg_runtime::transcribe::{SetupError, Transcription};
 use serde_json::json;
 
 use crate::arguments::Format;
+use crate::runs::SAVED;
 use crate::{Exit, files, guess, setup};
 
 /// How many violations are listed.
@@ -148,7 +149,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     }
     let read = arguments.problem.read()?;
     let mut nlp = Transcription::new(&read.problem).map_err(|error| read.said(error))?;
-    let found = point(&arguments.point, &read, &nlp)?;
+    let (found, is_interpolated) = point(&arguments.point, &read, &nlp)?;
     let sizes_from = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
     nlp.set_scales(&sizes_from, &Settings::default()).map_err(|error| read.said(error))?;
     nlp.take_smaller_sizes(&found.x);
@@ -163,6 +164,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         nlp: &nlp,
         read: &read,
         found: &found,
+        is_interpolated,
         judged: &judged,
         objective,
         is_solution: worst <= tolerance,
@@ -183,19 +185,24 @@ fn name(nlp: &Transcription<'_>, of: Bounded) -> String {
     }
 }
 
-/// Reads a point from a solver's file or from a saved solution.
-fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Solution, String> {
+/// Reads a point from a solver's file or from a saved solution, which is interpolated where its splines are others.
+fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<(Solution, bool), String> {
     if path.extension().is_none_or(|extension| extension != "sol") {
-        let (guess, saved) = guess::read_point(path, &read.problem)?;
+        let or_solver = |error: String| match error.ends_with(SAVED) {
+            true => format!("{error}, or the `.sol` of a solver"),
+            false => error,
+        };
+        let (guess, is_same, saved) = guess::read_point(path, &read.problem).map_err(or_solver)?;
         let x = start(nlp, Some(&guess)).map_err(|error| read.said(error))?;
         let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
         let multipliers =
             saved.filter(|saved| saved.len() == nlp.rows()).map(|saved| saved.iter().map(|y| sign * y).collect());
-        return Ok(Solution { message: String::new(), x, multipliers });
+        return Ok((Solution { message: String::new(), x, multipliers }, !is_same));
     }
     let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
     let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
-    Solution::read(&text, &Order::of(&expressions)).map_err(|error| format!("`{}`: {error}", path.display()))
+    let read = Solution::read(&text, &Order::of(&expressions));
+    read.map(|found| (found, false)).map_err(|error| format!("`{}`: {error}", path.display()))
 }
 
 /// What is printed.
@@ -203,6 +210,8 @@ struct Said<'a> {
     nlp: &'a Transcription<'a>,
     read: &'a Read,
     found: &'a Solution,
+    /// Whether the point was saved on other splines.
+    is_interpolated: bool,
     judged: &'a Judgement,
     objective: f64,
     is_solution: bool,
@@ -223,6 +232,9 @@ impl Said<'_> {
         let unit = &self.read.program.structure.objective_unit.symbol;
         let mut lines = vec![];
         lines.extend(self.found.message.lines().map(|line| format!("solver:           {line}")));
+        if self.is_interpolated {
+            lines.push("point:            interpolated: it was saved by a problem with other splines".to_owned());
+        }
         lines.push(format!("objective:        {:.10e} {unit}", self.objective).trim_end().to_owned());
         lines.push(format!("violation:        {:.3e} (relative)", self.judged.violation()));
         match &self.judged.optimality {

@@ -18,12 +18,13 @@ pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> 
     of(&saved(path)?, path, problem)
 }
 
-/// As [`read`], with the multipliers of the rows where the splines are the same; none in files from before they were saved.
-pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, Option<Vec<f64>>), String> {
+/// As [`read`], with whether the splines are the same, and the multipliers of the rows where they are; none in files from
+/// before they were saved.
+pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, bool, Option<Vec<f64>>), String> {
     let saved = saved(path)?;
     let is_same = saved["layout"] == layout(&problem.structure());
     let multipliers = numbers(&saved["row_multipliers"]).filter(|multipliers| is_same && !multipliers.is_empty());
-    Ok((of(&saved, path, problem)?, multipliers))
+    Ok((of(&saved, path, problem)?, is_same, multipliers))
 }
 
 /// The text of a saved solution of this version.

@@ -79,6 +79,15 @@ fn a_point_that_meets_all_constraints_is_called_a_solution_only_by_its_multiplie
     let [same, other] = ["cheap.ntg", "dear.ntg"].map(|of| check(of, "run.json"));
     assert!(text(&same.stdout).ends_with("\na solution\n"), "{}", text(&same.stdout));
     assert_eq!((other.status.code(), text(&other.stdout).ends_with("\nno solution\n")), (Some(1), true));
+    // A problem with other splines.
+    std::fs::write(folder.path().join("fine.ntg"), spec(0.0).replace("intervals = 4", "intervals = 5"))
+        .expect("written");
+    let fine = text(&check("fine.ntg", "run.json").stdout);
+    assert!(
+        fine.starts_with("point:            interpolated: it was saved by a problem with other splines\n"),
+        "{fine}"
+    );
+    assert!(!text(&same.stdout).contains("interpolated"), "{}", text(&same.stdout));
     // A file from before multipliers were saved.
     let saved = std::fs::read_to_string(folder.path().join("run.json")).expect("saved");
     let mut saved: Value = serde_json::from_str(&saved).expect("JSON");

@@ -98,6 +98,7 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
     (&["solve", "mission.ntg", "--guess", "runs.json"], "did you mean `run.json`?"),
     (&["solve", "mission.ntg", "--guess", "mission.ntg"], "give a file that `ntg solve --save` has written"),
     (&["solve", "mission.ntg", "--guess", "bad.json"], "give a file that `ntg solve --save` has written"),
+    (&["check-solution", "mission.ntg", "bad.json"], "`ntg solve --save` has written, or the `.sol` of a solver"),
     (&["solve", "mission.ntg", "--save", "run.json"], "give --force to replace it, or another name"),
     (&["solve", "mission.ntg", "--save", "nowhere/run.json"], "`nowhere` is no folder; make it first"),
     (&["solve", "mission.ntg", "--time-limit", "-1"], "a positive number of seconds"),

@@ -25,7 +25,10 @@ impl Elaborator<'_> {
                 _ => None,
             },
         };
-        let declared = phase.and_then(|phase| self.problem.phases.get(phase)).map(|phase| &phase.duration);
+        // The name of the whole is that of all members of a family.
+        let is_whole = matches!(scope, GuessScope::Agent(..));
+        let declared = phase.and_then(|phase| self.problem.phases.get(phase));
+        let declared = declared.filter(|phase| phase.family.is_none() || !is_whole).map(|phase| &phase.duration);
         if let Some(Duration::Free(bounds)) = declared
             && self.problem.dag.is_constant(node).is_some_and(|value| value > 0.0)
         {

@@ -366,6 +366,16 @@ fn what_is_measured_is_minimised_as_a_pure_number() {
 }
 
 #[test]
+fn the_time_of_all_members_is_not_held_against_the_bounds_of_one() {
+    let text = "    duration T in 2 .. 30 [s];\n    output x [m]: spline(order = 5, intervals = 1, smoothness = 3);
+    phase leg[i in 1 .. 3] after leg[i - 1] { duration in 0.2 .. 5 [s]; }\n    minimize T;
+    initial { x == 0;  der(x) == 0; }\n    final { x == 5 [m]; }\n    trajectory { der(x, 2) in -1 .. 1 [m/s^2]; }";
+    assert_eq!(told(&format!("{text}\n    guess {{ T = 10 [s]; }}")), "");
+    let member = told(&format!("{text}\n    guess {{ duration(leg[2]) = 10 [s]; }}"));
+    assert!(member.starts_with("note[N010]: `duration(leg[2])` is guessed above its upper bound"), "{member}");
+}
+
+#[test]
 fn ends_of_functions_of_time_are_written_as_the_helps_say() {
     for right in
         ["initial { initial(x) == 0;  x == 0; }", "final { final(x) == 0; }", "temporal { at(T / 2, x) == 0; }"]
