@@ -59,6 +59,9 @@ impl Settings {
             let message = format!("`{}` has no setting `{}`", self.owner, name.text);
             let help = match nearest(&name.text, self.known.iter().copied()) {
                 Some(meant) => format!("did you mean `{meant}`?"),
+                None if name.text == "periodic" => {
+                    "what ends as it begins has a statement of its own: `periodic x;`".into()
+                }
                 None if self.known.is_empty() => "it takes no settings at all".into(),
                 None => format!("it takes {}", list(&self.known)),
             };

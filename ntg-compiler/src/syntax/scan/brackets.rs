@@ -167,7 +167,9 @@ impl Brackets {
         let Some(mut cut) = self.cut.take() else { return false };
         let first = cut.semicolons[0];
         let rest = &text[first.start as usize..span.start as usize];
-        if rest.contains(['\n', '=']) || cut.openers.pop() != Some(closes(closer)) {
+        let statement = text[..first.start as usize].rsplit([';', '{', '}']).next().unwrap_or_default();
+        let is_loop = statement.trim_start().strip_prefix("for").is_some_and(|rest| rest.trim_start().starts_with('('));
+        if rest.contains('\n') || (rest.contains('=') && !is_loop) || cut.openers.pop() != Some(closes(closer)) {
             return false;
         }
         for semicolon in &cut.semicolons {
@@ -178,7 +180,11 @@ impl Brackets {
             let finding = Diagnostic::new(Code::Unexpected, first, "`;` ends a statement, and parts no elements");
             report(
                 found,
-                finding.help("a vector is a list, `(a, b)`, a matrix a list of its rows, `((a, b), (c, d))`"),
+                finding.help(if is_loop {
+                    "write `for i in 1 .. 3 { ... }`"
+                } else {
+                    "a vector is a list, `(a, b)`, a matrix a list of its rows, `((a, b), (c, d))`"
+                }),
             );
         }
         self.cut = (!cut.openers.is_empty()).then_some(Cut { is_told: true, ..cut });

@@ -18,6 +18,9 @@ impl Scanner<'_> {
                 length = quoted.len() + 2;
             }
         }
+        if c == '°' && self.text[self.pos + c.len_utf8()..].starts_with('/') {
+            help = "write `deg`, as in `30 [deg/s]`".to_owned();
+        }
         if c == '°' && self.text[self.pos + c.len_utf8()..].starts_with(['C', 'F']) {
             help = "temperatures count from absolute zero: write `293.15 [K]` for 20 degrees Celsius".to_owned();
         }
@@ -70,8 +73,18 @@ impl Scanner<'_> {
             (Some(name), 1) if self.text[self.pos + 1..].trim_start().starts_with(['*', '@']) => format!(
                 "write `dot({name}, b)` for a product of vectors, `transpose({name})` for a matrix, `der({name})` for the derivative"
             ),
-            (Some(name), 1) => format!("write `der({name})` for the derivative"),
-            (Some(name), _) => format!("write `der({name}, {count})` for the derivative"),
+            (Some(name), _) => {
+                let of = if count == 1 { format!("der({name})") } else { format!("der({name}, {count})") };
+                match self.text[self.pos + count..].trim_start() {
+                    rest if rest.starts_with("(0)") => {
+                        format!("write `initial({of})`, inside `initial {{ }}` `{of}` alone")
+                    }
+                    rest if ["(T)", "(tf)", "(t_f)"].iter().any(|end| rest.starts_with(end)) => {
+                        format!("write `final({of})`, inside `final {{ }}` `{of}` alone")
+                    }
+                    _ => format!("write `{of}` for the derivative"),
+                }
+            }
             (None, _) => "derivatives are written `der(x)`, strings in double quotes".into(),
         }
     }
