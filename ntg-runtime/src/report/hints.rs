@@ -115,7 +115,9 @@ pub(super) fn ran_off(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
     for (phase, member) in layout.phases.iter().enumerate() {
         let declared = &structure.phases[member.phase];
         for (output, own) in member.outputs.iter().enumerate() {
-            let sizes = own.coefficients.iter().map(|c| (x[*c as usize].abs(), nlp.limits.scale[*c as usize]));
+            let origin = |c: u32| nlp.origin.get(c as usize).copied().unwrap_or(0.0);
+            let sizes =
+                own.coefficients.iter().map(|c| ((x[*c as usize] - origin(*c)).abs(), nlp.limits.scale[*c as usize]));
             let far =
                 sizes.map(|(value, size)| (value / size, value)).fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a });
             if far.0 > RAN_OFF {

@@ -233,12 +233,19 @@ impl Report {
         self.status.has_solution()
     }
 
+    /// A constraint holds at a point where it is violated by at most so many tolerances. A law: that of the acceptable end
+    /// (1e-6) to the default tolerance.
+    pub(crate) const LOOSER: f64 = 100.0;
+
+    /// Whether a constraint of a solution is violated at a point by more, relative to the constraint's terms there.
+    pub(crate) fn is_loose(&self, tolerance: f64) -> bool {
+        self.has_solution() && self.violation.points > Self::LOOSER * tolerance
+    }
+
     /// Takes back that there is a solution where a constraint is violated at a point by more than a hundred tolerances,
     /// relative to the constraint's terms there: the scales of the solve were wrong.
     pub(crate) fn judge_points(&mut self, tolerance: f64) {
-        /// That of the acceptable end (1e-6) to the default tolerance.
-        const LOOSER: f64 = 100.0;
-        if self.has_solution() && self.violation.points > LOOSER * tolerance {
+        if self.is_loose(tolerance) {
             self.status = Status::StepTooSmall;
             self.advice = status::advice(&self.status, self.solution.structure());
         }

@@ -12,6 +12,7 @@ use crate::report::status::in_words;
 use crate::report::{Report, StepReport, user};
 use crate::settings::{Method, Settings};
 use crate::solution::{Inner, Solution, Value};
+use crate::transcribe::shifted::Shifted;
 use crate::transcribe::{Change, Kept, Model, SetupError, Singular, Transcription, Workspace, singular};
 use ntg_nlp::{Evaluation, Nlp, Outcome, Start, Status, ipm, is_solution_by, method};
 use ntg_structure::Structure;
@@ -125,6 +126,21 @@ impl Session {
     /// One solve by the method of the settings, where an automatic one is the interior-point method. That keeps its
     /// analysis.
     pub(super) fn solve_once(&mut self, nlp: &Transcription, first: FirstPoint<'_>, settings: &Settings) -> Outcome {
+        match Shifted::of(nlp) {
+            Some(shifted) => {
+                let x = shifted.shift(first.x);
+                shifted.unshifted(self.solve_program(&shifted, FirstPoint { x: &x, ..first }, settings))
+            }
+            None => self.solve_program(nlp, first, settings),
+        }
+    }
+
+    fn solve_program<N: Nlp<Workspace = Workspace>>(
+        &mut self,
+        nlp: &N,
+        first: FirstPoint<'_>,
+        settings: &Settings,
+    ) -> Outcome {
         let options = settings.solver_options();
         match settings.method {
             Method::Sqp => method::solve_from(nlp, first.x, first.from, &options),
@@ -172,6 +188,23 @@ impl Session {
         outcome
     }
 
+    /// Goes on from a solution whose constraints do not hold by the size of their terms: by the slopes at its start they do,
+    /// as where all terms are 0, or a start was thousands of sizes off.
+    fn tightened(&mut self, nlp: &Transcription, report: &Report, settings: &Settings) -> Outcome {
+        /// Of what would be enough. A choice.
+        const PART: f64 = 0.1;
+        /// A law: rounding of rows that are made of a hundred terms of size 1.
+        const LEAST: f64 = 1e-14;
+        let enough = Report::LOOSER * settings.constraint_tolerance / report.violation.points;
+        let met = report.residuals.scaled.primal.min(settings.constraint_tolerance);
+        let constraint_tolerance = (PART * enough * met).max(LEAST);
+        let left = settings.max_iterations.saturating_sub(report.iterations);
+        let spent = Duration::try_from_secs_f64(report.seconds).unwrap_or_default();
+        let settings = Settings { constraint_tolerance, max_iterations: left, ..settings.after(spent) };
+        let own = &report.solution.inner;
+        self.solve_once(nlp, FirstPoint { x: &own.x, from: Start::Warm(own.multipliers()) }, &settings)
+    }
+
     /// Keeps the program and says what was found.
     pub(super) fn report(
         &mut self,
@@ -194,6 +227,18 @@ impl Session {
             fine.buffers = nlp.workspace();
         }
         let mut report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.buffers), history)?;
+        if report.is_loose(settings.constraint_tolerance) {
+            let next = self.tightened(&nlp, &report, settings);
+            let mut history = report.history.clone();
+            history.iter_mut().last().into_iter().for_each(|step| {
+                step.iterations += next.iterations;
+                step.seconds += next.seconds;
+            });
+            let tight = Report::new(&nlp, next, (&mut fine.plan, &mut fine.buffers), history)?;
+            if tight.has_solution() && !tight.is_loose(settings.constraint_tolerance) {
+                report = tight;
+            }
+        }
         report.between_tolerance = settings.between_tolerance;
         report.judge_points(settings.constraint_tolerance);
         report.simulation = told_by_simulation(&nlp, report.solution.coefficients(), report.has_solution());

@@ -11,6 +11,8 @@ use ntg_nlp::{Block, BlockValues, Entry, Evaluation, Limits, Nlp, NotFinite, Tar
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(crate) batches: Vec<BatchWork>,
+    /// The point itself, where variables are measured from their origins.
+    pub(super) point: Vec<f64>,
 }
 
 impl Nlp for Transcription<'_> {
@@ -36,7 +38,7 @@ impl Nlp for Transcription<'_> {
             hessian: vec![0.0; block.hessian.len() * block.elements],
         };
         let blocks = self.elements.blocks.iter().map(block).collect();
-        (Workspace { batches }, Evaluation { objective: 0.0, rows: vec![0.0; self.rows()], blocks })
+        (Workspace { batches, point: vec![] }, Evaluation { objective: 0.0, rows: vec![0.0; self.rows()], blocks })
     }
 
     fn values(&self, x: &[f64], work: &mut Workspace, out: &mut Evaluation) -> Result<(), NotFinite> {

@@ -35,6 +35,7 @@ mod repeated;
 pub(crate) mod rows;
 mod scale;
 pub(crate) mod shape;
+pub(crate) mod shifted;
 mod shrinking;
 pub(crate) mod singular;
 mod sizes;
@@ -80,6 +81,8 @@ pub struct Transcription<'p> {
     pub(crate) model: Arc<Model>,
     pub(crate) elements: Elements,
     pub(crate) limits: Limits,
+    /// From where variables are measured, by their sizes; empty where all are from 0 (docs/maths.md, equation 5.5a).
+    pub(crate) origin: Vec<f64>,
     /// Whether the settings say the size of a variable; empty before there are sizes.
     pub(crate) has_named_size: Vec<bool>,
     pub(crate) linear: LinearSystem,
@@ -109,7 +112,7 @@ impl Kept {
     /// The transcription again; `problem` is the one that it had, or one that differs in parameters.
     pub(crate) fn of(self, problem: &dyn Problem) -> Transcription<'_> {
         let Self { model, elements, limits, linear } = self;
-        Transcription { problem, model, elements, limits, has_named_size: vec![], linear }
+        Transcription { problem, model, elements, limits, origin: vec![], has_named_size: vec![], linear }
     }
 }
 
@@ -134,7 +137,7 @@ impl<'p> Transcription<'p> {
         limits.angles = angles(&model.structure, &model.layout);
         limits.shrinking = shrinking::shrinking(&model.structure, &model.layout, &elements, &bounds);
         let mut transcription =
-            Self { problem, model: Arc::new(model), elements, limits, has_named_size: vec![], linear };
+            Self { problem, model: Arc::new(model), elements, limits, origin: vec![], has_named_size: vec![], linear };
         transcription.limits.alike = transcription.alike();
         Ok(transcription)
     }

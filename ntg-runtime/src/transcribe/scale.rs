@@ -7,6 +7,7 @@ use super::error::SetupError;
 use super::instances::{family_len, family_members};
 use super::layout::Time;
 use super::rows::{RowInfo, RowKind, bound_size};
+use super::sizes::Shared;
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
 use ntg_structure::{Family, Unit};
@@ -27,6 +28,10 @@ const ROUNDING: Range<f64> = 2e-17..1e-14;
 /// flat at the guess, as a distance is where two vehicles meet. A choice: such sizes are off by 1e-16 or 1e16.
 const OTHER_KIND: f64 = 1e6;
 
+/// An output whose guess varies by such a part of what it is has its size from what it varies by. A choice: from rounding to
+/// where a size of either kind serves.
+const OFFSET: Range<f64> = 1e-10..1e-3;
+
 /// An output in all phases of an agent.
 struct WholeOutput<'a> {
     name: &'a str,
@@ -44,7 +49,9 @@ impl Transcription<'_> {
     pub fn set_scales(&mut self, guess: &[f64], settings: &Settings) -> Result<(), SetupError> {
         let automatic = settings.scaling != Scaling::Off;
         let mut scale = vec![1.0; self.limits.lower.len()];
+        self.origin.clear();
         if automatic {
+            self.origin = self.origins(guess);
             self.automatic(guess, &mut scale);
         }
         let from_guess = scale.clone();
@@ -98,16 +105,35 @@ impl Transcription<'_> {
         self.limits.row_scale = self.row_scales();
     }
 
+    /// Where outputs begin whose guess varies by next to nothing beside what it is: at its middle (docs/maths.md, equation
+    /// 5.5a). Empty where there are none.
+    fn origins(&self, guess: &[f64]) -> Vec<f64> {
+        let mut origins = vec![];
+        for output in self.model.layout.agents.iter().flat_map(|agent| self.outputs_of(agent.phases.clone())) {
+            let values = output.coefficients.iter().map(|v| guess[*v as usize]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (v.min(l), v.max(h)));
+            if OFFSET.contains(&((high - low) / low.abs().max(high.abs()))) {
+                origins.resize(guess.len(), 0.0);
+                output.coefficients.iter().for_each(|v| origins[*v as usize] = f64::midpoint(low, high));
+            }
+        }
+        origins
+    }
+
     /// Equation 5.5: the largest guessed coefficient or guess; else what balances constraints; else the unit.
     fn automatic(&self, guess: &[f64], scale: &mut [f64]) {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         let agents = layout.agents.iter();
         let outputs: Vec<WholeOutput> = agents.flat_map(|agent| self.outputs_of(agent.phases.clone())).collect();
         let mut guess = guess.to_vec();
+        let from_origin = |known: &[f64]| -> Vec<f64> {
+            let origins = self.origin.iter().copied().chain(std::iter::repeat(0.0));
+            known.iter().zip(origins).map(|(value, origin)| value - origin).collect()
+        };
         let largest = |output: &WholeOutput, of: &[f64]| {
             output.coefficients.iter().map(|v| of[*v as usize].abs()).fold(0.0, f64::max)
         };
-        let mut guessed: Vec<f64> = outputs.iter().map(|output| largest(output, &guess)).collect();
+        let mut guessed: Vec<f64> = outputs.iter().map(|output| largest(output, &from_origin(&guess))).collect();
         let most: Vec<f64> = outputs.iter().map(|output| of_kind(&outputs, &guessed, output, f64::max)).collect();
         for ((output, guessed), most) in outputs.iter().zip(&mut guessed).zip(most) {
             if most > 0.0 && ROUNDING.contains(&(*guessed / most)) {
@@ -129,15 +155,16 @@ impl Transcription<'_> {
                 scale[variable] = size(variable, &declared.unit);
             }
         }
-        let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
+        let groups = self.groups();
         // One unit everywhere is what nobody has guessed of an output above 0 (section 8.1), and no size of its own.
         let mut known = guess.clone();
         for output in outputs.iter().filter(|o| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor)) {
             output.coefficients.iter().for_each(|v| known[*v as usize] = 0.0);
         }
         // Its own bound would tell it there; where functions have no slopes at the bound, so it is.
-        if !self.balance_sizes(&groups, (&known, &known), scale) {
-            self.balance_sizes(&groups, (&guess, &known), scale);
+        let sizes = from_origin(&known);
+        if !self.balance_sizes(&groups, (&known, &sizes), scale) {
+            self.balance_sizes(&groups, (&guess, &sizes), scale);
         }
         for (output, own) in outputs.iter().zip(&guessed) {
             let least = of_kind(&outputs, &guessed, output, f64::min);
@@ -167,9 +194,9 @@ impl Transcription<'_> {
         let scale = &self.limits.scale;
         let groups = self.groups();
         let mut largest: Vec<f64> = x.iter().map(|x| x.abs()).collect();
-        for (group, _) in &groups {
-            let most = group.iter().map(|v| largest[*v as usize]).fold(0.0, f64::max);
-            group.iter().for_each(|v| largest[*v as usize] = most);
+        for Shared { variables, .. } in &groups {
+            let most = variables.iter().map(|v| largest[*v as usize]).fold(0.0, f64::max);
+            variables.iter().for_each(|v| largest[*v as usize] = most);
         }
         let is_small =
             |v: usize| !self.has_named_size.get(v).is_some_and(|named| *named) && largest[v] < TOO_LARGE * scale[v];
@@ -179,8 +206,7 @@ impl Transcription<'_> {
         // What balances constraints at `x`, where all other sizes are known.
         let known: Vec<f64> = (0..scale.len()).map(|v| if is_small(v) { 0.0 } else { scale[v] }).collect();
         let mut balanced = vec![0.0; scale.len()];
-        let variables: Vec<Vec<u32>> = groups.iter().map(|(group, _)| group.clone()).collect();
-        self.balance_sizes(&variables, (x, &known), &mut balanced);
+        self.balance_sizes(&groups, (x, &known), &mut balanced);
         let units = self.units();
         let smaller = |v: usize| {
             let size = balanced[v].max(largest[v]);
@@ -195,17 +221,25 @@ impl Transcription<'_> {
         differs.then(|| sizes.into_iter().zip(scale).map(|(smaller, size)| smaller.unwrap_or(*size)).collect())
     }
 
-    /// The coefficients of each output, and its unit.
-    fn groups(&self) -> Vec<(Vec<u32>, f64)> {
+    /// What shares a size: the coefficients of each output of each agent.
+    fn groups(&self) -> Vec<Shared> {
         let agents = self.model.layout.agents.iter();
-        let outputs = agents.flat_map(|agent| self.outputs_of(agent.phases.clone()));
-        outputs.map(|output| (output.coefficients, output.unit.factor)).collect()
+        let outputs: Vec<WholeOutput> = agents.flat_map(|agent| self.outputs_of(agent.phases.clone())).collect();
+        let kind = |name: &str| outputs.iter().position(|output| output.name == name).unwrap_or_default();
+        let shared = outputs.iter().map(|output| Shared {
+            variables: output.coefficients.clone(),
+            kind: kind(output.name),
+            unit: output.unit.factor,
+        });
+        shared.collect()
     }
 
     /// The unit of each variable: that of its output or declaration.
     pub(crate) fn units(&self) -> Vec<f64> {
         let mut units = vec![1.0; self.limits.lower.len()];
-        self.groups().into_iter().for_each(|(group, unit)| group.iter().for_each(|v| units[*v as usize] = unit));
+        for Shared { variables, unit, .. } in self.groups() {
+            variables.iter().for_each(|v| units[*v as usize] = unit);
+        }
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
             let own = units.iter_mut().skip(*first as usize).take(family_len(declared.family));
