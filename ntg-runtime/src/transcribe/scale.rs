@@ -7,7 +7,6 @@ use super::error::SetupError;
 use super::instances::{family_len, family_members};
 use super::layout::Time;
 use super::rows::{RowInfo, RowKind, bound_size};
-use super::sizes::Shared;
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
 use ntg_structure::{Family, Unit};
@@ -155,7 +154,7 @@ impl Transcription<'_> {
                 scale[variable] = size(variable, &declared.unit);
             }
         }
-        let groups = self.groups();
+        let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
         // One unit everywhere is what nobody has guessed of an output above 0 (section 8.1), and no size of its own.
         let mut known = guess.clone();
         for output in outputs.iter().filter(|o| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor)) {
@@ -194,9 +193,9 @@ impl Transcription<'_> {
         let scale = &self.limits.scale;
         let groups = self.groups();
         let mut largest: Vec<f64> = x.iter().map(|x| x.abs()).collect();
-        for Shared { variables, .. } in &groups {
-            let most = variables.iter().map(|v| largest[*v as usize]).fold(0.0, f64::max);
-            variables.iter().for_each(|v| largest[*v as usize] = most);
+        for (group, _) in &groups {
+            let most = group.iter().map(|v| largest[*v as usize]).fold(0.0, f64::max);
+            group.iter().for_each(|v| largest[*v as usize] = most);
         }
         let is_small =
             |v: usize| !self.has_named_size.get(v).is_some_and(|named| *named) && largest[v] < TOO_LARGE * scale[v];
@@ -206,7 +205,8 @@ impl Transcription<'_> {
         // What balances constraints at `x`, where all other sizes are known.
         let known: Vec<f64> = (0..scale.len()).map(|v| if is_small(v) { 0.0 } else { scale[v] }).collect();
         let mut balanced = vec![0.0; scale.len()];
-        self.balance_sizes(&groups, (x, &known), &mut balanced);
+        let variables: Vec<Vec<u32>> = groups.iter().map(|(group, _)| group.clone()).collect();
+        self.balance_sizes(&variables, (x, &known), &mut balanced);
         let units = self.units();
         let smaller = |v: usize| {
             let size = balanced[v].max(largest[v]);
@@ -221,25 +221,17 @@ impl Transcription<'_> {
         differs.then(|| sizes.into_iter().zip(scale).map(|(smaller, size)| smaller.unwrap_or(*size)).collect())
     }
 
-    /// What shares a size: the coefficients of each output of each agent.
-    fn groups(&self) -> Vec<Shared> {
+    /// The coefficients of each output, and its unit.
+    fn groups(&self) -> Vec<(Vec<u32>, f64)> {
         let agents = self.model.layout.agents.iter();
-        let outputs: Vec<WholeOutput> = agents.flat_map(|agent| self.outputs_of(agent.phases.clone())).collect();
-        let kind = |name: &str| outputs.iter().position(|output| output.name == name).unwrap_or_default();
-        let shared = outputs.iter().map(|output| Shared {
-            variables: output.coefficients.clone(),
-            kind: kind(output.name),
-            unit: output.unit.factor,
-        });
-        shared.collect()
+        let outputs = agents.flat_map(|agent| self.outputs_of(agent.phases.clone()));
+        outputs.map(|output| (output.coefficients, output.unit.factor)).collect()
     }
 
     /// The unit of each variable: that of its output or declaration.
     pub(crate) fn units(&self) -> Vec<f64> {
         let mut units = vec![1.0; self.limits.lower.len()];
-        for Shared { variables, unit, .. } in self.groups() {
-            variables.iter().for_each(|v| units[*v as usize] = unit);
-        }
+        self.groups().into_iter().for_each(|(group, unit)| group.iter().for_each(|v| units[*v as usize] = unit));
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
             let own = units.iter_mut().skip(*first as usize).take(family_len(declared.family));

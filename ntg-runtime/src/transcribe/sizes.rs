@@ -21,23 +21,10 @@ const DOUBTFUL: f64 = 1e-6;
 /// A bound below this part of a size that other constraints tell is met anyway, and tells no size. A law: the tolerance.
 const MET: f64 = 1e-8;
 
-/// Inferred sizes of members of one array differ by so much at most: along a chain of thirty masses a factor of 2 from each to the
-/// next is 1e9. A choice, between chains and arrays of unlike quantities, and a size that is too small is outgrown.
-const ALONG_ARRAY: f64 = 100.0;
-
 /// An integral whose value is less than the first fraction of its value beside the point is as large as that fraction of it;
 /// less than the second, it is stationary at the point but for rounding. Those of the objective (5.3).
 const LEAST_AT_POINT: f64 = 1e-2;
 const STATIONARY: f64 = 1e-6;
-
-/// Variables that share a size.
-pub(super) struct Shared {
-    pub(super) variables: Vec<u32>,
-    /// Members of one array have one number.
-    pub(super) kind: usize,
-    /// The unit, SI.
-    pub(super) unit: f64,
-}
 
 /// What shares a size (an output in all phases of an agent, a variable, a duration), and all constraints in which it
 /// stands. Every member of a constraint counts as one of its own: members may differ in size by any factor.
@@ -47,8 +34,6 @@ pub(super) struct Balance {
     group: Vec<usize>,
     /// The size of each group; none where it is not known yet.
     size: Vec<Option<f64>>,
-    /// Of members of one array the same number; none for what is no output.
-    kind: Vec<Option<usize>>,
     /// Whether a group is an integral, which has its size from the integral's values alone.
     is_integral: Vec<bool>,
     /// A bound of the group's own variables; 0 where there is none.
@@ -88,7 +73,7 @@ impl Transcription<'_> {
     /// Replaces the sizes of all groups that are 0 in the guess, by the slopes at a point, which may be that guess.
     /// `groups` are variables that share a size; every other variable is a group of its own.
     /// False, and nothing is replaced, where something is not finite at the point.
-    pub(super) fn balance_sizes(&self, groups: &[Shared], (x, guess): (&[f64], &[f64]), scale: &mut [f64]) -> bool {
+    pub(super) fn balance_sizes(&self, groups: &[Vec<u32>], (x, guess): (&[f64], &[f64]), scale: &mut [f64]) -> bool {
         let mut balance = self.balance(groups, guess);
         let (mut workspace, mut at) = self.workspace();
         let multipliers = vec![0.0; self.elements.rows.len()];
@@ -118,7 +103,9 @@ impl Transcription<'_> {
         self.size_integrals(x, scale, balance);
         balance.propagate(&[Balance::balanced]);
         if balance.size.contains(&None) {
-            balance.objective = self.objective_size(at, balance);
+            let size = self.objective_size(at, balance);
+            // What is stationary at the guess, as a sum of squares of what is 0 there, has its value.
+            balance.objective = if size > 0.0 { size } else { at.objective.abs() };
             balance.curvature = self.curvatures(x, balance);
             balance.propagate(&[Balance::balanced, Balance::curved, Balance::partly_balanced]);
         }
@@ -158,15 +145,13 @@ impl Transcription<'_> {
     }
 
     /// Groups with the sizes that the guess gives.
-    fn balance(&self, groups: &[Shared], guess: &[f64]) -> Balance {
+    fn balance(&self, groups: &[Vec<u32>], guess: &[f64]) -> Balance {
         let mut balance = Balance { group: vec![usize::MAX; guess.len()], ..Balance::default() };
-        let alone = |variables: Range<usize>| variables.map(|variable| (vec![variable as u32], None));
+        let alone = |variables: Range<usize>| variables.map(|variable| vec![variable as u32]);
         let others = alone(self.model.layout.coefficients..guess.len());
         // An integral has no guess of its own.
         let integrals = self.model.layout.integral_first.first().map_or(guess.len(), |first| *first as usize);
-        let outputs = groups.iter().map(|shared| (shared.variables.clone(), Some(shared.kind)));
-        for (variables, kind) in outputs.chain(others) {
-            balance.kind.push(kind);
+        for variables in groups.iter().cloned().chain(others) {
             let largest = variables.iter().map(|v| guess[*v as usize].abs()).fold(0.0, f64::max);
             let is_known = largest > f64::MIN_POSITIVE && (variables[0] as usize) < integrals;
             variables.iter().for_each(|v| balance.group[*v as usize] = balance.size.len());
@@ -294,23 +279,12 @@ impl Balance {
 
     /// All groups that balance constraints in which no other group is without a size.
     fn balanced(&self) -> Sizes {
-        self.sizes_by(|group| Some(self.within_kind(group, self.candidate(group, false)?))).collect()
+        self.sizes_by(|group| self.candidate(group, false)).collect()
     }
 
     /// The first group that balances the known terms of a constraint.
     fn partly_balanced(&self) -> Sizes {
-        self.sizes_by(|group| Some(self.within_kind(group, self.candidate(group, true)?))).take(1).collect()
-    }
-
-    /// A size that is not far from those of other members of the group's array.
-    fn within_kind(&self, group: usize, size: f64) -> f64 {
-        let Some(kind) = self.kind[group] else { return size };
-        let of_kind = self.kind.iter().zip(&self.size).filter(|(own, _)| **own == Some(kind));
-        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        for size in of_kind.filter_map(|(_, size)| *size) {
-            (least, most) = (least.min(size), most.max(size));
-        }
-        if most > 0.0 { size.clamp(least.min(most / ALONG_ARRAY), most.max(least * ALONG_ARRAY)) } else { size }
+        self.sizes_by(|group| self.candidate(group, true)).take(1).collect()
     }
 
     /// All groups whose curvature balances something, alone or with a group of known size.
