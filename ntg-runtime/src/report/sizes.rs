@@ -15,6 +15,10 @@ const LEAST_BETWEEN: f64 = 1e-4;
 /// output moves by less, as in a phase whose length is all but 0, nothing is missed.
 const LEAST_RATE: f64 = 1e-3;
 
+/// A limit whose terms and value vary by less than this part of the size at the points is active all along, and has that
+/// size. A choice: what a limit varies by may be next to nothing there, and no overshoot is large beside the limit.
+const LEAST_RANGE: f64 = 3e-4;
+
 /// The sizes of one member of a constraint, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Size {
@@ -39,6 +43,8 @@ struct Terms {
     variation: f64,
     /// The steepest slope of a row by a variable of its size.
     slope: f64,
+    /// Of a limit: the least and the largest value at the points.
+    limited: Option<(f64, f64)>,
 }
 
 impl Terms {
@@ -46,10 +52,11 @@ impl Terms {
         let at_points = [self.largest, self.slope].into_iter().find(|size| *size > 0.0)?;
         // Of a sine of a thousand turns the slope times the angle says nothing, nor an offset of a temperature.
         let seen = self.rate.max(self.variation);
-        let between = if self.rate > 0.0 {
-            seen.min(at_points).max(LEAST_BETWEEN * at_points).max(self.least)
-        } else {
-            at_points
+        let between = match self.limited {
+            _ if self.rate > 0.0 => seen.min(at_points).max(LEAST_BETWEEN * at_points).max(self.least),
+            // Neither a height above the sea nor the slope of a wall says how high the wall is.
+            Some((low, high)) if seen.max(high - low) > LEAST_RANGE * at_points => seen.max(high - low).min(at_points),
+            _ => at_points,
         };
         Some(Size { at_points, between })
     }
@@ -144,6 +151,13 @@ impl Sizes {
                 }
             }
             ranges.raise(&mut terms);
+        }
+        let bounds = nlp.limits.row_lower.iter().zip(&nlp.limits.row_upper);
+        for ((relation, value), (lower, upper)) in relations.of_row.iter().zip(&at.rows).zip(bounds) {
+            if lower < upper && value.is_finite() {
+                let (low, high) = terms[*relation as usize].limited.get_or_insert((*value, *value));
+                (*low, *high) = (low.min(*value), high.max(*value));
+            }
         }
         for (relation, factor) in relations.of_row.iter().zip(&outcome.row_factors) {
             if factor.is_finite() && *factor > 0.0 {
