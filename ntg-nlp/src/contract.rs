@@ -131,6 +131,9 @@ pub struct Limits {
     pub row_weight: Vec<f64>,
     /// A positive typical size of the objective; none: what it varies by at the start says.
     pub objective_size: Option<f64>,
+    /// What of the objective is nothing, as a ten thousandth of a standard deviation is in an estimate: an objective below it is
+    /// not asked for an optimum relative to itself. 0: whatever is not 0 counts.
+    pub negligible: f64,
 }
 
 /// A row that holds derivatives by a time whose scale is a variable: `c = 0` with terms over powers of it.

@@ -15,6 +15,7 @@ use crate::scaling::{Scales, Slopes, steepest_of_relations, variation};
 use crate::sizes::{Resized, multiples};
 use crate::sparse::Assembly;
 use crate::status::Status;
+use std::ops::Range;
 use std::time::Instant;
 
 /// By how much a residual may exceed the tolerance where it is measured by the slopes and sizes at the solution. A law:
@@ -155,7 +156,10 @@ pub(crate) fn until_measured<N: Nlp>(
                     Some(undamped) if !outcome.status.has_solution() => Outcome { iterations, ..undamped },
                     _ => outcome,
                 };
-                let Some(objective) = small_objective(&end, &options) else { return unless_worse(left_saddle, end) };
+                let is_something = end.objective.abs() > nlp.limits().negligible;
+                let Some(objective) = small_objective(&end, &options).filter(|_| is_something) else {
+                    return unless_worse(left_saddle, end);
+                };
                 // The lower tolerance is by the scale that the objective had.
                 resized.measure_objective(end.objective_factor.recip());
                 wide = Some((end, objective.max(LEAST_OBJECTIVE)));
@@ -253,6 +257,12 @@ fn scaled_objective(end: &Outcome) -> f64 {
     end.objective_factor * end.objective.abs()
 }
 
+/// Whether an objective is so small by its scale that what is stationary by that may be far from it by the objective
+/// itself, as beside a price of 1e9, and is not 0.
+pub(crate) fn is_little(end: &Outcome) -> bool {
+    LITTLE.contains(&scaled_objective(end))
+}
+
 /// Whether an objective is within the tolerance of 0 by its scale.
 fn is_none(end: &Outcome, options: &Options) -> bool {
     scaled_objective(end) <= options.tolerance
@@ -287,6 +297,10 @@ fn zero(before: Outcome, end: Outcome, options: &Options) -> Outcome {
     let best = if end.status == Status::Solved || is_better { end } else { before };
     Outcome { status: Status::Solved, iterations, seconds, ..best }
 }
+
+/// A law: a gradient within the tolerance of 1e-8 by the scale of the objective is one within 1e-4 of an objective that is so much
+/// smaller, and within rounding of 0 there is nothing to compare with.
+const LITTLE: Range<f64> = 1e-14..1e-4;
 
 /// How much of the objective may change in a solve that confirms it: the tolerance of acceptable ends.
 const SAME: f64 = residuals::ACCEPTABLE;
@@ -377,7 +391,10 @@ pub fn is_solution_by<N: Nlp>(nlp: &N, sizes: &[f64], end: &Outcome, options: &O
 /// The size of the objective by which a solution is none: what its terms vary by there, and what it is, where weights of
 /// terms that vanish there have made it vary by far more at the start. None where it is a solution by that size, too.
 pub(crate) fn objective_at_end<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<f64> {
-    if end.status != Status::Solved || scaled_objective(end) <= f64::EPSILON {
+    if end.status != Status::Solved
+        || scaled_objective(end) <= f64::EPSILON
+        || end.objective.abs() <= nlp.limits().negligible
+    {
         return None; // A sum of squares whose roots are 0 to the tolerance.
     }
     let sizes = Scales::sizes(nlp.limits());
@@ -386,7 +403,7 @@ pub(crate) fn objective_at_end<N: Nlp>(nlp: &N, end: &Outcome, options: &Options
     let varies = variation(nlp.blocks(), &at, &sizes).max(at.objective.abs());
     let is_wide = end.residuals.unscaled.gap > WIDE * GAP * options.tolerance * at.objective.abs();
     // Where the objective is within the tolerance of 0 by its scale, lower tolerances would not do.
-    let size = if is_wide && is_none(end, options) { at.objective.abs() } else { varies };
+    let size = if (is_wide && is_none(end, options)) || is_little(end) { at.objective.abs() } else { varies };
     if !(size.is_finite() && size > f64::MIN_POSITIVE) {
         return None;
     }

@@ -4,7 +4,9 @@ use super::state::{Analysis, State};
 use crate::contract::Nlp;
 use crate::kkt::System;
 use crate::outcome::Outcome;
-use crate::remeasure::{self, Measure, OUTGROWN, UNSEEN, is_near_scales, objective_at_end, outgrown, sizes_at_end};
+use crate::remeasure::{
+    self, Measure, OUTGROWN, UNSEEN, is_little, is_near_scales, objective_at_end, outgrown, sizes_at_end,
+};
 use crate::residuals::{self, ACCEPTABLE, ROUNDING, Residuals, slot_terms};
 use crate::scaling::Scales;
 use crate::sizes::multiples;
@@ -109,8 +111,9 @@ impl<'a, N: Nlp> State<'a, N> {
         let below = if matches!(status, Status::Solved) && rows_hold { self.below_saddle() } else { None };
         let (nlp, options) = (self.nlp, self.options);
         let (outcome, analysis) = self.leave(status);
-        let is_near =
-            |system: &System<N::Workspace>| is_near_scales(nlp, (system.scales.objective, system.latest()), &outcome);
+        let is_near = |system: &System<N::Workspace>| {
+            !is_little(&outcome) && is_near_scales(nlp, (system.scales.objective, system.latest()), &outcome)
+        };
         let holds = || below.map_or(Measure::Holds, Measure::Saddle);
         analysis.measure = if !rows_hold {
             Measure::Rows

@@ -332,7 +332,18 @@ fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f6
         row_scale: vec![1.0; elements.rows.len()],
         row_weight: vec![],
         objective_size: None,
+        negligible: if is_estimate(structure) { NEGLIGIBLE } else { 0.0 },
     }
+}
+
+/// Half a sum of squared ratios to standard deviations that is this far above its least has variables within a ten thousandth of
+/// their standard deviations (docs/maths.md, section 17). A choice.
+const NEGLIGIBLE: f64 = 1e-8;
+
+/// Whether all that is minimised are residuals of measurements.
+fn is_estimate(structure: &Structure) -> bool {
+    let is_measured = |term: usize| structure.measurements.iter().any(|measurement| measurement.term == term);
+    !structure.terms.is_empty() && (0..structure.terms.len()).all(is_measured)
 }
 
 impl Model {
