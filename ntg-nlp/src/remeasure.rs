@@ -300,7 +300,7 @@ fn zero(before: Outcome, end: Outcome, options: &Options) -> Outcome {
 
 /// A law: a gradient within the tolerance of 1e-8 by the scale of the objective is one within 1e-4 of an objective that is so much
 /// smaller, and within rounding of 0 there is nothing to compare with.
-const LITTLE: Range<f64> = 1e-14..1e-4;
+const LITTLE: Range<f64> = 1e-12..1e-4;
 
 /// How much of the objective may change in a solve that confirms it: the tolerance of acceptable ends.
 const SAME: f64 = residuals::ACCEPTABLE;

@@ -17,6 +17,7 @@ mod flight_phases;
 mod integrals;
 mod missile;
 mod norms;
+mod offsets;
 mod oscillator;
 mod out_of_reach;
 mod phases;

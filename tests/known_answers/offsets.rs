@@ -1,0 +1,161 @@
+//! Positions far from their origin, chains, heavy prices and exact data: what the sizes of a solve must not decide.
+
+use ntg::prelude::*;
+use ntg::runtime::report::Resolution;
+
+use crate::support::{Shipped, close};
+
+fn solved(text: &str) -> Report {
+    let report = solve(Shipped::text(text).problem(), &Settings::default()).expect("it can be set up");
+    assert!(report.is_solved(), "{text}\n{report}");
+    report
+}
+
+#[test]
+fn where_the_origin_is_does_not_matter() {
+    for origin in ["0", "2e5", "1e6", "4e6", "-4e6"] {
+        // A strictly convex program: 5 m in 5 s, at most 1.4 m/s.
+        let report = solved(&format!(
+            "problem Shifted {{
+                duration T = 5 [s];
+                output x, y [m]: spline(order = 5, intervals = 6);
+                minimize integral(der(x, 2)^2 + der(y, 2)^2);
+                initial {{ x == {origin} [m];  y == -3 [m];  der(x) == 0;  der(y) == 0; }}
+                final {{ x == {origin} [m] + 5 [m];  y == -3 [m];  der(x) == 0;  der(y) == 0; }}
+                trajectory {{ abs(der(x)) <= 1.4 [m/s]; }}
+            }}"
+        ));
+        close(report.objective, 2.440_219_27, 1e-6);
+        // 100 m in the least time, at most 1.5 m/s and 1 m/s^2.
+        let report = solved(&format!(
+            "problem Track {{
+                duration T in 0.1 .. 600 [s];
+                state x [m], v [m/s];
+                input u in -1 .. 1 [m/s^2];
+                collocation gauss(points = 3, intervals = 20);
+                minimize T / 1 [s];
+                dynamics {{ der(x) == v;  der(v) == u; }}
+                trajectory {{ v <= 1.5 [m/s]; }}
+                initial {{ x == {origin} [m];  v == 0; }}
+                final {{ x == {origin} [m] + 100 [m];  v == 0; }}
+            }}"
+        ));
+        close(report.objective, 68.398_547, 1e-6);
+        assert!(report.iterations < 60, "{origin}: {}", report.iterations);
+    }
+}
+
+#[test]
+fn a_wall_between_the_points_is_missed_at_any_height() {
+    for ground in [0, 1600, 3000] {
+        let text = format!(
+            "problem Wall {{
+                duration T = 20 [s];
+                output x, z [m]: spline(order = 5, intervals = 5);
+                let roof [m] = {ground} [m] + 40 [m] * exp(-((x - 50 [m]) / 0.8 [m])^2);
+                minimize integral(der(x, 2)^2 + der(z, 2)^2) / 1 [m^2/s^3];
+                initial {{ x == 0;  z == {ground} [m] + 2 [m];  der(x) == 0;  der(z) == 0; }}
+                final {{ x == 100 [m];  z == {ground} [m] + 2 [m];  der(x) == 0;  der(z) == 0; }}
+                trajectory {{ wall: z >= roof; }}
+                guess {{ z = {ground} [m] + 2 [m]; }}
+            }}"
+        );
+        let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
+        // No point sees the wall.
+        assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{ground}\n{report}");
+    }
+}
+
+#[test]
+fn a_chain_of_masses_is_pulled_at_its_end() {
+    for n in [10, 20, 30, 40] {
+        let text = format!(
+            "problem Chain {{
+                const n = {n};
+                duration T = 20;
+                state x[1 .. n], v[1 .. n];
+                input f in -3 .. 3;
+                collocation gauss(points = 3, intervals = 20);
+                dynamics {{
+                    der(x) == v;
+                    for i in 1 .. n {{
+                        der(v[i]) == (if i == 1 {{ f }} else {{ x[i - 1] - x[i] }})
+                            - (if i == n {{ 0 }} else {{ x[i] - x[i + 1] }}) - 0.1 * v[i];
+                    }}
+                }}
+                initial {{ x == 0;  v == 0; }}
+                minimize integral(f^2) * 0.01 + sum(i in 1 .. n, final((x[i] - 1)^2 + v[i]^2));
+            }}"
+        );
+        let named = Settings { scales: vec![("x".to_owned(), 1.0), ("v".to_owned(), 1.0)], ..Settings::default() };
+        let known = solve(Shipped::text(&text).problem(), &named).expect("it can be set up");
+        close(solved(&text).objective, known.objective, 1e-6);
+    }
+}
+
+#[test]
+fn an_exact_price_may_be_as_heavy_as_one_likes() {
+    for price in ["1e2", "1e5", "1e7", "1e9"] {
+        let report = solved(&format!(
+            "problem Price {{
+                duration T = 2;
+                state x;
+                input u in -3 .. 3;
+                collocation gauss(points = 3, intervals = 20);
+                minimize integral(u^2);
+                dynamics {{ der(x) == u; }}
+                initial {{ x == 0; }}
+                final {{ x == 2; }}
+                trajectory {{ soft({price}): x <= t^2 / 2 + 0.3; }}
+            }}"
+        ));
+        close(report.objective, 2.086_346_7, 1e-4);
+    }
+}
+
+#[test]
+fn parameters_of_exact_data_are_found() {
+    // exp(-a t) with a = 0.7 at t = 1 .. 6, to all digits and to twelve.
+    for digits in [16, 12] {
+        let data: Vec<String> = (1..=6).map(|t| format!("{:.digits$}", (-0.7 * f64::from(t)).exp())).collect();
+        let report = solved(&format!(
+            "problem Decay {{
+                const d[6] = ({});
+                duration T = 6;
+                state x;
+                variable a in 0.01 .. 10;
+                collocation gauss(points = 4, intervals = 20);
+                dynamics {{ der(x) == -a * x; }}
+                initial {{ x == 1; }}
+                measure {{ for i in 1 .. 6 {{ at(i, x) == d[i] sigma 0.01; }} }}
+            }}",
+            data.join(", ")
+        ));
+        close(report.solution.variable("a").expect("a variable"), 0.7, 1e-6);
+    }
+}
+
+#[test]
+fn what_stays_and_what_coasts_is_a_motion() {
+    let texts = [
+        // Of a throw the components of no force.
+        "problem Throw { duration T in 0.1 .. 10 [s]; state x, y [m]; variable u, w [m/s];
+            collocation gauss(points = 3, intervals = 4);  minimize (u^2 + 2 * w^2) / 1 [m^2/s^2];
+            initial { x == 0;  y == 0;  der(x) == u;  der(y) == w; }
+            dynamics { der(x, 2) == 0;  der(y, 2) == -9.81 [m/s^2]; }  final { x == 10 [m];  y == 0; } }",
+        // A third derivative that is 0.
+        "problem Third { duration T = 2; state x; collocation gauss(points = 3, intervals = 4); variable k; minimize k^2;
+            dynamics { der(x, 3) == 0; }  initial { x == 0;  der(x) == 0;  der(x, 2) == k; }  final { x == 2; } }",
+        // Constrained motion: nothing decides its second derivative by itself.
+        "problem Held { duration T = 2; output x, y, z: spline(order = 5, intervals = 4); minimize integral(der(y, 2)^2);
+            trajectory { z == 0;  der(x, 2) + der(z, 2) == 0; }
+            initial { x == 1;  y == 1;  der(y) == 0; }  final { y == 2;  x == 5; } }",
+    ];
+    let known = [138.734_350_468, 1.0, 0.375];
+    for (text, known) in texts.into_iter().zip(known) {
+        let report = solved(text);
+        close(report.objective, known, 1e-6);
+        assert_eq!(report.resolution(), Some(Resolution::Fine), "{report}");
+        assert!(report.confirmation.is_none(), "{report}");
+    }
+}
