@@ -113,7 +113,7 @@ impl Session {
         let (mut outcome, moved) = self.begin(nlp, first, near.as_ref().unwrap_or(&settings))?;
         budget.spend(outcome.iterations);
         let x = moved.as_deref().unwrap_or(first.x);
-        let is_settled = outcome.status.is_final() || (is_infeasible(&outcome) && nlp.is_linear());
+        let is_settled = outcome.status.is_final() || is_proven(nlp, &outcome);
         if let Some((guess, settings)) = guessed.filter(|_| !is_settled).zip(budget.attempt()) {
             nlp.set_scales(guess, &settings)?;
             let (next, _) = self.begin(nlp, FirstPoint { x: guess, from: Start::Cold }, &settings)?;
@@ -132,7 +132,7 @@ impl Session {
             }
         } else {
             for attempt in ATTEMPTS {
-                let is_believed = is_infeasible(&outcome) && (is_guess || nlp.is_linear());
+                let is_believed = (is_guess && is_infeasible(&outcome)) || is_proven(nlp, &outcome);
                 if is_believed
                     || !attempt.follows(&outcome.status, seems_infeasible)
                     || (was_simulated && attempt == Attempt::Simulated)
@@ -219,6 +219,12 @@ impl Session {
         budget.spend(next.iterations);
         Ok(Some(next))
     }
+}
+
+/// Whether a program without a solution is known to have none: all its constraints are linear, and its end shows no sizes that
+/// are so much too large that the least violation is one of their tolerance.
+fn is_proven(nlp: &Transcription, outcome: &Outcome) -> bool {
+    is_infeasible(outcome) && nlp.is_linear() && nlp.smaller_sizes(&outcome.x).is_none()
 }
 
 /// The largest violation of a row at a point, times the row's factor, and the minimised objective; infinite where a row has

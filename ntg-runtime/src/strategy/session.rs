@@ -190,7 +190,7 @@ impl Session {
 
     /// Goes on from a solution whose constraints do not hold by the size of their terms: by the slopes at its start they do,
     /// as where all terms are 0, or a start was thousands of sizes off.
-    fn tightened(&mut self, nlp: &Transcription, report: &Report, settings: &Settings) -> Outcome {
+    fn tightened(&mut self, nlp: &mut Transcription, report: &Report, settings: &Settings) -> Outcome {
         /// Of what would be enough. A choice.
         const PART: f64 = 0.1;
         /// A law: rounding of rows that are made of a hundred terms of size 1.
@@ -202,13 +202,14 @@ impl Session {
         let spent = Duration::try_from_secs_f64(report.seconds).unwrap_or_default();
         let settings = Settings { constraint_tolerance, max_iterations: left, ..settings.after(spent) };
         let own = &report.solution.inner;
+        nlp.take_smaller_sizes(&own.x);
         self.solve_once(nlp, FirstPoint { x: &own.x, from: Start::Warm(own.multipliers()) }, &settings)
     }
 
     /// Keeps the program and says what was found.
     pub(super) fn report(
         &mut self,
-        nlp: Transcription<'_>,
+        mut nlp: Transcription<'_>,
         outcome: Outcome,
         history: Vec<StepReport>,
         settings: &Settings,
@@ -228,7 +229,7 @@ impl Session {
         }
         let mut report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.buffers), history)?;
         if report.is_loose(settings.constraint_tolerance) {
-            let next = self.tightened(&nlp, &report, settings);
+            let next = self.tightened(&mut nlp, &report, settings);
             let mut history = report.history.clone();
             history.iter_mut().last().into_iter().for_each(|step| {
                 step.iterations += next.iterations;
