@@ -127,6 +127,10 @@ pub(crate) fn until_measured<N: Nlp>(
             }
             Some(before) if !outcome.status.has_solution() => match confirmed(before, &outcome, &options) {
                 Confirmed::By(end) => return unless_worse(left_saddle, end),
+                // By its scale the objective is 0, and the gap is small beside it: nothing says that the end is none.
+                Confirmed::Not(before) if is_none(&before, &options) && !is_wide(&before, &options) => {
+                    return unless_worse(left_saddle, Outcome { iterations, seconds: outcome.seconds, ..before });
+                }
                 Confirmed::Not(before) => return unless_worse(left_saddle, narrower(before, outcome)),
                 Confirmed::Improved(size) => Measure::Objective(size),
             },
@@ -246,8 +250,7 @@ fn unless_worse(saddle: Option<Outcome>, end: Outcome) -> Outcome {
 /// The scaled objective of a solution, where it is so small beside what it varies by that the gap, which is within the
 /// tolerances, is not small beside the objective itself, (6.4b). An objective within the tolerance of 0 is none.
 fn small_objective(end: &Outcome, options: &Options) -> Option<f64> {
-    let beside = end.residuals.unscaled.gap / end.objective.abs();
-    let is_small = end.status == Status::Solved && beside > WIDE * GAP * options.tolerance;
+    let is_small = end.status == Status::Solved && is_wide(end, options);
     let objective = scaled_objective(end);
     (is_small && !is_none(end, options) && objective < 1.0).then_some(objective)
 }
@@ -261,6 +264,11 @@ fn scaled_objective(end: &Outcome) -> f64 {
 /// itself, as beside a price of 1e9, and is not 0.
 pub(crate) fn is_little(end: &Outcome) -> bool {
     LITTLE.contains(&scaled_objective(end))
+}
+
+/// Whether the gap of an end is not small beside the objective itself.
+fn is_wide(end: &Outcome, options: &Options) -> bool {
+    end.residuals.unscaled.gap > WIDE * GAP * options.tolerance * end.objective.abs()
 }
 
 /// Whether an objective is within the tolerance of 0 by its scale.
@@ -401,7 +409,7 @@ pub(crate) fn objective_at_end<N: Nlp>(nlp: &N, end: &Outcome, options: &Options
     let (mut work, mut at) = nlp.workspace();
     nlp.derivatives(&end.x, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
     let varies = variation(nlp.blocks(), &at, &sizes).max(at.objective.abs());
-    let is_wide = end.residuals.unscaled.gap > WIDE * GAP * options.tolerance * at.objective.abs();
+    let is_wide = is_wide(end, options);
     // Where the objective is within the tolerance of 0 by its scale, lower tolerances would not do.
     let size = if (is_wide && is_none(end, options)) || is_little(end) { at.objective.abs() } else { varies };
     if !(size.is_finite() && size > f64::MIN_POSITIVE) {

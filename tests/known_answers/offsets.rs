@@ -159,3 +159,48 @@ fn what_stays_and_what_coasts_is_a_motion() {
         assert!(report.confirmation.is_none(), "{report}");
     }
 }
+
+#[test]
+fn bounds_of_those_who_know_none_do_not_matter() {
+    let mut iterations = vec![];
+    for (bounds, input) in [("", "-2 .. 2"), ("in -1e6 .. 1e6", "-2 .. 2"), ("in -1e10 .. 1e10", "-1e10 .. 2")] {
+        let report = solved(&format!(
+            "problem Track {{
+                duration T = 10;
+                state x {bounds}, y {bounds};
+                input u in {input};
+                collocation gauss(points = 3, intervals = 30);
+                minimize integral((x - sin(t))^2 + 0.01 * u^2);
+                dynamics {{ der(x) == y;  der(y) == u - 0.5 * y; }}
+                initial {{ x == 1;  y == 0; }}
+            }}"
+        ));
+        if input == "-2 .. 2" {
+            close(report.objective, 0.343_275_22, 1e-6);
+        }
+        iterations.push(report.iterations);
+    }
+    assert!(iterations.iter().all(|most| *most <= 2 * iterations[0]), "{iterations:?}");
+}
+
+#[test]
+fn a_guess_may_be_far_too_large() {
+    for guess in ["1", "1e3", "1e5"] {
+        // Bryson and Ho, section 3.11: 4 / (9 l) with l = 1 / 9.
+        let report = solved(&format!(
+            "problem Denham {{
+                duration T = 1;
+                state x, v;
+                input a;
+                collocation gauss(points = 8, intervals = 15);
+                minimize 0.5 * integral(a^2);
+                dynamics {{ der(x) == v;  der(v) == a; }}
+                initial {{ x == 0;  v == 1; }}
+                final {{ x == 0;  v == -1; }}
+                trajectory {{ x <= 1 / 9; }}
+                guess {{ x = -{guess} * tau; }}
+            }}"
+        ));
+        close(report.objective, 4.0, 1e-6);
+    }
+}

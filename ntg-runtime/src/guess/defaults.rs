@@ -12,6 +12,9 @@ use std::collections::HashMap;
 /// Bounds a decade or more apart have their geometric mean as middle.
 const DECADE: f64 = 10.0;
 
+/// A bound so many times as far from 0 as the other one on its other side is what people write who know of none. A choice.
+const FAR: f64 = 1e4;
+
 /// Durations, starts and variables in the middle of their bounds.
 pub(super) fn times(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
@@ -40,7 +43,16 @@ fn duration(lower: f64, upper: f64) -> f64 {
 }
 
 /// The middle of two bounds, or a point near the one that is finite: one unit from 0.
-pub(super) fn middle((lower, upper): (f64, f64), unit: f64) -> f64 {
+pub(super) fn middle((mut lower, mut upper): (f64, f64), unit: f64) -> f64 {
+    if lower < 0.0 && upper > 0.0 {
+        // A bound that is so much farther from 0 than the other one says nothing.
+        let (below, above) = (-lower, upper);
+        (lower, upper) = match (below > FAR * above, above > FAR * below) {
+            (true, _) => (f64::NEG_INFINITY, upper),
+            (_, true) => (lower, f64::INFINITY),
+            _ => (lower, upper),
+        };
+    }
     match (lower.is_finite(), upper.is_finite()) {
         (true, true) if lower > 0.0 && upper >= DECADE * lower => (lower * upper).sqrt(),
         (true, true) => 0.5 * (lower + upper),

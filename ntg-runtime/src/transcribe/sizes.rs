@@ -21,6 +21,9 @@ const DOUBTFUL: f64 = 1e-6;
 /// A bound below this part of a size that other constraints tell is met anyway, and tells no size. A law: the tolerance.
 const MET: f64 = 1e-8;
 
+/// A bound so many times as large as what other constraints tell is no size. A choice: bounds that mean something are within it.
+const FAR_BOUND: f64 = 1e4;
+
 /// An integral whose value is less than the first fraction of its value beside the point is as large as that fraction of it;
 /// less than the second, it is stationary at the point but for rounding. Those of the objective (5.3).
 const LEAST_AT_POINT: f64 = 1e-2;
@@ -87,6 +90,7 @@ impl Transcription<'_> {
         balance.forget_rounding();
         let known = balance.size.clone();
         self.find_sizes((x, scale), &at, &mut balance);
+        balance.forget_far_bounds(&known);
         for ((scale, unit), &group) in scale.iter_mut().zip(units).zip(&balance.group) {
             match balance.size[group] {
                 Some(size) if known[group].is_none() => *scale = size,
@@ -260,6 +264,18 @@ impl Balance {
         };
         let rounding: Vec<usize> = (0..self.size.len()).filter(is_rounding).collect();
         rounding.into_iter().for_each(|group| self.size[group] = None);
+    }
+
+    /// Takes the sizes that other constraints tell in place of bounds that are far beyond them: a bound of 1e8 is what people
+    /// write who know of none.
+    fn forget_far_bounds(&mut self, known: &[Option<f64>]) {
+        let told = |group: usize| {
+            let (size, own) = (self.size[group]?, self.least_own_size(group)?);
+            let told = self.candidate(group, false)?;
+            (known[group].is_none() && size >= own && size > FAR_BOUND * told).then_some((group, told))
+        };
+        let found: Sizes = (0..self.size.len()).filter_map(told).collect();
+        found.into_iter().for_each(|(group, size)| self.size[group] = Some(size));
     }
 
     /// Gives sizes to groups. A later way is tried where the ones before it find nothing.
