@@ -33,7 +33,7 @@ impl Confirmation {
 
     /// Whether the last defect is that of a motion which is met better and better.
     pub(crate) fn falls(&self) -> bool {
-        self.defects.windows(2).all(|pair| pair[1].is_finite() && pair[1] <= Self::FALLS * pair[0])
+        self.defects.windows(2).all(|pair| pair[1] <= Self::FALLS * pair[0])
     }
 
     /// Objectives on shorter intervals that differ by more than this part of the larger are those of other curves. A choice: of

@@ -163,8 +163,8 @@ impl Report {
 
 /// Every duration that ends at the least length that the transcription allows it, where its own bound is below that.
 pub(super) fn shortest(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
-    /// A duration up to this many times the least one ends there: the method stays a hair inside of bounds.
-    const NEAR: f64 = 2.0;
+    /// A duration up to this many times the least one ends there: the method stays a hair inside of bounds. A choice.
+    const NEAR: f64 = 1.01;
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
     let ends = layout.phases.iter().enumerate().filter_map(|(phase, member)| {
         let Time::Free(variable) = member.duration else { return None };

@@ -21,6 +21,8 @@ use ntg_structure::{Domain, Group, Place, Points, Row};
 const PLACES: usize = 8;
 /// How often an interval between two places is halved about a change of sign, at most.
 const HALVINGS: usize = 40;
+/// Nearer to a place, in parts of the distance of places, a divisor is 0 there. A law: the tolerance.
+const AT_PLACE: f64 = 1e-8;
 /// The largest distance from the pole at which rows are compared, in parts of the distance of places. A choice: so near that
 /// the pole outweighs what else is in the row.
 const FAR: f64 = 1.0 / 1024.0;
@@ -145,6 +147,10 @@ impl Curves<'_> {
             let inverse = self.inverse(change, middle)?;
             // The other sign, none at all, or no number: the change is not behind the middle.
             if inverse * change.inverse > 0.0 { low = middle } else { high = middle }
+        }
+        // A divisor that is 0 at a place itself, as a speed at the start, has either sign there by rounding.
+        if (low - change.site.point.tau).min(change.next - low) < AT_PLACE * step {
+            return Ok(None);
         }
         let is_pole = self.grows(change, (low, -step))? && self.grows(change, (low, step))?;
         Ok(is_pole.then(|| at(phase, low)))
