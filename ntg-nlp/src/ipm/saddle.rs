@@ -70,6 +70,11 @@ impl<N: Nlp> State<'_, N> {
     /// A point beside the present one, in the program's own units, at which the Lagrangian is less than at the present
     /// one; none where the present one is a minimum. Precondition: the present point is a solution by its residuals.
     pub(super) fn below_saddle(&mut self) -> Option<Vec<f64>> {
+        let limits = self.nlp.limits();
+        let equalities = limits.row_lower.iter().zip(&limits.row_upper).filter(|(lower, upper)| lower == upper).count();
+        if equalities == limits.lower.iter().zip(&limits.upper).filter(|(lower, upper)| lower < upper).count() {
+            return None; // Nothing is free.
+        }
         // The last matrix was one of a point close by, unless the barrier has hidden there what is curved.
         let is_told = |last: &IterationRecord| !last.is_corrected() && last.barrier <= HIDES * self.mu;
         let is_told = self.history.last().is_some_and(is_told);
