@@ -127,10 +127,6 @@ pub(crate) fn until_measured<N: Nlp>(
             }
             Some(before) if !outcome.status.has_solution() => match confirmed(before, &outcome, &options) {
                 Confirmed::By(end) => return unless_worse(left_saddle, end),
-                // By its scale the objective is 0, and the gap is small beside it: nothing says that the end is none.
-                Confirmed::Not(before) if is_none(&before, &options) && !is_wide(&before, &options) => {
-                    return unless_worse(left_saddle, Outcome { iterations, seconds: outcome.seconds, ..before });
-                }
                 Confirmed::Not(before) => return unless_worse(left_saddle, narrower(before, outcome)),
                 Confirmed::Improved(size) => Measure::Objective(size),
             },

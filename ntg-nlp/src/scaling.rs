@@ -39,10 +39,6 @@ const STEEPEST: f64 = 100.0;
 const STEEP: f64 = 1e4;
 const AMPLIFIED: f64 = 500.0;
 
-/// A bound so many sizes away is none: its distance has no digits left for what moves, and its multiplier is a ten millionth of
-/// others. A law: the tolerance of 1e-8 beside rounding of 1e-16. What ends beyond it is no solution by its rows.
-const FAR: f64 = 1e7;
-
 /// Scaled variables, rows and objective are `x / variables`, `rows * c` and `objective * f`, entry by entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scales {
@@ -95,9 +91,8 @@ impl Scales {
 
     /// Scaled bounds; they have no sizes of their own.
     pub fn limits(&self, limits: &Limits) -> Limits {
-        let near = |bound: f64| if bound.abs() > FAR { f64::INFINITY.copysign(bound) } else { bound };
-        let divide = |bounds: &[f64]| bounds.iter().zip(&self.variables).map(|(b, size)| near(b / size)).collect();
-        let multiply = |bounds: &[f64]| bounds.iter().zip(&self.rows).map(|(b, factor)| near(b * factor)).collect();
+        let divide = |bounds: &[f64]| bounds.iter().zip(&self.variables).map(|(b, size)| b / size).collect();
+        let multiply = |bounds: &[f64]| bounds.iter().zip(&self.rows).map(|(b, factor)| b * factor).collect();
         Limits {
             lower: divide(&limits.lower),
             upper: divide(&limits.upper),

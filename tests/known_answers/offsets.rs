@@ -109,7 +109,8 @@ fn an_exact_price_may_be_as_heavy_as_one_likes() {
                 trajectory {{ soft({price}): x <= t^2 / 2 + 0.3; }}
             }}"
         ));
-        close(report.objective, 2.086_346_7, 1e-4);
+        // The gap of a solution is within 1e-5 of its objective.
+        close(report.objective, 2.086_346_7, 1e-5);
     }
 }
 
@@ -163,7 +164,14 @@ fn what_stays_and_what_coasts_is_a_motion() {
 #[test]
 fn bounds_of_those_who_know_none_do_not_matter() {
     let mut iterations = vec![];
-    for (bounds, input) in [("", "-2 .. 2"), ("in -1e6 .. 1e6", "-2 .. 2"), ("in -1e10 .. 1e10", "-1e10 .. 2")] {
+    // By bounds of -1e3 for the last one.
+    let cases = [
+        ("", "-2 .. 2", 0.343_275_22),
+        ("in -1e6 .. 1e6", "-2 .. 2", 0.343_275_22),
+        ("in -1e8 .. 1e8", "-2 .. 2", 0.343_275_22),
+        ("in -1e10 .. 1e10", "-1e10 .. 2", 0.334_851_38),
+    ];
+    for (bounds, input, known) in cases {
         let report = solved(&format!(
             "problem Track {{
                 duration T = 10;
@@ -175,9 +183,7 @@ fn bounds_of_those_who_know_none_do_not_matter() {
                 initial {{ x == 1;  y == 0; }}
             }}"
         ));
-        if input == "-2 .. 2" {
-            close(report.objective, 0.343_275_22, 1e-6);
-        }
+        close(report.objective, known, 1e-6);
         iterations.push(report.iterations);
     }
     assert!(iterations.iter().all(|most| *most <= 2 * iterations[0]), "{iterations:?}");

@@ -206,7 +206,7 @@ impl Session {
         self.solve_once(nlp, FirstPoint { x: &own.x, from: Start::Warm(own.multipliers()) }, &settings)
     }
 
-    /// Keeps the program and says what was found.
+    /// Says what was found, after another solve where rows do not hold by their terms, and keeps the program.
     pub(super) fn report(
         &mut self,
         mut nlp: Transcription<'_>,
@@ -231,14 +231,19 @@ impl Session {
         if report.is_loose(settings.constraint_tolerance) {
             let next = self.tightened(&mut nlp, &report, settings);
             let mut history = report.history.clone();
-            history.iter_mut().last().into_iter().for_each(|step| {
+            if let Some(step) = history.last_mut() {
                 step.iterations += next.iterations;
                 step.seconds += next.seconds;
-            });
-            let tight = Report::new(&nlp, next, (&mut fine.plan, &mut fine.buffers), history)?;
-            if tight.has_solution() && !tight.is_loose(settings.constraint_tolerance) {
-                report = tight;
             }
+            let (iterations, seconds) = (next.iterations, next.seconds);
+            let tight = Report::new(&nlp, next, (&mut fine.plan, &mut fine.buffers), history.clone())?;
+            report = match tight.has_solution() && !tight.is_loose(settings.constraint_tolerance) {
+                true => tight,
+                false => {
+                    let (iterations, seconds) = (report.iterations + iterations, report.seconds + seconds);
+                    Report { history, iterations, seconds, ..report }
+                }
+            };
         }
         report.between_tolerance = settings.between_tolerance;
         report.judge_points(settings.constraint_tolerance);

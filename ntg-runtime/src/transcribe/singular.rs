@@ -104,7 +104,7 @@ pub(crate) fn poles(this: &Transcription, x: &[f64], samples: usize) -> Result<V
 /// A probe, by its kernel and its place there.
 type Probe = (usize, usize);
 /// Takes a probe of a node, where it stands, and its values.
-pub(super) type Visit<'a> = dyn FnMut(&Node, Probe, &Place, &[f64]) + 'a;
+type Visit<'a> = dyn FnMut(&Node, Probe, &Place, &[f64]) + 'a;
 
 /// Places at which a value is no number.
 fn not_finite(values: &[f64]) -> Vec<usize> {
