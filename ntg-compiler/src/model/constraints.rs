@@ -1,7 +1,7 @@
 //! Constraints in all their forms.
 //!
 //! Takes the four kinds of blocks, fills `Problem::constraints`.
-//! What does not change while the problem is solved goes into the bounds; otherwise the body is a
+//! What does not change while the problem is solved goes into the bounds (`fixed_terms`); otherwise the body is a
 //! difference, bounded by 0.
 //! Finds: sides of different dimensions, constraints that constants decide.
 
@@ -213,12 +213,14 @@ impl<'a> Elaborator<'a> {
                 (Value { node, ..left.clone() }, zero, false)
             }
         };
-        let bounds = match (comparison, swapped) {
+        let mut bounds = match (comparison, swapped) {
             (Comparison::Equal, _) => Bounds { lower: Some(bound), upper: Some(bound) },
             (Comparison::AtMost, false) | (Comparison::AtLeast, true) => Bounds { lower: None, upper: Some(bound) },
             (Comparison::AtLeast, false) | (Comparison::AtMost, true) => Bounds { lower: Some(bound), upper: None },
         };
         let unit = self.shown(&[&body, left, right]);
+        // Equations of motion are sums of 0 as they are written.
+        let body = if comparison == Comparison::Equal { body } else { self.limited(body, &mut bounds) };
         Some(Body { value: body, bounds, unit })
     }
 
@@ -242,13 +244,14 @@ impl<'a> Elaborator<'a> {
             let below = upper.and_then(|upper| self.compare(Comparison::AtMost, body, upper));
             return above.into_iter().chain(below).collect();
         }
-        let bounds = Bounds { lower: lower.map(|v| v.node), upper: upper.map(|v| v.node) };
+        let sides: Vec<&Value> = [Some(body), lower, upper].into_iter().flatten().collect();
+        let unit = self.shown(&sides);
+        let mut bounds = Bounds { lower: lower.map(|v| v.node), upper: upper.map(|v| v.node) };
         if let (Some(lower), Some(upper)) = (lower, upper) {
             self.crossing(&bounds, lower.span.to(upper.span));
         }
-        let sides: Vec<&Value> = [Some(body), lower, upper].into_iter().flatten().collect();
-        let unit = self.shown(&sides);
-        vec![Body { value: body.clone(), bounds, unit }]
+        let body = self.limited(body.clone(), &mut bounds);
+        vec![Body { value: body, bounds, unit }]
     }
 
     /// Tells when bounds have another dimension than what they bound: once for a range `lo .. hi`, whose unit is

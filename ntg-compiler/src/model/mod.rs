@@ -6,6 +6,7 @@
 //! Afterwards: no names are left in expressions, every dimension is right, and everything is in SI units.
 
 mod acknowledged;
+mod always;
 pub(crate) mod angles;
 mod arguments;
 mod bare_angles;
@@ -31,6 +32,7 @@ mod epigraph;
 mod expression;
 mod families;
 mod files;
+mod fixed_terms;
 mod function_habits;
 mod functions;
 mod given;
@@ -232,6 +234,7 @@ impl<'a> Elaborator<'a> {
         self.orders_needed();
         self.jumps_noted();
         self.check();
+        self.always_holding();
         self.corners();
     }
 }

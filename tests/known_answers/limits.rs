@@ -1,0 +1,92 @@
+//! Limits: how they are written, and those that hold whatever happens.
+
+use ntg::prelude::*;
+use ntg::runtime::report::Resolution;
+
+use crate::support::{Shipped, close};
+
+fn solved(text: &str) -> Report {
+    solve(Shipped::text(text).problem(), &Settings::default()).expect("it can be set up")
+}
+
+#[test]
+fn an_obstacle_is_missed_alike_however_it_is_written() {
+    // 10 m past an obstacle of 0.4 m on intervals of 2 s, whose points step over it.
+    let forms = [
+        "dot(r - c, r - c) >= R^2",
+        "dot(r - c, r - c) - R^2 >= 0",
+        "0 <= dot(r - c, r - c) - R^2",
+        "R^2 - dot(r - c, r - c) <= 0",
+        "3 * (dot(r - c, r - c) - R^2) >= 0",
+        "dot(r - c, r - c) / R^2 - 1 >= 0",
+        "dot(r - c, r - c) - R^2 in 0 ..",
+    ];
+    for form in forms {
+        let report = solved(&format!(
+            "problem Past {{
+                duration T = 10;
+                param R = 0.4;
+                param c[2] = (4.7, 0.03);
+                state r[2], v[2];
+                input a[2];
+                collocation gauss(points = 3, intervals = 5);
+                minimize integral(dot(a, a));
+                dynamics {{ der(r) == v;  der(v) == a; }}
+                initial {{ r == 0;  v == 0; }}
+                final {{ r == (10, 0);  v == 0; }}
+                trajectory {{ past: {form}; }}
+            }}"
+        ));
+        assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{form}\n{report}");
+        let past = report.constraints.iter().find(|own| own.name == "past").expect("it has a name");
+        let worst = past.between.as_ref().expect("it is missed between the points");
+        close(worst.relative, 0.990_100_67, 1e-6);
+    }
+}
+
+#[test]
+fn vehicles_that_pass_through_one_another_are_told_of() {
+    let report = solved(
+        "problem Swap {
+            const n = 8;
+            param apart = 1 [m];
+            duration T = 20 [s];
+            output x[1 .. n], y[1 .. n] [m]: spline(order = 6, intervals = 3);
+            minimize integral(sum(i in 1 .. n, der(x[i], 2)^2 + der(y[i], 2)^2));
+            initial { for i in 1 .. n {
+                x[i] == 50 [m] * cos(2 * pi * i / n + 0.02 * i^2);  y[i] == 50 [m] * sin(2 * pi * i / n + 0.02 * i^2);
+                der(x[i]) == 0;  der(y[i]) == 0;
+            } }
+            trajectory { for i in 1 .. n { for j in i + 1 .. n {
+                apart: (x[i] - x[j])^2 + (y[i] - y[j])^2 - apart^2 >= 0;
+            } } }
+            final { for i in 1 .. n {
+                x[i] == -50 [m] * cos(2 * pi * i / n + 0.02 * i^2 + 0.015);
+                y[i] == -50 [m] * sin(2 * pi * i / n + 0.02 * i^2 + 0.015);
+                der(x[i]) == 0;  der(y[i]) == 0;
+            } }
+        }",
+    );
+    assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{report}");
+}
+
+#[test]
+fn what_always_holds_holds_nothing_back() {
+    // From -0.5 through 0, where the gradient of the limit is 0: 1 = -0.5 * 2 + 2^2 / 2.
+    for limit in ["v^2 >= 0", "0 <= v^2 + x^2", "-(v^2) <= 0", "abs(v) >= -1", "2 * v^4 + 1 >= 1"] {
+        let report = solved(&format!(
+            "problem Turn {{
+                duration T = 2;
+                state x, v;
+                input u in -1 .. 1;
+                collocation gauss(points = 3, intervals = 4);
+                maximize final(x);
+                dynamics {{ der(x) == v;  der(v) == u; }}
+                initial {{ x == 0;  v == -0.5; }}
+                trajectory {{ {limit}; }}
+            }}"
+        ));
+        assert!(report.is_solved(), "{limit}\n{report}");
+        close(report.objective, 1.0, 1e-6);
+    }
+}
