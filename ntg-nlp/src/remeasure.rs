@@ -85,8 +85,30 @@ pub(crate) struct Round<'a> {
     pub(crate) is_damped: bool,
 }
 
+/// An objective that falls so many times as far below 0 as it varied by at the start falls without limit: by sizes that have
+/// grown with it, any point of a ray seems stationary. A choice: beyond what sizes of a start are wrong by.
+const FALLEN: f64 = 1e12;
+
 /// Solves, and goes on as long as the scales do not hold.
 pub(crate) fn until_measured<N: Nlp>(
+    nlp: &N,
+    options: &Options,
+    mut solve: impl FnMut(&Resized<'_, N>, Round<'_>, &Options) -> (Outcome, Measure),
+) -> Outcome {
+    let mut first = None;
+    let end = rounds(nlp, options, |resized, round, options| {
+        let (outcome, measure) = solve(resized, round, options);
+        first.get_or_insert(outcome.objective_factor);
+        (outcome, measure)
+    });
+    let is_feasible = end.residuals.scaled.primal <= options.constraint_tolerance || end.status.has_solution();
+    let has_fallen = first.is_some_and(|factor| factor * end.objective < -FALLEN);
+    let is_stopped = matches!(end.status, Status::Cancelled | Status::TimeLimit);
+    if is_feasible && has_fallen && !is_stopped { Outcome { status: Status::Unbounded, ..end } } else { end }
+}
+
+/// All solves in a row.
+fn rounds<N: Nlp>(
     nlp: &N,
     options: &Options,
     mut solve: impl FnMut(&Resized<'_, N>, Round<'_>, &Options) -> (Outcome, Measure),

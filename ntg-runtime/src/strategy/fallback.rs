@@ -1,7 +1,8 @@
 //! The sequence of attempts where a solve fails (docs/maths.md, section 11.9).
 //!
 //! ```text
-//! interior point, from coarser knots where there are many -> from the guess itself -> sizes anew -> from beside the guess
+//! interior point, from coarser knots where there are many -> from the guess itself -> along rays where all is linear
+//!                -> sizes anew -> from beside the guess
 //!                -> from a simulation -> restoring by squares -> augmented Lagrangian -> from fewer knots
 //!                -> sequential quadratic programming -> on from the best point
 //! ```
@@ -17,7 +18,8 @@ use ntg_nlp::residuals::violation;
 use ntg_nlp::{Nlp, Outcome, Start, Status, method};
 
 /// All of them, in their order.
-const ATTEMPTS: [Attempt; 9] = [
+const ATTEMPTS: [Attempt; 10] = [
+    Attempt::Rays,
     Attempt::BySlopes,
     Attempt::SizesAnew,
     Attempt::Beside,
@@ -32,6 +34,9 @@ const ATTEMPTS: [Attempt; 9] = [
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Attempt {
+    /// By sequential quadratic programming from the first point, where all constraints are linear: its subproblems are then the
+    /// program itself, and tell whether the objective falls without limit along a ray.
+    Rays,
     /// From the first point, where the attempts before have measured inequalities by their bounds, by slopes alone.
     BySlopes,
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
@@ -78,9 +83,10 @@ impl Attempt {
     /// seen to solve the problem then. From beside the guess only where an attempt has ended as infeasible.
     fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
         match status {
-            Status::Acceptable => matches!(self, Self::SizesAnew | Self::OtherWays),
+            Status::Acceptable => matches!(self, Self::Rays | Self::SizesAnew | Self::OtherWays),
             // It does not tell a saddle from a minimum.
-            Status::Unbounded if self == Self::Sqp => false,
+            Status::Unbounded if matches!(self, Self::Rays | Self::Sqp) => false,
+            Status::Infeasible { .. } if self == Self::Rays => false,
             Status::IterationLimit | Status::StepTooSmall if self == Self::Onwards => true,
             _ if self == Self::Onwards => false,
             _ => !status.is_final() && (seems_infeasible || self != Self::Beside),
@@ -142,6 +148,10 @@ impl Session {
                 if let Some(mut next) = self.attempt(attempt, nlp, task, x, &outcome, budget)? {
                     if attempt.has_other_sizes() {
                         next.residuals.scaled.primal = violation_by(nlp, &outcome.row_factors, &next.x).0;
+                    }
+                    if attempt == Attempt::Rays && next.status == Status::Unbounded {
+                        outcome = next;
+                        break;
                     }
                     seems_infeasible |= misses(&next);
                     outcome = better(outcome, next);
@@ -210,7 +220,8 @@ impl Session {
                 };
                 self.solve_measured(nlp, FirstPoint { x: &failed.x, from: Start::Near }, &settings)
             }
-            Attempt::Sqp => {
+            Attempt::Rays if !nlp.is_linear() => return Ok(None),
+            Attempt::Rays | Attempt::Sqp => {
                 let max_subproblems = QUADRATIC;
                 let options = ntg_nlp::Options { method: Method::Sqp, max_subproblems, ..settings.solver_options() };
                 method::solve(nlp, x, &options)
