@@ -229,8 +229,9 @@ pub fn proved_from<'p>(
             last.solve += began.elapsed().as_secs_f64();
         }
     }
-    own_bounds(&mut report, &certificate, &changes);
     let problem = Tightened::new(task.problem, &changes, true);
+    let mut report = report.confirmed(&problem, settings)?;
+    own_bounds(&mut report, &certificate, &changes);
     Ok(Guaranteed { problem, report, certificate, changes, rounds, ending })
 }
 

@@ -98,6 +98,24 @@ impl<P: Problem, S> Solver<P, S> {
         }
     }
 
+    /// A report of the last solve with what [`solve`](crate::solve) looks at besides: whether the solution leaves its equations
+    /// of motion, and what is on shorter intervals then.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn confirm(&mut self, mut report: Report) -> Result<Report, Error> {
+        if !report.is_open(&self.settings) {
+            return Ok(report);
+        }
+        let nlp = self.session.program(&self.problem, report.solution.structure())?;
+        let doubts = report.doubts(&nlp, &self.settings)?;
+        self.session.kept = Some(nlp.keep());
+        match doubts {
+            None => Ok(report.advised()),
+            Some(_) => report.confirmed(&self.problem, &self.settings),
+        }
+    }
+
     /// As [`Solver::resolve_from`], in one attempt of at most a hundred iterations: none where there is no way from that
     /// solution. Its constraints may be held at other points: multipliers are carried over by what their rows stand for.
     ///

@@ -110,10 +110,11 @@ impl<P: Problem + Clone + Send> Solve for Rows<'_, P> {
 }
 
 fn solve<P: Problem>(solver: &mut Solver<P>, from: Option<&Solution>) -> Result<Report, Error> {
-    match from {
+    let report = match from {
         Some(start) => solver.resolve_from(start),
         None => solver.solve(),
-    }
+    }?;
+    solver.confirm(report)
 }
 
 /// A bound does not count as one that binds where its move by one unit, or by its own size if that is more, changes

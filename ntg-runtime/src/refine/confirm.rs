@@ -15,19 +15,21 @@ use std::time::{Duration, Instant};
 
 /// How often intervals are halved: a defect that falls once may do so by chance. A choice.
 const HALVINGS: usize = 2;
-/// A confirmation ends after so many times what the solve has taken, or after a second if that is more. A choice: a solve takes
-/// twice and four times as long on so many intervals.
-const PATIENCE: f64 = 5.0;
-const LEAST: Duration = Duration::from_secs(1);
+/// A solve on shorter intervals has so many times the iterations of the solve, and so many at least. A choice: neighbours on
+/// finer meshes take fewer. No clock, so that what a report says does not hang on what else a machine does.
+const PATIENCE: usize = 5;
+const LEAST: usize = 300;
 
 impl Report {
     /// The report with what solves on shorter intervals say, where a solution leaves its equations of motion by more than is
     /// worth a warning. What it misses between the points does not tell of that: a jump over a pole falls between all samples.
-    /// Only where the settings ask nothing else of such a solution.
-    pub(crate) fn confirmed(mut self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
-        let is_asked = settings.refine.is_none() && settings.between == Between::Report;
-        let is_open = self.resolution().is_some_and(|resolution| resolution < Resolution::Unresolved);
-        if !(is_asked && is_open) || self.solution.structure().terms.is_empty() {
+    /// Only where the settings ask nothing else of such a solution. [`solve`](crate::solve) does this by itself, a
+    /// [`Solver`](crate::Solver) does not.
+    ///
+    /// # Errors
+    /// [`Error`] where the problem, which has to be that of the report, cannot be set up on shorter intervals.
+    pub fn confirmed(mut self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
+        if !self.is_open(settings) {
             return Ok(self);
         }
         let began = Instant::now();
@@ -36,13 +38,10 @@ impl Report {
             structure.continuations.clear();
         });
         let mut nlp = Transcription::new(&mesh)?;
-        self.poles = crossed(&nlp, self.solution.coefficients())?;
-        if !self.poles.is_empty() {
+        let Some(Defect { phase, output, relative }) = self.doubts(&nlp, settings)? else {
             self.seconds += began.elapsed().as_secs_f64();
             return Ok(self.advised());
-        }
-        let own = defect(&nlp, self.solution.coefficients()).filter(|own| own.relative > settings.between_tolerance);
-        let Some(Defect { phase, output, relative }) = own else { return Ok(self) };
+        };
         let mut found = Confirmation {
             output: names::output(&nlp.model.structure, &nlp.model.layout, phase, output),
             defects: vec![relative],
@@ -52,16 +51,22 @@ impl Report {
             iterations: 0,
             seconds: 0.0,
         };
-        let until = began + limit(self.seconds, settings);
+        let most = (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations);
+        let until = settings.time_limit.map(|limit| began + limit.saturating_sub(spent(self.seconds)));
         let mut last = None;
         while found.halvings < HALVINGS && found.falls() && found.defects.last() > Some(&settings.between_tolerance) {
             let marks = halved(&nlp);
             drop(nlp);
             let finer = mesh.edited(|structure| split(structure, &marks));
-            let left = until.saturating_duration_since(Instant::now()).max(Duration::from_nanos(1));
+            let left = |until: Instant| until.saturating_duration_since(Instant::now()).max(Duration::from_nanos(1));
             // By any method: what is asked is what the solution is worth, and one method may be slow on finer meshes.
-            let settings =
-                Settings { time_limit: Some(left), on_iteration: None, method: Method::Auto, ..settings.clone() };
+            let settings = Settings {
+                max_iterations: most,
+                time_limit: until.map(left),
+                on_iteration: None,
+                method: Method::Auto,
+                ..settings.clone()
+            };
             let next = from(&finer, last.as_ref().unwrap_or(&self.solution), &settings)?;
             let is_late = matches!(next.status, Status::TimeLimit | Status::Cancelled);
             if is_late && found.halvings > 0 {
@@ -85,11 +90,23 @@ impl Report {
         self.confirmation = Some(found);
         Ok(self.advised())
     }
+
+    /// Whether nothing has been asked of a solution yet but that it holds at the points.
+    pub(crate) fn is_open(&self, settings: &Settings) -> bool {
+        let is_asked = settings.refine.is_none() && settings.between == Between::Report;
+        let is_open = self.resolution().is_some_and(|resolution| resolution < Resolution::Unresolved);
+        is_asked && is_open && self.confirmation.is_none() && !self.solution.structure().terms.is_empty()
+    }
+
+    /// Looks at a solution on its own mesh: by how much it leaves its equations of motion, if that is more than is worth a
+    /// warning and no pole is crossed, which is told.
+    pub(crate) fn doubts(&mut self, nlp: &Transcription, settings: &Settings) -> Result<Option<Defect>, Error> {
+        self.poles = crossed(nlp, self.solution.coefficients())?;
+        let own = || defect(nlp, self.solution.coefficients());
+        Ok(self.poles.is_empty().then(own).flatten().filter(|own| own.relative > settings.between_tolerance))
+    }
 }
 
-/// How long a confirmation of a solve that took so many seconds may take.
-fn limit(seconds: f64, settings: &Settings) -> Duration {
-    let spent = Duration::try_from_secs_f64(seconds).unwrap_or_default();
-    let own = spent.mul_f64(PATIENCE).max(LEAST);
-    settings.time_limit.map_or(own, |all| all.saturating_sub(spent).min(own))
+fn spent(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds).unwrap_or_default()
 }

@@ -40,12 +40,12 @@ impl Confirmation {
     /// 199 specs none differs by more than 0.06.
     const APART: f64 = 0.25;
 
-    /// Whether the solution is one of the points alone: nothing like it is there on shorter intervals, for another reason
-    /// than time. `objective` is that of the solution.
+    /// Whether the solution is one of the points alone, as far as is known: nothing like it was found on shorter intervals.
+    /// `objective` is that of the solution.
     pub fn refutes(&self, objective: f64) -> bool {
         match self.status.has_solution() {
             true => !self.falls() || cost_apart(objective, self.objective) > Self::APART,
-            false => !matches!(self.status, Status::TimeLimit | Status::Cancelled),
+            false => self.status != Status::Cancelled,
         }
     }
 
@@ -72,11 +72,14 @@ impl Confirmation {
         match (self.status.has_solution(), self.refutes(objective)) {
             (true, false) => format!("{left}; on intervals {length} {found}"),
             (true, true) => format!("{left}; on intervals {length} {found}: {doubt}"),
+            (false, true) if self.status == Status::TimeLimit => {
+                format!("{left}; the time limit leaves no time to see whether that vanishes on intervals {length}")
+            }
             (false, true) => {
                 format!("{left}; on intervals {length} nothing was found ({}): {doubt}", self.status.label())
             }
             (false, false) => {
-                format!("{left}; a solve on intervals {length} took too long to tell whether that vanishes")
+                format!("{left}; a solve on intervals {length} was cancelled before it told whether that vanishes")
             }
         }
     }

@@ -31,7 +31,7 @@ const SAME: f64 = 1e-6;
 pub(crate) struct Session {
     /// The problem's own structure, brought up to date in every solve.
     pub(super) structure: Option<Structure>,
-    pub(super) kept: Option<Kept>,
+    pub(crate) kept: Option<Kept>,
     /// The interior-point method's analysis of this program.
     analysis: ipm::Analysis<Workspace>,
     fine: Option<Fine>,
@@ -101,7 +101,7 @@ impl Session {
     }
 
     /// The program of a structure. It is to be kept again.
-    pub(super) fn program<'p>(
+    pub(crate) fn program<'p>(
         &mut self,
         problem: &'p dyn Problem,
         structure: &Structure,

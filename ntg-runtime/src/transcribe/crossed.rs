@@ -41,7 +41,11 @@ const OFF: f64 = 0.25;
 /// [`SetupError`] for an index outside its family.
 pub(crate) fn crossed(this: &Transcription, x: &[f64]) -> Result<Vec<Singular>, SetupError> {
     let mut found: Vec<Singular> = vec![];
-    for group in &this.model.structure.groups {
+    for (number, group) in this.model.structure.groups.iter().enumerate() {
+        let own = this.elements.batches.iter().filter(|own| own.group == number);
+        if !own.into_iter().any(|own| has_probes(this, &own.batch.node)) {
+            continue;
+        }
         // Other sets of points accompany these.
         let inside = |points: &Points, breakpoints: &[f64], phase: usize| match points {
             Points::Gauss { .. } | Points::Uniform { .. } => places(breakpoints, phase),
