@@ -6,7 +6,6 @@
 //!
 //! Finds: names that nothing bears, values that are not finite, wrong numbers of coefficients.
 
-mod defaults;
 mod earlier;
 mod program;
 mod route;
@@ -14,7 +13,6 @@ mod simulate;
 mod start;
 mod statements;
 
-pub(crate) use defaults::bounds as constant_bounds;
 pub use program::Guess;
 pub(crate) use route::Route;
 pub(crate) use simulate::{Defect, defect, simulated};

@@ -2,12 +2,12 @@
 //!
 //! Takes a transcription and what a program says; gives a vector of variables within their bounds.
 
+use super::earlier;
 use super::program::{Base, Guess};
 use super::statements::Statements;
-use super::{defaults, earlier};
 use crate::transcribe::layout::{Layout, Time};
 use crate::transcribe::rows::RowKind;
-use crate::transcribe::{SetupError, Transcription};
+use crate::transcribe::{SetupError, Transcription, defaults};
 use ntg_nlp::Nlp;
 use ntg_splines::{Knots, Place, Sampled, fit_all};
 use std::rc::Rc;

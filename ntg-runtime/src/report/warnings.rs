@@ -3,7 +3,7 @@
 use super::{ConstraintReport, RefineStatus, Report, hints};
 use crate::digits::brief;
 use crate::transcribe::layout::Time;
-use crate::transcribe::rows::{member_words, shortest_duration};
+use crate::transcribe::rows::member_words;
 use crate::transcribe::times::phase_words;
 use crate::transcribe::{Singular, Transcription};
 use ntg_structure::{Block, Independent, Place};
@@ -166,23 +166,31 @@ pub(super) fn shortest(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
     /// A duration up to this many times the least one ends there: the method stays a hair inside of bounds. A choice.
     const NEAR: f64 = 1.01;
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
-    let ends = layout.phases.iter().enumerate().filter_map(|(phase, member)| {
-        let Time::Free(variable) = member.duration else { return None };
-        let (value, lower) = (*x.get(variable as usize)?, nlp.limits.lower[variable as usize]);
-        let is_ours = lower == shortest_duration(nlp.limits.upper[variable as usize]);
-        (is_ours && value <= NEAR * lower).then_some((phase, lower))
+    let ends = nlp.durations.iter().filter_map(|duration| {
+        let variable = duration.variable as usize;
+        let (value, least) = (*x.get(variable)?, nlp.limits.lower[variable]);
+        let phase = layout.phases.iter().position(|phase| phase.duration == Time::Free(duration.variable))?;
+        let is_by_bound = duration.reach == nlp.limits.upper[variable];
+        (duration.is_guarded && value <= NEAR * least).then_some((phase, least, is_by_bound))
     });
-    let told = ends.map(|(phase, lower)| {
+    let told = ends.map(|(phase, least, is_by_bound)| {
         let declared = &structure.phases[layout.phases[phase].phase];
         let name = match (&declared.name, &declared.duration_name) {
             (None, Some(name)) => format!("`{name}`"),
             _ => format!("the duration of {}", phase_words(structure, layout, phase)),
         };
-        let least = structure.independent.amount(lower, brief);
-        let message = format!(
-            "{name} is as short as a duration may be, {least}: a millionth of its upper bound; give it a lower bound \
-             above 0, or a smaller upper bound where it should be shorter"
-        );
+        let least = structure.independent.amount(least, brief);
+        let message = if is_by_bound {
+            format!(
+                "{name} is as short as a duration may be, {least}: a millionth of its upper bound; give it a lower bound \
+                 above 0, or a smaller upper bound where it should be shorter"
+            )
+        } else {
+            format!(
+                "{name} is as short as a duration may be, {least}: next to nothing beside how long its motion takes; give it \
+                 a lower bound above 0"
+            )
+        };
         (message, declared.place.clone())
     });
     told.collect()

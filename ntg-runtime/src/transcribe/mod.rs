@@ -17,6 +17,8 @@ pub(crate) mod compose;
 mod contradictions;
 pub(crate) mod crossed;
 mod curvatures;
+pub(crate) mod defaults;
+mod durations;
 pub(crate) mod elements;
 mod error;
 mod evaluate;
@@ -25,6 +27,7 @@ pub(crate) mod frame;
 pub(crate) mod instances;
 pub(crate) mod layout;
 pub(crate) mod linear;
+mod measured;
 pub(crate) mod names;
 pub(crate) mod node;
 pub(crate) mod points;
@@ -54,6 +57,7 @@ pub use tables::interpolants;
 use crate::problem::Problem;
 use crate::status::NotFinite;
 use contradictions::Decided;
+use durations::FreeDuration;
 use elements::Elements;
 use frame::Frame;
 use layout::Layout;
@@ -86,6 +90,8 @@ pub struct Transcription<'p> {
     /// Whether the settings say the size of a variable; empty before there are sizes.
     pub(crate) has_named_size: Vec<bool>,
     pub(crate) linear: LinearSystem,
+    /// Durations that are variables, in their order.
+    pub(crate) durations: Vec<FreeDuration>,
 }
 
 /// A transcription without its problem, to be kept until the problem is solved again.
@@ -95,6 +101,7 @@ pub(crate) struct Kept {
     pub(crate) elements: Elements,
     limits: Limits,
     linear: LinearSystem,
+    durations: Vec<FreeDuration>,
 }
 
 /// What of a transcription another structure has changed.
@@ -111,8 +118,9 @@ pub(crate) enum Change {
 impl Kept {
     /// The transcription again; `problem` is the one that it had, or one that differs in parameters.
     pub(crate) fn of(self, problem: &dyn Problem) -> Transcription<'_> {
-        let Self { model, elements, limits, linear } = self;
-        Transcription { problem, model, elements, limits, origin: vec![], has_named_size: vec![], linear }
+        let Self { model, elements, limits, linear, durations } = self;
+        let (origin, has_named_size) = (vec![], vec![]);
+        Transcription { problem, model, elements, limits, origin, has_named_size, linear, durations }
     }
 }
 
@@ -135,10 +143,11 @@ impl<'p> Transcription<'p> {
         let Decided { system: linear, met } = contradictions::decided(&frame, &elements, &bounds)?;
         let mut limits = limits(&model.structure, &elements, (&bounds, &met));
         limits.angles = angles(&model.structure, &model.layout);
-        limits.shrinking = shrinking::shrinking(&model.structure, &model.layout, &elements, &bounds);
-        let mut transcription =
-            Self { problem, model: Arc::new(model), elements, limits, origin: vec![], has_named_size: vec![], linear };
+        let (model, origin, has_named_size, durations) = (Arc::new(model), vec![], vec![], vec![]);
+        let mut transcription = Self { problem, model, elements, limits, origin, has_named_size, linear, durations };
         transcription.limits.alike = transcription.alike();
+        transcription.find_durations();
+        transcription.limits.shrinking = transcription.shrinking();
         Ok(transcription)
     }
 
@@ -172,15 +181,16 @@ impl<'p> Transcription<'p> {
         let Limits { alike, angles, .. } = std::mem::take(&mut self.limits);
         self.limits =
             Limits { alike, angles, ..limits(&self.model.structure, &self.elements, (&bounds, &decided.met)) };
-        self.limits.shrinking = shrinking::shrinking(&model.structure, &model.layout, &self.elements, &bounds);
         self.model = Arc::new(model);
+        self.find_durations();
+        self.limits.shrinking = self.shrinking();
         Ok(Change::Data)
     }
 
     /// Everything but the problem.
     pub(crate) fn keep(self) -> Kept {
-        let Self { model, elements, limits, linear, .. } = self;
-        Kept { model, elements, limits, linear }
+        let Self { model, elements, limits, linear, durations, .. } = self;
+        Kept { model, elements, limits, linear, durations }
     }
 
     /// How many of the variables are spline coefficients; the others (free durations, free

@@ -205,8 +205,7 @@ impl Transcription<'_> {
         // What balances constraints at `x`, where all other sizes are known.
         let known: Vec<f64> = (0..scale.len()).map(|v| if is_small(v) { 0.0 } else { scale[v] }).collect();
         let mut balanced = vec![0.0; scale.len()];
-        let variables: Vec<Vec<u32>> = groups.iter().map(|(group, _)| group.clone()).collect();
-        self.balance_sizes(&variables, (x, &known), &mut balanced);
+        self.balance_sizes(&self.output_groups(), (x, &known), &mut balanced);
         let units = self.units();
         let smaller = |v: usize| {
             let size = balanced[v].max(largest[v]);
@@ -219,6 +218,11 @@ impl Transcription<'_> {
         let sizes: Vec<Option<f64>> = (0..scale.len()).map(smaller).collect();
         let differs = sizes.iter().any(Option::is_some);
         differs.then(|| sizes.into_iter().zip(scale).map(|(smaller, size)| smaller.unwrap_or(*size)).collect())
+    }
+
+    /// The coefficients of each output.
+    pub(super) fn output_groups(&self) -> Vec<Vec<u32>> {
+        self.groups().into_iter().map(|(group, _)| group).collect()
     }
 
     /// The coefficients of each output, and its unit.

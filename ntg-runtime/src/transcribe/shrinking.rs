@@ -1,8 +1,9 @@
 //! Equations over durations that may all but vanish (docs/maths.md, section 11.17).
 
+use super::Transcription;
 use super::elements::Elements;
-use super::layout::{Layout, Time, narrow};
-use super::rows::{Pair, RowInfo, RowKind};
+use super::layout::{Time, narrow};
+use super::rows::{RowInfo, RowKind};
 use ntg_nlp::Shrinking;
 use ntg_structure::{At, Slot, Structure};
 
@@ -13,27 +14,25 @@ const VANISHES: f64 = 1e-3;
 /// found as soon, and phases that do not later.
 const SMALL: f64 = 1e-2;
 
-/// The equations along phases that may vanish and stand beside others. A mission of one phase does not vanish.
-pub(super) fn shrinking(
-    structure: &Structure,
-    layout: &Layout,
-    elements: &Elements,
-    bounds: &[Pair],
-) -> Vec<Shrinking> {
-    let own = |(number, row): (usize, &RowInfo)| {
-        let (RowKind::Constraint(_), Some(phase)) = (row.kind, row.point.phase) else { return None };
-        let is_equation = (elements.lower[number], elements.upper[number]) == (0.0, 0.0);
-        let phase = &layout.phases[phase];
-        let Time::Free(variable) = phase.duration else { return None };
-        let (lower, upper) = bounds[variable as usize];
-        let may_vanish = layout.agents[phase.agent].phases.len() > 1 && upper.is_finite() && lower < VANISHES * upper;
-        if !(is_equation && may_vanish) {
-            return None;
-        }
-        let order = order(structure, elements, row)?;
-        Some(Shrinking { row: narrow(number), variable, order, small: SMALL * upper })
-    };
-    elements.rows.iter().enumerate().filter_map(own).collect()
+impl Transcription<'_> {
+    /// The equations along phases that may vanish and stand beside others. A mission of one phase does not vanish.
+    pub(super) fn shrinking(&self) -> Vec<Shrinking> {
+        let Self { elements, model, limits, durations, .. } = self;
+        let own = |(number, row): (usize, &RowInfo)| {
+            let (RowKind::Constraint(_), Some(phase)) = (row.kind, row.point.phase) else { return None };
+            let is_equation = (elements.lower[number], elements.upper[number]) == (0.0, 0.0);
+            let phase = &model.layout.phases[phase];
+            let Time::Free(variable) = phase.duration else { return None };
+            let reach = durations.iter().find(|duration| duration.variable == variable)?.reach;
+            let is_short = reach.is_finite() && limits.lower[variable as usize] < VANISHES * reach;
+            if !(is_equation && is_short && model.layout.agents[phase.agent].phases.len() > 1) {
+                return None;
+            }
+            let order = order(&model.structure, elements, row)?;
+            Some(Shrinking { row: narrow(number), variable, order, small: SMALL * reach })
+        };
+        elements.rows.iter().enumerate().filter_map(own).collect()
+    }
 }
 
 /// The highest derivative by time in a row; none where it has none.

@@ -5,8 +5,9 @@
 //! in which it stands. What has no slope there either, such as a coordinate of a speed, is so large that its curvature
 //! balances them. Units cannot matter, because a slope of a row times a size has the unit of the row.
 
-use super::Transcription;
+use super::durations::Trial;
 use super::rows::bound_size;
+use super::{Transcription, Workspace};
 use ntg_nlp::scaling::beside;
 use ntg_nlp::{Block, Evaluation, Nlp, Target};
 use std::collections::BTreeMap;
@@ -101,6 +102,36 @@ impl Transcription<'_> {
         true
     }
 
+    /// By how many decades the terms of equations differ in size, in sum: of each the largest from the next, and of each
+    /// inequality the largest from the bound that it exceeds; with the objective of a motion of the sizes that balance them.
+    /// Durations are no terms: they stand in those of derivatives. None where something is not finite.
+    pub(super) fn imbalance(
+        &self,
+        x: &[f64],
+        groups: &[Vec<u32>],
+        (workspace, at): (&mut Workspace, &mut Evaluation),
+    ) -> Option<Trial> {
+        self.derivatives(x, 1.0, &vec![0.0; self.elements.rows.len()], workspace, at).ok()?;
+        let mut balance = self.balance(groups, x);
+        let durations: Vec<usize> = self.durations.iter().map(|d| balance.group[d.variable as usize]).collect();
+        durations.iter().for_each(|group| balance.own_bound[*group] = 0.0);
+        self.collect_slopes(at, &mut balance);
+        balance.forget_rounding();
+        balance.propagate(&[Balance::balanced]);
+        let decades = (0..balance.groups.len()).map(|constraint| balance.decades(constraint, &durations)).sum();
+        // From the guess there and back again, by the size of each output.
+        let mut motion = x.to_vec();
+        for variables in groups {
+            let (last, size) = (variables.len().max(2) - 1, balance.size[balance.group[variables[0] as usize]]);
+            for (i, variable) in variables.iter().enumerate() {
+                let part = i as f64 / last as f64;
+                motion[*variable as usize] += 4.0 * part * (1.0 - part) * size.unwrap_or(0.0);
+            }
+        }
+        self.values(&motion, workspace, at).ok()?;
+        Some(Trial { decades, objective: at.objective })
+    }
+
     /// Sizes of what has none. `scale` has those that are taken until then.
     fn find_sizes(&self, (x, scale): (&[f64], &[f64]), at: &Evaluation, balance: &mut Balance) {
         balance.propagate(&[Balance::balanced]);
@@ -160,8 +191,10 @@ impl Transcription<'_> {
             let is_known = largest > f64::MIN_POSITIVE && (variables[0] as usize) < integrals;
             variables.iter().for_each(|v| balance.group[*v as usize] = balance.size.len());
             let bounds = variables.iter().map(|v| {
+                // A bound that is far from anything that happens is no size.
+                let duration = self.durations.iter().find(|duration| duration.variable == *v);
                 let v = *v as usize;
-                bound_size((self.limits.lower[v], self.limits.upper[v]))
+                bound_size((self.limits.lower[v], duration.map_or(self.limits.upper[v], |duration| duration.reach)))
             });
             balance.own_bound.push(bounds.filter(|bound| bound.is_finite()).fold(0.0, f64::max));
             balance.nothing.push(0.0);
@@ -343,6 +376,32 @@ impl Balance {
         });
         let sizes: Vec<f64> = sizes.collect();
         self.constraint_of.iter().map(move |constraint| sizes[*constraint])
+    }
+
+    /// By how many decades the largest term of a constraint, beside those of groups that are none, differs from the next one, or
+    /// from the bound of an inequality that it exceeds; 0 where a term is not known.
+    fn decades(&self, constraint: usize, no_terms: &[usize]) -> f64 {
+        /// A value so many times as large as all terms together is that of a constant in the formula.
+        const CONSTANT: f64 = 3.0;
+        let others = || self.groups[constraint].iter().filter(|(group, _)| !no_terms.contains(group));
+        let terms: Option<Vec<f64>> = others().map(|&(group, slope)| Some(self.size[group]? * slope)).collect();
+        let Some(mut terms) = terms else { return 0.0 };
+        let bound = self.bound[constraint];
+        if !self.is_inequality[constraint] {
+            terms.push(bound);
+            let value = self.value[constraint];
+            terms.extend((value > CONSTANT * terms.iter().sum::<f64>()).then_some(value));
+            terms.sort_by(|a, b| b.total_cmp(a));
+        }
+        let decades = match &terms[..] {
+            [largest, ..] if self.is_inequality[constraint] => {
+                let largest = terms.iter().copied().fold(*largest, f64::max);
+                if bound > 0.0 { (largest / bound).log10().max(0.0) } else { 0.0 }
+            }
+            [largest, next, ..] if *next > 0.0 => (largest / next).log10(),
+            _ => 0.0,
+        };
+        if decades.is_finite() { decades } else { 0.0 }
     }
 
     /// The largest known term of a constraint beside those of one group.

@@ -1,9 +1,8 @@
 //! What nobody guesses (docs/maths.md, section 8.1).
 
-use crate::transcribe::Transcription;
-use crate::transcribe::layout::Time;
-use crate::transcribe::rows::shortest_duration;
-use crate::transcribe::slots::AffineMap;
+use super::Transcription;
+use super::measured::Measured;
+use super::slots::AffineMap;
 use ntg_nlp::Target;
 use ntg_splines::Side;
 use ntg_structure::{Block, Degree, Domain, Row};
@@ -16,25 +15,18 @@ const DECADE: f64 = 10.0;
 const FAR: f64 = 1e4;
 
 /// Durations, starts and variables in the middle of their bounds.
-pub(super) fn times(nlp: &Transcription, x: &mut [f64]) {
-    let layout = &nlp.model.layout;
-    for phase in &layout.phases {
-        if let Time::Free(variable) = phase.duration {
-            let variable = variable as usize;
-            x[variable] = duration(nlp.limits.lower[variable], nlp.limits.upper[variable]);
-        }
-    }
-    let durations = layout.phases.iter().filter(|p| p.duration.fixed().is_none()).count();
-    let first = layout.coefficients + durations;
+pub(crate) fn times(nlp: &Transcription, x: &mut [f64]) {
+    nlp.durations.iter().for_each(|duration| x[duration.variable as usize] = duration.guess);
+    let first = nlp.model.layout.coefficients + nlp.durations.len();
     let bounds = nlp.limits.lower.iter().zip(&nlp.limits.upper).zip(nlp.units());
     for (value, ((lower, upper), unit)) in x.iter_mut().zip(bounds).skip(first) {
         *value = middle((*lower, *upper), unit);
     }
 }
 
-fn duration(lower: f64, upper: f64) -> f64 {
-    // The smallest duration of all is a guard, not a bound that anyone wrote.
-    match (lower != shortest_duration(upper), upper.is_finite()) {
+/// A duration by its declared bounds; `lower` is 0 where there is none.
+pub(super) fn duration(lower: f64, upper: f64) -> f64 {
+    match (lower > 0.0, upper.is_finite()) {
         (true, true) => middle((lower, upper), 1.0),
         (true, false) => 2.0 * lower,
         (false, true) => 0.5 * upper,
@@ -43,7 +35,7 @@ fn duration(lower: f64, upper: f64) -> f64 {
 }
 
 /// The middle of two bounds, or a point near the one that is finite: one unit from 0.
-pub(super) fn middle((mut lower, mut upper): (f64, f64), unit: f64) -> f64 {
+fn middle((mut lower, mut upper): (f64, f64), unit: f64) -> f64 {
     if lower < 0.0 && upper > 0.0 {
         // A bound that is so much farther from 0 than the other one says nothing.
         let (below, above) = (-lower, upper);
@@ -74,15 +66,16 @@ pub(super) fn middle((mut lower, mut upper): (f64, f64), unit: f64) -> f64 {
     }
 }
 
-/// Outputs: straight lines over time between the values that boundary conditions fix; else the
+/// Outputs: straight lines over time between the values that boundary conditions fix and measurements tell; else the
 /// middle of constant bounds; else 0.
-pub(super) fn outputs(nlp: &Transcription, x: &mut [f64]) {
+pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
     let mut met = HashMap::new(); // Looked up, never iterated.
+    let measured = Measured::of(nlp);
     for agent in 0..layout.agents.len() {
         for phase in layout.agents[agent].phases.clone() {
             for output in 0..layout.phases[phase].outputs.len() {
-                let known = known_values(nlp, phase, output, x);
+                let known = known_values(nlp, &measured, (phase, output), x);
                 let first = layout.phases[phase].outputs[output].coefficients[0];
                 // What members of a scenario share is looked at once.
                 let constant = match known.is_empty() {
@@ -112,8 +105,13 @@ fn constant(nlp: &Transcription, phase: usize, output: usize) -> f64 {
     if upper.is_finite() { middle((lower, upper), unit) } else { lower + unit }
 }
 
-/// `(t, value)` wherever a boundary condition fixes this output in its agent.
-fn known_values(nlp: &Transcription, phase: usize, output: usize, x: &[f64]) -> Vec<(f64, f64)> {
+/// `(t, value)` wherever a boundary condition fixes this output in its agent, or a measurement tells it.
+fn known_values(
+    nlp: &Transcription,
+    measured: &Measured,
+    (phase, output): (usize, usize),
+    x: &[f64],
+) -> Vec<(f64, f64)> {
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
     let name = |phase: usize, output: usize| {
         let member = &layout.phases[phase];
@@ -130,7 +128,10 @@ fn known_values(nlp: &Transcription, phase: usize, output: usize, x: &[f64]) -> 
                 known.push((layout.start(other, x) + tau * layout.duration(other, x), value));
             }
         }
+        let times = measured.values(other, same).iter();
+        known.extend(times.map(|(tau, value)| (layout.start(other, x) + tau * layout.duration(other, x), *value)));
     }
+    known.sort_by(|a, b| a.0.total_cmp(&b.0));
     known
 }
 

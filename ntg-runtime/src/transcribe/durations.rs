@@ -1,0 +1,175 @@
+//! How long free durations are where nobody says it, and the least that they may be (docs/maths.md, section 8.1).
+//!
+//! Takes bounds, boundary conditions and slopes; gives a guess of each free duration. Of a bound that is far beyond what
+//! balances the equations nothing is known but that somebody wrote it.
+
+use super::layout::Time;
+use super::rows::shortest_duration;
+use super::{Transcription, defaults};
+use ntg_nlp::Nlp;
+
+/// A duration from bounds counts unless another one, so many decades away, balances the equations better. A fit: of 141 shipped,
+/// gallery and other specs with free durations none is further off.
+const FAR: i32 = 2;
+
+/// By so many decades in sum the equations have to be balanced better there, and worse beyond. A choice: two factors of ten.
+const BETTER: f64 = 2.0;
+
+/// So many decades from the guess by bounds are looked at. A choice: from an age of the world to a vibration of a molecule.
+const RANGE: i32 = 24;
+
+/// Parts of a decade in which the best duration is looked for.
+const PARTS: i32 = 10;
+
+/// Sums of decades that differ by less are equal: rounding.
+const EQUAL: f64 = 1e-6;
+
+/// A duration that is a variable.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeDuration {
+    pub(crate) variable: u32,
+    /// What is guessed where nobody guesses it, SI.
+    pub(crate) guess: f64,
+    /// Its greatest length as far as anything is known of it: its upper bound, unless that is far from what balances the equations.
+    pub(crate) reach: f64,
+    /// Whether its least length is the transcription's: no bound above 0 is declared.
+    pub(crate) is_guarded: bool,
+}
+
+/// What is seen with given durations.
+#[derive(Clone, Copy)]
+pub(super) struct Trial {
+    /// How unbalanced the equations are, see [`Transcription::imbalance`].
+    pub(super) decades: f64,
+    /// The objective of a motion of the size that balances them.
+    pub(super) objective: f64,
+}
+
+impl Transcription<'_> {
+    /// Guesses free durations, and lets those be short whose upper bound is far from what balances the equations.
+    pub(super) fn find_durations(&mut self) {
+        let limits = &self.limits;
+        let free = self.model.layout.phases.iter().filter_map(|phase| match phase.duration {
+            Time::Free(variable) => Some(variable),
+            Time::Fixed(_) => None,
+        });
+        let mut durations: Vec<FreeDuration> = vec![];
+        for variable in free {
+            let (lower, upper) = (limits.lower[variable as usize], limits.upper[variable as usize]);
+            // The smallest duration of all is a guard, not a bound that anyone wrote.
+            let is_guarded = lower == shortest_duration(upper);
+            let guess = defaults::duration(if is_guarded { 0.0 } else { lower }, upper);
+            durations.push(FreeDuration { variable, guess, reach: upper, is_guarded });
+        }
+        self.durations = durations;
+        let Some(typical) = self.typical_duration() else { return };
+        for i in 0..self.durations.len() {
+            let known = self.durations[i];
+            let guess = self.duration_near(&known, typical);
+            let is_far = |bound: f64| bound > 10f64.powi(FAR) * guess || bound.is_infinite();
+            if guess == known.guess && !known.reach.is_infinite() || !is_far(known.reach) {
+                continue;
+            }
+            let reach = 2.0 * guess;
+            self.durations[i] = FreeDuration { guess, reach, ..known };
+            if known.is_guarded {
+                self.limits.lower[known.variable as usize] = shortest_duration(reach);
+            }
+        }
+    }
+
+    /// What is guessed of a duration where `typical` is the time in which something happens.
+    fn duration_near(&self, duration: &FreeDuration, typical: f64) -> f64 {
+        let lower = if duration.is_guarded { 0.0 } else { self.limits.lower[duration.variable as usize] };
+        let wanted = typical.max(lower);
+        if duration.reach.is_infinite() { wanted } else { wanted.min(duration.guess) }
+    }
+
+    /// The time in which something happens, if it is far from what bounds tell.
+    fn typical_duration(&self) -> Option<f64> {
+        let first = self.durations.iter().map(|duration| duration.guess).reduce(f64::max)?;
+        let has_room = |duration: &FreeDuration| {
+            let lower = if duration.is_guarded { 0.0 } else { self.limits.lower[duration.variable as usize] };
+            duration.reach.is_infinite() || duration.guess > 10f64.powi(FAR) * lower
+        };
+        if !self.durations.iter().any(has_room) {
+            return None;
+        }
+        let mut x = vec![0.0; self.model.layout.variables];
+        defaults::times(self, &mut x);
+        defaults::outputs(self, &mut x);
+        for (first, members) in self.model.layout.integral_first.iter().zip(&self.model.layout.integral_members) {
+            x[*first as usize..][..members.len()].fill(1.0);
+        }
+        let (mut work, mut at) = self.workspace();
+        let groups = self.output_groups();
+        let mut trial = |tenths: i32| {
+            let typical = first * 10f64.powf(f64::from(tenths) / f64::from(PARTS));
+            self.durations.iter().for_each(|d| x[d.variable as usize] = self.duration_near(d, typical));
+            self.imbalance(&x, &groups, (&mut work, &mut at))
+        };
+        let is_open = self.durations.iter().any(|duration| duration.reach.is_infinite());
+        let ways: &[i32] = if is_open { &[-PARTS, PARTS] } else { &[-PARTS] };
+        search(&mut trial, ways).map(|tenths| first * 10f64.powf(tenths / f64::from(PARTS)))
+    }
+}
+
+/// The best duration in parts of a decade, if it is far from 0: by bounds. `ways` are downwards and, where no bound tells
+/// anything, upwards. The sum of decades is convex where all terms are powers of the duration, so that a look a little away
+/// tells whether there is anything better.
+fn search(trial: &mut impl FnMut(i32) -> Option<Trial>, ways: &[i32]) -> Option<f64> {
+    let here = trial(0)?;
+    let mut found = |way: i32| {
+        let near = trial(way * FAR)?;
+        match near.decades - here.decades {
+            better if better < -EQUAL => balanced(trial, here, way),
+            worse if worse > EQUAL => None,
+            _ => (near.objective < here.objective).then(|| cheapest(trial, here, way))?,
+        }
+    };
+    ways.iter().find_map(|way| found(*way))
+}
+
+/// The middle of all that balance the equations best, if that is by much and not beyond.
+fn balanced(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32) -> Option<f64> {
+    let (mut best, mut least) = (0, here.decades);
+    for decade in FAR..=RANGE {
+        let there = trial(way * decade)?.decades;
+        if there > least + BETTER {
+            break;
+        }
+        if there < least - EQUAL {
+            (best, least) = (decade, there);
+        } else if best == 0 || decade == RANGE {
+            return None;
+        }
+    }
+    if best == 0 || least > here.decades - BETTER {
+        return None;
+    }
+    let tenths = way * best - PARTS..=way * best + PARTS;
+    let found: Vec<(i32, f64)> = tenths.filter_map(|tenths| Some((tenths, trial(tenths)?.decades))).collect();
+    let least = found.iter().map(|(_, decades)| *decades).reduce(f64::min)?;
+    let good = || found.iter().filter(|(_, decades)| *decades <= least + EQUAL).map(|(tenths, _)| f64::from(*tenths));
+    Some(0.5 * (good().reduce(f64::min)? + good().reduce(f64::max)?))
+}
+
+/// Of those that balance the equations as `here` does, the one with the lowest objective, if that is not the last one looked at.
+fn cheapest(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32) -> Option<f64> {
+    let is_equal = |there: Trial| (there.decades - here.decades).abs() <= EQUAL;
+    let (mut best, mut least) = (0, here.objective);
+    for decade in FAR..=RANGE {
+        let there = trial(way * decade)?;
+        if !is_equal(there) || there.objective >= least {
+            break;
+        }
+        (best, least) = (decade, there.objective);
+    }
+    if best == 0 || best == RANGE {
+        return None;
+    }
+    let tenths = way * best - PARTS..=way * best + PARTS;
+    let near = tenths.filter_map(|tenths| Some((tenths, trial(tenths)?)));
+    let good = near.filter(|(_, there)| is_equal(*there));
+    good.min_by(|a, b| a.1.objective.total_cmp(&b.1.objective)).map(|(tenths, _)| f64::from(tenths))
+}
