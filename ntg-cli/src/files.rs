@@ -194,7 +194,8 @@ pub(crate) fn print_raw(text: &str) {
 
 /// Shows findings on standard error; in colour where that is a terminal and the user's environment wants it.
 pub(crate) fn show<'a>(source: &Source, findings: impl Iterator<Item = &'a Diagnostic>) {
+    let width = crate::terminal::width_of_errors();
     for finding in findings {
-        let _ = writeln!(anstream::stderr(), "{}\n", finding.render_with(source, true));
+        let _ = writeln!(anstream::stderr(), "{}\n", finding.render_within(source, true, width));
     }
 }

@@ -32,6 +32,7 @@ mod solve;
 mod starts;
 mod summary;
 mod sweep;
+mod terminal;
 mod values;
 mod watch;
 mod write;

@@ -23,7 +23,7 @@ use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
 use crate::watch::{Interrupt, Watch};
-use crate::{Exit, certify, files, guess, options, route, setup, write};
+use crate::{Exit, certify, files, guess, options, route, setup, terminal, write};
 
 pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
     crate::said(solve(arguments))
@@ -41,6 +41,8 @@ struct Solved<'a> {
     sensitivity: Option<&'a Result<Sensitivity, SensitivityError>>,
     samples: usize,
     compile_seconds: f64,
+    /// How wide the text may be; none where it goes to no terminal.
+    width: Option<usize>,
 }
 
 /// What was solved.
@@ -106,7 +108,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let proved = summary.as_ref().zip(mended.as_ref());
     let problem: &dyn Problem = mended.as_ref().map_or(&problem as &dyn Problem, |mended| &mended.problem);
     let sensitivity = sensitivity.as_ref();
-    let solved = Solved { problem, report, starts, explanation, proved, sensitivity, samples, compile_seconds };
+    let width = terminal::width();
+    let solved = Solved { problem, report, starts, explanation, proved, sensitivity, samples, compile_seconds, width };
     match arguments.format {
         Format::Text => files::print(&text::document(&solved)),
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),

@@ -48,6 +48,30 @@ fn a_route_that_cannot_be_read_is_refused_with_words() {
 }
 
 #[test]
+fn phases_are_told_with_their_times_also_where_their_durations_have_no_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hop.ntg");
+    let spec = "problem Hop {
+        state x [m];
+        input v in 0 .. 2 [m/s]: held;
+        collocation gauss(points = 2, intervals = 2);
+        phase slow { duration in 1 .. 9 [s]; trajectory { v <= 1 [m/s]; } final { x == 5000003 [m]; } }
+        phase leg[i in 1 .. 2] after slow { duration in 0.5 .. 9 [s]; }
+        minimize final(t);
+        dynamics { der(x) == v; }
+        initial { x == 5000000 [m]; }
+        final { x == 5000007 [m]; }
+    }";
+    std::fs::write(&path, spec).expect("written");
+    let output = ntg(&["solve", path.to_str().expect("a path"), "--samples", "3"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("\n  slow: from 0 s to 3 s, for 3 s\n"), "{text}");
+    assert!(text.contains("\n  leg[1]: from 3 s to ") && text.contains("\n  leg[2]: from "), "{text}");
+    // Positions far from their origin are told apart.
+    assert!(text.contains(" 5000000.000 ") && text.contains(" 5000007.000 "), "{text}");
+}
+
+#[test]
 fn saving_refuses_a_folder_that_does_not_exist_before_it_solves() {
     let output = ntg(&["solve", "van_der_pol.ntg", "--save", "nowhere/run.json"]);
     assert_eq!(output.status.code(), Some(2));

@@ -100,12 +100,17 @@ impl Diagnostic {
     /// The finding with a picture of its place, in rustc's style, as plain text without a
     /// line break at the end.
     pub fn render(&self, source: &Source) -> String {
-        render::render(self, source, false)
+        render::render(self, source, (false, None))
     }
 
     /// As [`Diagnostic::render`]; with `colour`, for a terminal.
     pub fn render_with(&self, source: &Source, colour: bool) -> String {
-        render::render(self, source, colour)
+        render::render(self, source, (colour, None))
+    }
+
+    /// As [`Diagnostic::render_with`], in so many columns where they are known: sentences are folded and lines of the spec cut.
+    pub fn render_within(&self, source: &Source, colour: bool, columns: Option<usize>) -> String {
+        render::render(self, source, (colour, columns))
     }
 }
 

@@ -6,6 +6,7 @@ use ntg_runtime::sensitivity::{Gradient, Sensitivity, SensitivityError, Weak};
 use serde_json::{Map, Value, json};
 
 use super::text::number;
+use crate::terminal;
 
 /// How wide a column is at least.
 const LEAST_WIDTH: usize = 12;
@@ -52,36 +53,34 @@ fn numbers(sensitivity: &Sensitivity) -> Vec<(String, Gradient)> {
 }
 
 /// A table: one line for everything that is differentiated, one column a parameter.
-pub(super) fn text(sensitivity: &Result<Sensitivity, SensitivityError>) -> String {
+pub(super) fn text(sensitivity: &Result<Sensitivity, SensitivityError>, width: Option<usize>) -> String {
     let sensitivity = match sensitivity {
         Ok(found) => found,
-        Err(error) => return format!("\nno derivatives by parameters: {error}"),
+        Err(error) => return terminal::folded(&format!("\nno derivatives by parameters: {error}"), width),
     };
     if sensitivity.parameters().is_empty() {
         return "\nno derivatives by parameters: the problem has none".to_owned();
     }
     let named = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
-    let heads: Vec<String> = sensitivity.parameters().iter().map(|p| named(&p.name, &p.unit.symbol)).collect();
     let rows: Vec<(String, Gradient)> =
         numbers(sensitivity).into_iter().map(|(name, g)| (named(&name, &g.unit.symbol), g)).collect();
     let first = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    let width = |head: &str| head.chars().count().max(LEAST_WIDTH);
-    let line = |name: &str, cells: Vec<String>| {
-        let cells = cells.iter().zip(&heads).map(|(cell, head)| format!("{cell:>w$}", w = width(head)));
-        format!("  {name:first$} {}", cells.collect::<Vec<_>>().join(" "))
-    };
-    let mut lines =
-        vec![String::new(), "derivatives by parameters, in these units for one unit of the parameter:".to_owned()];
-    lines.push(line("", heads.clone()));
-    for (name, gradient) in &rows {
-        lines.push(line(name, gradient.values.iter().map(|value| number(*value)).collect()));
-    }
+    let names = std::iter::once("").chain(rows.iter().map(|(name, _)| name.as_str()));
+    let mut columns = vec![names.map(|name| format!("  {name:first$}")).collect::<Vec<String>>()];
+    columns.extend(sensitivity.parameters().iter().enumerate().map(|(k, p)| {
+        let head = format!("{:>LEAST_WIDTH$}", named(&p.name, &p.unit.symbol));
+        std::iter::once(head).chain(rows.iter().map(|(_, gradient)| number(gradient.values[k]))).collect()
+    }));
+    let said = |line: &str| terminal::folded(line, width);
+    let head = said("derivatives by parameters, in these units for one unit of the parameter:");
+    let mut lines = vec![String::new(), head];
+    lines.extend(terminal::table(&columns, width));
     if !sensitivity.is_strict() {
-        lines.push(
-            "  the minimum is not strict: derivatives but the objective's are of the solution that moves least".into(),
-        );
+        lines.push(said(
+            "  the minimum is not strict: derivatives but the objective's are of the solution that moves least",
+        ));
     }
-    lines.extend(sensitivity.weak().iter().map(|weak| format!("  {}", words(weak))));
+    lines.extend(sensitivity.weak().iter().map(|weak| said(&format!("  {}", words(weak)))));
     lines.join("\n")
 }
 

@@ -1,10 +1,12 @@
 //! The solution for people: the report, then a table of outputs and named expressions over time.
 
 use ntg_runtime::problem::Problem;
+use ntg_runtime::solution::Solution;
 use ntg_runtime::status::Status;
 use ntg_runtime::structure::Unit;
 
 use super::Solved;
+use crate::terminal;
 
 /// How many rows of the table are printed at most.
 const MOST_ROWS: usize = 21;
@@ -18,31 +20,33 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
     lines.extend(
         solved.proved.map(|(summary, found)| format!("\n{summary}{}", crate::certify::of_guarantee(found).trim_end())),
     );
-    lines.extend(solved.sensitivity.map(super::sensitivity::text));
+    let mut lines = vec![terminal::folded(&lines.join("\n"), solved.width)];
+    lines.extend(solved.sensitivity.map(|found| super::sensitivity::text(found, solved.width)));
     lines.push(String::new());
     let problem: &dyn Problem = solved.problem;
     let solution = &solved.report.solution;
     let trajectories = solution.trajectories();
     let signals = solution.signals(problem);
+    lines.extend(phases(solution).iter().map(|line| terminal::folded(line, solved.width)));
     for signal in signals.iter().filter(|s| s.is_constant()) {
-        lines.push(format!("  {} = {}{}", signal.name(), number(signal.at(0.0)), spaced(signal.unit())));
+        let line = format!("  {} = {}{}", signal.name(), number(signal.at(0.0)), spaced(signal.unit()));
+        lines.push(terminal::folded(&line, solved.width));
     }
 
+    let times = solution.times(solved.samples.min(MOST_ROWS));
     let independent = &solution.structure().independent;
-    let mut heads = vec![independent.heading()];
-    heads.extend(trajectories.iter().map(|t| head(t.name(), t.unit())));
-    heads.extend(signals.iter().filter(|s| !s.is_constant()).map(|s| head(s.name(), s.unit())));
-    lines.push(heads.iter().map(|h| format!("{h:>w$}", w = width(h))).collect::<Vec<_>>().join(" "));
-    for t in solution.times(solved.samples.min(MOST_ROWS)) {
-        // What has not begun or has ended has no value.
-        let mut row = vec![Some(independent.shown(t))];
-        row.extend(trajectories.iter().map(|own| own.exists_at(t).then(|| own.at(t))));
-        let moving = signals.iter().filter(|signal| !signal.is_constant());
-        row.extend(moving.map(|own| own.exists_at(t).then(|| own.at(t))));
-        let shown = row.iter().map(|value| value.map_or_else(|| "-".to_owned(), number));
-        let cells = shown.zip(&heads).map(|(value, head)| format!("{value:>w$}", w = width(head)));
-        lines.push(cells.collect::<Vec<_>>().join(" "));
-    }
+    let shown = times.iter().map(|t| Some(independent.shown(*t))).collect();
+    let mut columns = vec![column(independent.heading(), shown)];
+    // What has not begun or has ended has no value.
+    columns.extend(trajectories.iter().map(|own| {
+        let values = times.iter().map(|t| own.exists_at(*t).then(|| own.at(*t)));
+        column(head(own.name(), own.unit()), values.collect())
+    }));
+    columns.extend(signals.iter().filter(|signal| !signal.is_constant()).map(|own| {
+        let values = times.iter().map(|t| own.exists_at(*t).then(|| own.at(*t)));
+        column(head(own.name(), own.unit()), values.collect())
+    }));
+    lines.extend(terminal::table(&columns, solved.width));
     if solved.samples > MOST_ROWS {
         lines.push(format!("(all {} samples: --format json)", solved.samples));
     }
@@ -64,25 +68,115 @@ fn led(solved: &Solved<'_>) -> String {
     }
 }
 
+/// When each phase and each agent begins and ends, and how long it lasts; nothing where the whole is all there is.
+fn phases(solution: &Solution) -> Vec<String> {
+    let independent = &solution.structure().independent;
+    let times = solution.event_times();
+    let of = |word: &str, name: &str| {
+        let found = times.iter().find(|(own, _)| *own == format!("{word}({name})"))?;
+        Some(independent.amount(found.1, brief))
+    };
+    let names = times.iter().filter_map(|(name, _)| name.strip_prefix("duration(")?.strip_suffix(')'));
+    let names: Vec<&str> = names.collect();
+    let told = names.iter().take(MOST_ROWS).filter_map(|name| {
+        let (start, end, duration) = (of("start", name)?, of("end", name)?, of("duration", name)?);
+        Some(format!("  {name}: from {start} to {end}, for {duration}"))
+    });
+    let mut lines: Vec<String> = told.collect();
+    if names.len() > MOST_ROWS {
+        lines.push(format!("  and {} more: --format json", names.len() - MOST_ROWS));
+    }
+    lines
+}
+
 fn head(name: &str, unit: &Unit) -> String {
     if unit.symbol.is_empty() { name.to_owned() } else { format!("{name} [{}]", unit.symbol) }
 }
 
-fn width(head: &str) -> usize {
-    head.chars().count().max(LEAST_WIDTH)
+/// A column of the table: its head, then its values, those that are alike with as many digits as tell them apart.
+fn column(head: String, values: Vec<Option<f64>>) -> Vec<String> {
+    let known = || values.iter().copied().flatten().filter(|value| value.is_finite());
+    let (digits, greatest) = (digits(known()), known().fold(0.0_f64, |most, value| most.max(value.abs())));
+    let shown = |value: &f64| if value.abs() < ROUNDED * greatest { 0.0 } else { *value };
+    let cells = values.iter().map(|value| value.as_ref().map_or_else(|| "-".to_owned(), |v| rounded(shown(v), digits)));
+    std::iter::once(format!("{head:>LEAST_WIDTH$}")).chain(cells).collect()
 }
 
 fn spaced(unit: &Unit) -> String {
     if unit.symbol.is_empty() { String::new() } else { format!(" {}", unit.symbol) }
 }
 
+/// Significant digits of a number for people.
+const DIGITS: i32 = 6;
+/// How many digits are shown of what the values of a column vary by.
+const OWN_DIGITS: i32 = 4;
+/// Values that vary by less than this part of them are the same but for what a solve leaves.
+const SAME: f64 = 1e-8;
+/// What is less than this part of the greatest of a column is a zero that was rounded.
+const ROUNDED: f64 = 1e-14;
+
+/// How many significant digits tell the values of a column apart.
+fn digits(values: impl Iterator<Item = f64>) -> i32 {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let share = (high - low) / low.abs().max(high.abs());
+    if share > SAME { DIGITS.max(OWN_DIGITS - share.log10().floor() as i32) } else { DIGITS }
+}
+
 /// Six significant digits, without an exponent where that is readable.
 pub(super) fn number(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
-        let digits = if value == 0.0 { 1.0 } else { value.abs().log10().floor() + 1.0 };
-        let decimals = (6.0 - digits).clamp(0.0, 9.0) as usize;
+    rounded(value, DIGITS)
+}
+
+/// The same without zeros at its end.
+fn brief(value: f64) -> String {
+    let shown = number(value);
+    let zeros = |text: &str| text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    match shown.split_once('e') {
+        Some((mantissa, exponent)) => format!("{}e{exponent}", zeros(mantissa)),
+        None if shown.contains('.') => zeros(&shown),
+        None => shown,
+    }
+}
+
+/// So many significant digits; where they reach behind the point, or nearly, without an exponent.
+fn rounded(value: f64, significant: i32) -> String {
+    if value == 0.0 || (1e-3..10_f64.powi(significant)).contains(&value.abs()) {
+        let digits = if value == 0.0 { 1 } else { value.abs().log10().floor() as i32 + 1 };
+        let decimals = (significant - digits).clamp(0, 9) as usize;
         format!("{value:.decimals$}")
     } else {
-        format!("{value:.5e}")
+        format!("{value:.*e}", significant as usize - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cells(values: &[f64]) -> Vec<String> {
+        column("x [m]".to_owned(), values.iter().copied().map(Some).collect())
+    }
+
+    #[test]
+    fn values_far_from_their_origin_are_told_apart() {
+        assert_eq!(cells(&[5e6, 5_000_001.5, 5_000_003.0])[1..], ["5000000.0000", "5000001.5000", "5000003.0000"]);
+        assert_eq!(cells(&[-2e13, -2e13 + 1e9])[1..], ["-2.00000000e13", "-1.99990000e13"]);
+        assert_eq!(cells(&[300.0, 300.002])[1..], ["300.0000000", "300.0020000"]);
+    }
+
+    #[test]
+    fn a_number_in_a_sentence_has_no_zeros_at_its_end() {
+        let shown = [0.0, 0.3, 40.0, 1200.0, 999_999.0, 2e6, 1.5e-7].map(brief);
+        assert_eq!(shown, ["0", "0.3", "40", "1200", "999999", "2e6", "1.5e-7"]);
+    }
+
+    #[test]
+    fn others_have_six_digits_also_what_is_constant_but_for_a_rounding() {
+        assert_eq!(cells(&[0.0, 1.5, 30.0])[1..], ["0.00000", "1.50000", "30.0000"]);
+        assert_eq!(cells(&[-3e-16, 1e-9, 30.0])[1..], ["0.00000", "1.00000e-9", "30.0000"]);
+        assert_eq!(cells(&[300.0, 300.0 + 1e-9])[1..], ["300.000", "300.000"]);
+        assert_eq!(cells(&[5e6, 5e6, f64::NAN])[1..], ["5.00000e6", "5.00000e6", "NaN"]);
+        assert_eq!(cells(&[0.0, 0.0])[1..], ["0.00000", "0.00000"]);
+        assert_eq!(column("x".to_owned(), vec![None, Some(1e-7)]), ["          x", "-", "1.00000e-7"]);
     }
 }

@@ -11,13 +11,15 @@ use super::{Diagnostic, InLibrary, Severity};
 use crate::source::{SNIPPET_WIDTH, Source, Span};
 
 /// See [`Diagnostic::render`].
-pub(super) fn render(finding: &Diagnostic, source: &Source, colour: bool) -> String {
+pub(super) fn render(finding: &Diagnostic, source: &Source, (colour, columns): (bool, Option<usize>)) -> String {
     let level = match finding.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
         Severity::Note => Level::NOTE,
     };
-    let title = level.primary_title(finding.message.as_str()).id(finding.code.text());
+    let message = folded(&finding.message, columns);
+    let help = finding.help.as_deref().map(|help| folded(help, columns));
+    let title = level.primary_title(message.as_str()).id(finding.code.text());
     let (own, others): (Vec<&InLibrary>, Vec<&InLibrary>) =
         finding.libraries.iter().partition(|library| library.span.is_some());
     let mut group = title.elements(own.into_iter().filter_map(|library| {
@@ -30,13 +32,31 @@ pub(super) fn render(finding: &Diagnostic, source: &Source, colour: bool) -> Str
         let whole = library.labels.iter().map(|(span, _)| *span).reduce(Span::to)?;
         Some(snippet((whole, None), &library.labels, &library.source))
     }));
-    let group = match &finding.help {
+    let group = match &help {
         Some(help) => group.element(Level::HELP.message(help.as_str())),
         None => group,
     };
     let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
-    let renderer = renderer.decor_style(DecorStyle::Ascii).term_width(SNIPPET_WIDTH);
+    let renderer =
+        renderer.decor_style(DecorStyle::Ascii).term_width(columns.unwrap_or(SNIPPET_WIDTH).min(SNIPPET_WIDTH));
     renderer.render(&[group]).trim_end().to_owned()
+}
+
+/// A sentence in lines that fit behind its label.
+fn folded(sentence: &str, columns: Option<usize>) -> String {
+    /// What stands in front of it: `warning[E001]: `, `   = help: ` with a line number of up to four digits.
+    const LABEL: usize = 15;
+    let Some(room) = columns.map(|columns| columns.saturating_sub(LABEL).max(LABEL)) else {
+        return sentence.to_owned();
+    };
+    let mut lines: Vec<String> = vec![];
+    for word in sentence.split(' ') {
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + word.chars().count() <= room) {
+            Some(line) => *line = format!("{line} {word}"),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
 }
 
 /// The lines that some places touch, with the places marked: what the finding is about, and labels.
@@ -64,4 +84,22 @@ fn snippet<'a>(
         .line_start(source.place(all.start).line)
         .annotations(primary.map(|span| AnnotationKind::Primary.span(within(span)).label(own)))
         .annotations(others.map(|(span, text)| AnnotationKind::Context.span(within(*span)).label(text.as_str())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::Code;
+
+    #[test]
+    fn in_a_narrow_terminal_sentences_are_folded_and_lines_cut() {
+        let source = Source::new("p.ntg", "problem P { minimize integral((position_of_the_cart + T)^2) / 1 [m^2*s]; }");
+        let finding = Diagnostic::new(Code::UnknownName, Span::new(31, 51), "unknown name `position_of_the_cart`");
+        let finding = finding.help("bring both to the same dimension: check units, powers and missing factors");
+        let narrow = render(&finding, &source, (false, Some(50)));
+        assert!(narrow.lines().all(|line| line.chars().count() <= 50), "{narrow}");
+        assert!(narrow.contains("= help: bring both to the same dimension:\n") && narrow.contains("^^^^^"), "{narrow}");
+        let wide = render(&finding, &source, (false, None));
+        assert!(wide.contains(finding.help.as_deref().expect("given")), "{wide}");
+    }
 }
