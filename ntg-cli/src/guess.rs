@@ -6,7 +6,7 @@ use ntg_interp::Interpreted;
 use ntg_report::run::{FORMAT, VERSION, layout};
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
-use ntg_runtime::structure::Unit;
+use ntg_runtime::structure::{Structure, Unit};
 use serde_json::Value;
 
 use crate::files;
@@ -48,15 +48,12 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
     if saved["layout"] == layout(&structure)
         && let Some(unknowns) = numbers(&saved["unknowns"])
     {
+        check_units(saved, path, &structure)?;
         return Ok(Guess::raw(unknowns));
     }
     let mut guess = Guess::new();
     let own = structure.phases.iter().flat_map(|p| &p.outputs).filter(|output| !output.is_helper());
     let known: Vec<&str> = own.map(|output| output.name.as_str()).collect();
-    let base = |name: &str| {
-        let last = name.rsplit('.').next().unwrap_or(name);
-        last.split('[').next().unwrap_or(last).to_owned()
-    };
     let saved_outputs = || saved["outputs"].as_object().into_iter().flatten();
     if !known.is_empty() && !saved_outputs().any(|(name, _)| known.contains(&base(name).as_str())) {
         let mut theirs: Vec<String> = saved_outputs().map(|(name, _)| format!("`{}`", base(name))).collect();
@@ -68,6 +65,7 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
             problem.structure().name
         ));
     }
+    check_units(saved, path, &structure)?;
     for (name, output) in saved_outputs() {
         let base = base(name);
         let base = base.as_str();
@@ -99,9 +97,54 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
     Ok(guess)
 }
 
+/// The last name of a path, without indices.
+fn base(path: &str) -> String {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    last.split('[').next().unwrap_or(last).to_owned()
+}
+
+/// Refuses what has a name of the problem and another dimension than it has there.
+fn check_units(saved: &Value, path: &Path, structure: &Structure) -> Result<(), String> {
+    let refused = |name: &str, theirs: &str, own: &Unit| {
+        let told = |symbol: &str| if symbol.is_empty() { "a pure number".to_owned() } else { format!("in [{symbol}]") };
+        format!(
+            "`{}` is the solution of another problem: it has `{name}` {}, and `{}` has it {}",
+            path.display(),
+            told(theirs),
+            structure.name,
+            told(&own.symbol)
+        )
+    };
+    let fits = |name: &str, saved: &Value, own: &Unit| match (saved["unit"].as_str(), factor(saved, own)) {
+        (Some(unit), None) => Err(refused(name, unit, own)),
+        _ => Ok(()),
+    };
+    let declared = || structure.phases.iter().flat_map(|phase| &phase.outputs);
+    for (name, output) in saved["outputs"].as_object().into_iter().flatten() {
+        if let Some(own) = declared().find(|own| own.name == base(name)) {
+            fits(&base(name), output, &own.unit)?;
+        }
+    }
+    for own in &structure.variables {
+        fits(&own.name, &saved["variables"][&own.name], &own.unit)?;
+    }
+    let independent = &structure.independent;
+    fits(saved["independent"]["name"].as_str().unwrap_or(&independent.name), &saved["independent"], &independent.unit)
+}
+
 /// What saved values are multiplied by: they are in the unit that they were saved in, the guess is in the declared one.
 fn scale(saved: &Value, declared: &Unit) -> f64 {
-    saved["factor"].as_f64().map_or(1.0, |factor| factor / declared.factor)
+    factor(saved, declared).unwrap_or(1.0)
+}
+
+/// A saved unit in declared ones; one where the file names none, none where the two are of different dimensions.
+fn factor(saved: &Value, declared: &Unit) -> Option<f64> {
+    let Some(symbol) = saved["unit"].as_str() else {
+        return Some(saved["factor"].as_f64().map_or(1.0, |factor| factor / declared.factor));
+    };
+    let one = format!("1 [{}]", if symbol.is_empty() { "1" } else { symbol });
+    let si = ntg_interp::quantity(&one, declared).ok()?;
+    Some(si.first()? / declared.factor)
 }
 
 fn numbers(list: &Value) -> Option<Vec<f64>> {

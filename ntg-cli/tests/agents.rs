@@ -118,6 +118,28 @@ fn a_guess_is_in_the_unit_that_it_was_saved_in() {
 }
 
 #[test]
+fn a_guess_in_another_dimension_is_refused_also_where_its_splines_are_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    std::fs::write(here.join("km.ntg"), ramp("km", 4)).expect("written");
+    assert_eq!(ntg(here, &["solve", "km.ntg", "--save", "km.json"]).status.code(), Some(0));
+    for intervals in [4, 5] {
+        let seconds = ramp("s", intervals).replace("[km]", "[s]").replace("[m^2*s]", "[s^3]");
+        std::fs::write(here.join("s.ntg"), seconds).expect("written");
+        for arguments in [&["solve", "s.ntg", "--guess", "km.json"][..], &["check-solution", "s.ntg", "km.json"]] {
+            let output = ntg(here, arguments);
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{said}");
+            assert!(said.contains("in [km], and `") && said.contains("has it in [s]"), "{said}");
+        }
+    }
+    // The same splines in another unit are a solution as they are.
+    std::fs::write(here.join("m.ntg"), ramp("m", 4)).expect("written");
+    let output = ntg(here, &["check-solution", "m.ntg", "km.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
 fn a_result_never_replaces_a_spec() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
