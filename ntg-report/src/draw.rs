@@ -148,7 +148,14 @@ fn font(size: u32) -> FontDesc<'static> {
 /// Limits across and events up.
 fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>) -> Drawn {
     // A limit that is far away is not drawn: the library has no room for its distance, and no mark there is seen.
-    for Limit { at, name, over } in panel.limits.iter().filter(|limit| ys.contains(&limit.at)) {
+    for Limit { at, name, over, curve } in &panel.limits {
+        if !curve.is_empty() {
+            limit_curve(chart, (name, curve), (xs, ys))?;
+            continue;
+        }
+        if !ys.contains(at) {
+            continue;
+        }
         let (from, to) = (over.0.max(xs.start), over.1.min(xs.end));
         chart.draw_series(DashedLineSeries::new([(from, *at), (to, *at)], 50, 70, INK.stroke_width(30)))?;
         let label = Text::new(name.clone(), (100, -260), font(220).color(&GREY));
@@ -165,6 +172,23 @@ fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>)
         let left = if width + 60 <= room { 60 } else { -60 - width };
         let label = Text::new(name.clone(), (left, height), style);
         chart.draw_series([EmptyElement::at((*x, ys.end)) + label])?;
+    }
+    Ok(())
+}
+
+/// A limit that is a function of time, as far as it is in the picture.
+fn limit_curve(
+    chart: &mut Chart<'_>,
+    (name, curve): (&str, &[(f64, f64)]),
+    (xs, ys): (&Range<f64>, &Range<f64>),
+) -> Drawn {
+    for (number, part) in clip::line(curve, xs, ys).into_iter().enumerate() {
+        let first = part.first().copied().filter(|_| number == 0);
+        chart.draw_series(DashedLineSeries::new(part, 50, 70, INK.stroke_width(30)))?;
+        if let Some(at) = first {
+            let label = Text::new(name.to_owned(), (100, -260), font(220).color(&GREY));
+            chart.draw_series([EmptyElement::at(at) + label])?;
+        }
     }
     Ok(())
 }
@@ -322,7 +346,10 @@ fn ranges(panel: &Panel) -> (Range<f64>, Range<f64>) {
     let values = level(span(points().map(|p| p.1), 0.0));
     let reach = 3.0 * (values.end - values.start);
     // A limit that is far away would flatten what there is to see.
-    let near = panel.limits.iter().map(|limit| limit.at);
+    let near = panel.limits.iter().flat_map(|limit| {
+        let flat = limit.curve.is_empty().then_some(limit.at);
+        flat.into_iter().chain(limit.curve.iter().map(|point| point.1))
+    });
     let near = near.filter(|limit| *limit > values.start - reach && *limit < values.end + reach);
     let ys = level(span(points().map(|p| p.1).chain(near), 0.06));
     if !panel.equal {

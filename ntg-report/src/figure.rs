@@ -12,7 +12,7 @@ mod track;
 pub use measured::residuals;
 pub use track::{Space, side, space, track, tracks};
 
-use crate::run::{Constraint, Run, Series};
+use crate::run::{Constraint, Curve, Run, Series};
 
 /// One pair of axes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Panel {
     pub logarithmic: bool,
     /// The lines.
     pub lines: Vec<Line>,
-    /// Horizontal limits.
+    /// Limits of the ordinate.
     pub limits: Vec<Limit>,
     /// Vertical marks at events, each with what happens.
     pub marks: Vec<(f64, String)>,
@@ -39,15 +39,17 @@ pub struct Panel {
     pub least: f64,
 }
 
-/// A horizontal limit.
+/// A limit: horizontal, or a curve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Limit {
-    /// The ordinate.
+    /// The ordinate; of a curve where it begins.
     pub at: f64,
     /// What it is: `lower`, `upper`, `=`.
     pub name: String,
     /// The abscissas between which it holds.
     pub over: (f64, f64),
+    /// The points of a curve; none of what is horizontal.
+    pub curve: Vec<(f64, f64)>,
 }
 
 /// What a shape of a map is.
@@ -235,8 +237,11 @@ fn bands(runs: &Runs<'_>, run: usize, (path, series): (&str, &Series)) -> Vec<Li
 /// One panel for each constraint along a trajectory, with its bounds.
 pub fn constraints(runs: &Runs<'_>) -> Vec<Panel> {
     over_constraints(runs, |constraint, runs, run| {
-        let lines = constraint.members.iter().map(|member| (&member.name, &member.t, &member.value));
-        let lines: Vec<Line> = lines.map(|(name, t, value)| line(label(runs, run, name), run, t, value)).collect();
+        let lines = constraint.members.iter().map(|member| match &member.curve {
+            Some(curve) => line(label(runs, run, &curve.of), run, &member.t, &curve.value),
+            None => line(label(runs, run, &member.name), run, &member.t, &member.value),
+        });
+        let lines: Vec<Line> = lines.collect();
         (with_unit(ordinate(&constraint.name), &constraint.unit), lines, limits(constraint))
     })
 }
@@ -290,7 +295,12 @@ fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize
                 }
             };
             panel.least = panel.least.max(least_miss(constraint));
-            panel.lines.extend(lines.into_iter().filter(|line| line.points.len() > 1));
+            // A range with a formula as a bound is two constraints about one quantity.
+            for line in lines.into_iter().filter(|line| line.points.len() > 1) {
+                if !panel.lines.contains(&line) {
+                    panel.lines.push(line);
+                }
+            }
             for limit in limits {
                 if !panel.limits.contains(&limit) {
                     panel.limits.push(limit);
@@ -314,11 +324,17 @@ fn limits(constraint: &Constraint) -> Vec<Limit> {
         if over.0 > over.1 {
             continue;
         }
+        if let Some(Curve { upper, limit, .. }) = &member.curve {
+            let name = if *upper { "upper" } else { "lower" }.to_owned();
+            let curve = member.t.iter().copied().zip(limit.iter().copied()).collect();
+            found.push(Limit { at: limit.first().copied().unwrap_or_default(), name, over, curve });
+            continue;
+        }
         let equal = member.lower.is_some() && member.lower == member.upper;
         let sides =
             [(member.lower, if equal { "=" } else { "lower" }), (member.upper, if equal { "=" } else { "upper" })];
         for (bound, side) in sides {
-            let limit = bound.map(|at| Limit { at, name: side.to_owned(), over });
+            let limit = bound.map(|at| Limit { at, name: side.to_owned(), over, curve: vec![] });
             found.extend(limit.filter(|limit| !found.contains(limit)));
         }
     }

@@ -65,7 +65,16 @@
     ctx.font = `${11 * px}px system-ui, sans-serif`; ctx.textAlign = "left"; ctx.textBaseline = "alphabetic";
     ctx.fillStyle = css("--quiet"); ctx.strokeStyle = css("--ink"); ctx.lineWidth = 1.5 * px; ctx.setLineDash([4 * px, 4 * px]);
     // A limit stands where it holds.
-    for (const [at, name, from, to] of chart.limits) {
+    for (const [at, name, from, to, xs, ys] of chart.limits) {
+      // One that is a function of time is a curve, whose name stands where it comes into the picture.
+      if (xs) {
+        const points = xs.map((x, i) => [u.valToPos(x, "x", true), u.valToPos(ys[i], "y", true)]);
+        ctx.beginPath(); points.forEach(([x, y], i) => (i ? ctx.lineTo(x, y) : ctx.moveTo(x, y))); ctx.stroke();
+        const seen = points.find(([x, y]) => x >= left && x <= left + width && y >= top && y <= top + height);
+        ctx.textAlign = "left";
+        if (seen) ctx.fillText(name, seen[0] + 6 * px, Math.max(seen[1] - 4 * px, top + 12 * px));
+        continue;
+      }
       const y = u.valToPos(at, "y", true), [x0, x1] = [Math.max(left, u.valToPos(from, "x", true)), Math.min(left + width, u.valToPos(to, "x", true))];
       if (x1 < x0) continue;
       ctx.beginPath(); ctx.moveTo(x0, y); ctx.lineTo(x1, y); ctx.stroke();
@@ -87,6 +96,9 @@
     ctx.restore();
   };
 
+  // The ordinates of a limit.
+  const values = ([at, , , , , ys]) => ys || [at];
+
   // Limits that are near enough to the values belong into the picture.
   const spanned = (chart) => (u, low, high) => {
     if (low == null) return [0, 1];
@@ -96,18 +108,19 @@
     const lack = flat ? 0 : Math.max(0, chart.least - (high - low)) / 2;
     [low, high] = [low - lack, high + lack];
     const reach = 3 * (high - low);
-    for (const [at] of chart.limits) if (at > low - reach && at < high + reach) { low = Math.min(low, at); high = Math.max(high, at); }
+    const [least, most] = [low - reach, high + reach];
+    for (const at of chart.limits.flatMap(values)) if (at > least && at < most) { low = Math.min(low, at); high = Math.max(high, at); }
     const pad = high > low && !(flat && high - low <= chart.least) ? 0.06 * (high - low) : Math.max(0.1 * Math.abs(low), 1e-3);
     return [low - pad, high + pad];
   };
 
   // Limits that are too far away for the picture, each once.
   const far = (chart) => {
-    const values = chart.lines.flatMap((line) => line.y).filter((y) => y != null);
-    if (!values.length) return [];
-    const least = (pick) => values.reduce((a, b) => pick(a, b)), [min, max] = spanned(chart)(null, least(Math.min), least(Math.max));
-    const outside = chart.limits.filter(([at]) => at < min || at > max);
-    return [...new Set(outside.map(([at, name]) => `${name} ${number(at)}`))];
+    const own = chart.lines.flatMap((line) => line.y).filter((y) => y != null);
+    if (!own.length) return [];
+    const least = (pick) => own.reduce((a, b) => pick(a, b)), [min, max] = spanned(chart)(null, least(Math.min), least(Math.max));
+    const outside = chart.limits.filter((limit) => values(limit).every((at) => at < min || at > max));
+    return [...new Set(outside.map(([at, name, , , , ys]) => `${name} ${ys ? `${number(Math.min(...ys))} .. ${number(Math.max(...ys))}` : number(at)}`))];
   };
 
   const axis = (label) => ({

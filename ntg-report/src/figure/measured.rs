@@ -49,7 +49,7 @@ pub fn residuals(runs: &Runs<'_>) -> Vec<Panel> {
     for panel in &mut panels {
         let times = panel.lines.iter().flat_map(|line| &line.points).map(|(t, _)| *t);
         let over = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(t), high.max(t)));
-        panel.limits = vec![Limit { at: 0.0, name: String::new(), over }];
+        panel.limits = vec![Limit { at: 0.0, over, ..Limit::default() }];
     }
     panels
 }

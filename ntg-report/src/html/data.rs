@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::Page;
-use crate::figure::{self, Kind, Line, Panel, Runs, Shape, Space};
+use crate::figure::{self, Kind, Limit, Line, Panel, Runs, Shape, Space};
 use crate::run::{Outline, Surface};
 
 /// Numbers that all charts together may hold, so that a page stays below a megabyte.
@@ -84,12 +84,21 @@ fn chart(panel: &Panel, points: usize) -> Value {
         "equal": panel.equal,
         "least": figure::least_span(panel),
         "lines": panel.lines.iter().map(|line| self::line(line, points)).collect::<Vec<_>>(),
-        "limits": panel.limits.iter().map(|limit| {
-            json!([short(limit.at), limit.name, short(limit.over.0), short(limit.over.1)])
-        }).collect::<Vec<_>>(),
+        "limits": panel.limits.iter().map(|limit| self::limit(limit, points)).collect::<Vec<_>>(),
         "shapes": panel.shapes.iter().map(shape).collect::<Vec<_>>(),
         "marks": panel.marks.iter().map(|(at, name)| json!([short(*at), name])).collect::<Vec<_>>(),
     })
+}
+
+/// Ordinate, name and the abscissas between which it holds; of a curve also its abscissas and ordinates.
+fn limit(limit: &Limit, points: usize) -> Value {
+    let Limit { at, name, over, curve } = limit;
+    if curve.is_empty() {
+        return json!([short(*at), name, short(over.0), short(over.1)]);
+    }
+    let keep = kept(curve.len(), points);
+    let of = |pick: fn(&(f64, f64)) -> f64| keep.iter().map(|i| short(pick(&curve[*i]))).collect::<Vec<_>>();
+    json!([short(*at), name, short(over.0), short(over.1), of(|p| p.0), of(|p| p.1)])
 }
 
 /// Kind, name, abscissas, ordinates, and the line to which alone it belongs.

@@ -9,7 +9,7 @@ use limits::Limit;
 use super::spec::State;
 use super::tables::{number, with_unit};
 use crate::figure::{Runs, unwrapped};
-use crate::run::{Run, Series};
+use crate::run::{Constraint, Member, Run, Series, sides};
 
 /// One quantity of one run.
 struct Extremes {
@@ -20,6 +20,10 @@ struct Extremes {
     limits: Vec<Limit>,
     /// Whether the limits together hold at all times.
     always: bool,
+    /// What was written, where the name does not say it.
+    text: String,
+    /// Whether it is what the left side of a constraint is more than the right one.
+    difference: bool,
 }
 
 /// The table; nothing where nothing is over time.
@@ -47,7 +51,7 @@ pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
                     } }
                     tbody { @for (run, row) in &rows {
                         tr {
-                            td.name { (row.name) } @if several { td { (run) } }
+                            td.name { (row.name) @if !row.text.is_empty() { div.quiet { (row.text) } } } @if several { td { (run) } }
                             td.n { (number(row.least.0)) } td.n { (number(row.least.1)) }
                             td.n { (number(row.most.0)) } td.n { (number(row.most.1)) }
                             td { (row.unit) }
@@ -67,32 +71,39 @@ pub(super) fn section(runs: &Runs<'_>, all: bool) -> Markup {
     }
 }
 
-/// Lower and upper bound in words; with the phase where they do not hold at all times.
+/// Lower and upper bound in words; with the phase and the times where they do not hold at all times.
 fn limits(row: &Extremes) -> String {
-    let mut phases: Vec<(&str, Option<f64>, Option<f64>)> = vec![];
+    type Bounds<'r> = ((&'r str, Option<(f64, f64)>), Option<f64>, Option<f64>);
+    let mut places: Vec<Bounds<'_>> = vec![];
     for limit in &row.limits {
-        match phases.iter_mut().find(|(phase, ..)| *phase == limit.phase) {
+        let place = (limit.phase.as_str(), limit.part);
+        match places.iter_mut().find(|known| known.0 == place) {
             Some((_, lower, upper)) => {
                 *lower = lower.iter().copied().chain(limit.lower).reduce(f64::max);
                 *upper = upper.iter().copied().chain(limit.upper).reduce(f64::min);
             }
-            None => phases.push((&limit.phase, limit.lower, limit.upper)),
+            None => places.push((place, limit.lower, limit.upper)),
         }
     }
-    let words = |(phase, lower, upper): &(&str, Option<f64>, Option<f64>), told: bool| {
+    let words = |((phase, part), lower, upper): &Bounds<'_>, told: bool| {
         let bounds = match (lower, upper) {
             (Some(lower), Some(upper)) => format!("{} .. {}", number(*lower), number(*upper)),
             (Some(lower), None) => format!("≥ {}", number(*lower)),
             (None, Some(upper)) => format!("≤ {}", number(*upper)),
             (None, None) => String::new(),
         };
-        if told && !phase.is_empty() { format!("{bounds} in {phase}") } else { bounds }
+        let bounds = if row.difference { format!("left - right {bounds}") } else { bounds };
+        let phase = if told && !phase.is_empty() { format!(" in {phase}") } else { String::new() };
+        let part = part.map_or(String::new(), |(from, to)| format!(" from {} to {}", number(from), number(to)));
+        format!("{bounds}{phase}{part}")
     };
-    match phases.first() {
-        Some(first) if row.always && phases.iter().all(|own| (own.1, own.2) == (first.1, first.2)) => {
+    match places.first() {
+        Some(first)
+            if row.always && places.iter().all(|own| own.0.1.is_none() && (own.1, own.2) == (first.1, first.2)) =>
+        {
             words(first, false)
         }
-        _ => phases.iter().map(|own| words(own, true)).collect::<Vec<_>>().join(", "),
+        _ => places.iter().map(|own| words(own, true)).collect::<Vec<_>>().join(", "),
     }
 }
 
@@ -157,15 +168,22 @@ fn quantity(run: &Run, path: &str, series: &Series, used: &mut Vec<(usize, usize
         points.extend(limits.iter().flat_map(of));
     }
     let [least, most] = range(&points)?;
-    let held = |t: f64| limits.iter().any(|limit| limit.phase.is_empty()) || during(run, &limits, path, t);
+    let everywhere = limits.iter().any(|limit| limit.phase.is_empty() && limit.part.is_none());
+    let held = |t: f64| everywhere || during(run, &limits, path, t);
     let always = series.t.iter().all(|t| held(*t));
-    Some(Extremes { name: path.to_owned(), unit: series.unit.clone(), least, most, limits, always })
+    let (name, unit) = (path.to_owned(), series.unit.clone());
+    Some(Extremes { name, unit, least, most, limits, always, text: String::new(), difference: false })
 }
 
 /// Whether one of the limits holds at a time.
 fn during(run: &Run, limits: &[Limit], path: &str, t: f64) -> bool {
+    let limits = limits.iter().filter(|limit| limit.part.is_none_or(|(from, to)| from <= t && t <= to));
+    let mut limits = limits.peekable();
+    if limits.peek().is_some_and(|limit| limit.phase.is_empty()) {
+        return true;
+    }
     let agent = path.rsplit_once('.').map_or_else(String::new, |(agent, _)| format!("{agent}."));
-    let mut phases = limits.iter().map(|limit| format!("{agent}{}", limit.phase));
+    let mut phases = limits.map(|limit| format!("{agent}{}", limit.phase));
     phases.any(|name| run.phases.iter().any(|phase| phase.name == name && phase.start <= t && t <= phase.end))
 }
 
@@ -178,16 +196,50 @@ fn own(run: &Run, places: &[(usize, usize)]) -> Option<Extremes> {
     let member = member(&nearest.place);
     let points = limits::points(constraint, member);
     let [least, most] = range(&points)?;
+    let difference = limits::is_difference(constraint, member);
+    let written = sides::unnamed(&constraint.text);
+    let is_named = written != constraint.text && constraint.name != constraint.text;
+    let text = if is_named { indexed(written, &member.name) } else { String::new() };
+    let (name, unit) = (named(constraint, member), constraint.unit.clone());
+    Some(Extremes { name, unit, least, most, limits: vec![nearest], always: true, text, difference })
+}
+
+/// What a member of a constraint is called: by its own index where the text tells which that is.
+fn named(constraint: &Constraint, member: &Member) -> String {
     // A template's name begins with its phase.
     let said = member.name.is_empty() || constraint.name.starts_with(&format!("{}.", member.name));
-    let name = if said { constraint.name.clone() } else { format!("{} {}", constraint.name, member.name) };
-    Some(Extremes { name, unit: constraint.unit.clone(), least, most, limits: vec![nearest], always: true })
+    let indexed = indexed(&constraint.name, &member.name);
+    match (said, indexed == constraint.name) {
+        (true, _) => constraint.name.clone(),
+        (false, false) => indexed,
+        (false, true) => format!("{} {}", constraint.name, member.name),
+    }
+}
+
+/// A text in which the one index of a loop, `w[i]`, is that of a member, `[2]`; as it is where there are more of either.
+fn indexed(text: &str, member: &str) -> String {
+    let (phase, indices) = sides::split(member);
+    let ([index], true) = (&indices[..], phase.is_empty()) else { return text.to_owned() };
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    // An index stands at a name, a unit behind a blank.
+    let names: Vec<&str> = text
+        .match_indices('[')
+        .filter(|(at, _)| text[..*at].ends_with(is_letter))
+        .filter_map(|(at, _)| text[at + 1..].split_once(']').map(|(inside, _)| inside))
+        .filter(|inside| !inside.chars().all(|c| c.is_ascii_digit() || " .,".contains(c)))
+        .collect();
+    match names.first() {
+        Some(name) if name.chars().all(is_letter) && names.iter().all(|other| other == name) => {
+            text.replace(&format!("[{name}]"), &format!("[{index}]"))
+        }
+        _ => text.to_owned(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::{Constraint, Member, Phase, Worst};
+    use crate::run::{Phase, Worst};
 
     fn member(value: &[f64], lower: Option<f64>, upper: Option<f64>) -> Member {
         let t = (0..value.len()).map(|t| t as f64).collect();
@@ -267,6 +319,42 @@ mod tests {
         let rows = extremes(&run, false);
         assert_eq!(words(&rows[0]), ("≤ 6 in run".to_owned(), "inactive: 1 away".to_owned()));
         assert_eq!((rows.len(), rows[1].name.as_str()), (2, "v <= polar(heading) run"));
+    }
+
+    #[test]
+    fn a_limit_of_a_part_of_the_time_is_told_with_it() {
+        let mut run = Run::default();
+        run.lets.insert("v".to_owned(), series(&[1.0, 9.0, 2.0, 5.0, 1.0]));
+        let part = Member { t: vec![2.0, 3.0], ..member(&[2.0, 5.0], None, Some(6.0)) };
+        run.constraints = vec![about("slow: v <= 6", vec![part])];
+        let rows = extremes(&run, false);
+        assert_eq!(words(&rows[0]), ("≤ 6 from 2 to 3".to_owned(), "inactive: 1 away".to_owned()));
+        // Points inside of the intervals alone do not make it a part.
+        let inner = Member { t: vec![0.1, 2.0, 3.9], ..member(&[1.8, 2.0, 1.4], Some(0.0), None) };
+        run.constraints.push(about("v >= 0", vec![inner]));
+        assert_eq!(limits(&extremes(&run, false)[0]), "≤ 6 from 2 to 3, ≥ 0");
+    }
+
+    #[test]
+    fn a_difference_is_told_as_one_and_members_by_their_index() {
+        let mut run = Run::default();
+        let of = |name: &str| named(name, member(&[-3.0, -2.0], None, Some(0.0)));
+        let mut cone = about("cone: norm(w[i]) <= s [m/s]", vec![of("[2]")]);
+        cone.name = "cone".to_owned();
+        run.constraints = vec![about("norm(w[i]) <= s", vec![of("[1]"), of("[2]")]), cone];
+        let rows = extremes(&run, false);
+        assert_eq!((rows[0].name.as_str(), rows[0].text.as_str()), ("norm(w[1]) <= s", ""));
+        assert_eq!(words(&rows[0]).0, "left - right ≤ 0");
+        assert_eq!((rows[1].name.as_str(), rows[1].text.as_str()), ("cone [2]", "norm(w[2]) <= s [m/s]"));
+        assert_eq!(indexed("norm(q[i] - q[j]) >= 1 [m]", "[2]"), "norm(q[i] - q[j]) >= 1 [m]");
+        assert_eq!(indexed("norm(q[i, 1 .. 2]) >= 1 [m]", "[2]"), "norm(q[i, 1 .. 2]) >= 1 [m]");
+        assert_eq!(indexed("v[1] <= top[i]", "[2]"), "v[1] <= top[2]");
+        assert_eq!(
+            limits(
+                &extremes(&Run { constraints: vec![about("v^2 - 4 <= 0", vec![of("")])], ..Run::default() }, false)[0]
+            ),
+            "≤ 0"
+        );
     }
 
     #[test]

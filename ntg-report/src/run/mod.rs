@@ -11,6 +11,7 @@ mod numbers;
 pub(crate) mod reading;
 mod record;
 mod scene;
+pub(crate) mod sides;
 mod study;
 
 pub use estimate::{Deviation, Estimate, Measurement, Residual};
@@ -375,6 +376,25 @@ pub struct Member {
     /// and the mean density between them, twice.
     #[serde(with = "numbers::many", skip_serializing_if = "Vec::is_empty")]
     pub mean: Vec<f64>,
+    /// The limit where it is a function of time and what it limits has a name; `value` is then the difference of both.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curve: Option<Curve>,
+}
+
+/// A limit over time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Curve {
+    /// The path of what is limited.
+    pub of: String,
+    /// Whether it is not to be above, or not to be below.
+    pub upper: bool,
+    /// The limit at the member's times,
+    #[serde(with = "numbers::many")]
+    pub limit: Vec<f64>,
+    /// and what is limited there.
+    #[serde(with = "numbers::many")]
+    pub value: Vec<f64>,
 }
 
 /// One step of a continuation.

@@ -10,7 +10,7 @@ use ntg_runtime::structure::{Block, Points, Structure, Unit};
 
 use super::{
     Constraint, Discretisation, FORMAT, Finding, Grid, Independent, Iteration, Member, Multiplier, Phase, Quantity,
-    Run, Scene, Series, Spec, Step, Term, VERSION, Values, Violation, Worst, layout, measured, reading,
+    Run, Scene, Series, Spec, Step, Term, VERSION, Values, Violation, Worst, layout, measured, reading, sides,
 };
 
 /// Samples of each output and named expression.
@@ -101,6 +101,7 @@ impl Recording<'_> {
             }),
         };
         measured::fill(&mut run, solution, &reading.measured);
+        sides::fill(&mut run, (solution, self.problem), &self.source.text);
         in_units_of_time(&mut run);
         run
     }
@@ -282,6 +283,7 @@ fn member(trace: &Trace) -> Member {
         multiplier,
         mean_t: trace.means.iter().flat_map(|(from, to, _)| [*from, *to]).collect(),
         mean: trace.means.iter().flat_map(|(.., mean)| [*mean, *mean]).collect(),
+        curve: None,
     }
 }
 

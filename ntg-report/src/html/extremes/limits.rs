@@ -5,7 +5,7 @@
 
 use crate::figure::base;
 use crate::html::spec::{State, VIOLATED, state};
-use crate::run::{Constraint, Member, Run, Series};
+use crate::run::{Constraint, Member, Run, Series, sides};
 
 /// Mean difference of two curves, relative to their range, up to which they are one curve: samples of one that jumps
 /// are joined by straight lines.
@@ -19,6 +19,8 @@ pub(super) struct Limit {
     pub(super) place: (usize, usize),
     /// The phase in which it holds; empty for all the time there is.
     pub(super) phase: String,
+    /// The times between which it holds, where that is a part of the phase; of all the time without one.
+    pub(super) part: Option<(f64, f64)>,
     pub(super) lower: Option<f64>,
     pub(super) upper: Option<f64>,
     /// Distance to the nearer bound; negative beyond it.
@@ -37,8 +39,17 @@ impl Limit {
         let above = member.upper.map(|bound| bound - finite().fold(f64::NEG_INFINITY, f64::max));
         let room = below.into_iter().chain(above).fold(f64::INFINITY, f64::min);
         let (lower, upper) = (member.lower, member.upper);
-        let phase = split(&member.name).0.to_owned();
-        Self { place, phase, lower, upper, room, state: member_state(constraint, (member, room), run.tolerance()) }
+        let phase = sides::split(&member.name).0.to_owned();
+        let part = part(run, sides::split(&member.name).0, member);
+        Self {
+            place,
+            phase,
+            part,
+            lower,
+            upper,
+            room,
+            state: member_state(constraint, (member, room), run.tolerance()),
+        }
     }
 }
 
@@ -46,8 +57,10 @@ impl Limit {
 /// on a grid of its own.
 pub(super) fn points(constraint: &Constraint, member: &Member) -> Vec<(f64, f64)> {
     let mut found: Vec<(f64, f64)> = member.t.iter().copied().zip(member.value.iter().copied()).collect();
-    let (phase, own) =
-        (split(&member.name).0, Series { t: member.t.clone(), value: member.value.clone(), ..Series::default() });
+    let (phase, own) = (
+        sides::split(&member.name).0,
+        Series { t: member.t.clone(), value: member.value.clone(), ..Series::default() },
+    );
     for worst in [&constraint.points, &constraint.between].into_iter().flatten().filter(|worst| worst.phase == phase) {
         let Some(t) = worst.t else { continue };
         let beyond = member
@@ -92,77 +105,20 @@ pub(super) fn is_limit(constraint: &Constraint, member: &Member) -> bool {
 
 /// All limits of a quantity, in the order of the spec.
 pub(super) fn of(run: &Run, path: &str, series: &Series) -> Vec<Limit> {
-    let agent = path.rsplit_once('.').map_or("", |(agent, _)| agent);
-    let own = path.rsplit_once('[').filter(|(head, _)| !head.is_empty() && path.ends_with(']'));
-    let own = own.map(|(_, index)| numbers(index)).filter(|own| !own.is_empty());
     let mut found = vec![];
     for (index, constraint) in run.constraints.iter().enumerate().filter(|(_, c)| c.unit == series.unit) {
-        let Some(bracket) = side(&constraint.text, base(path)) else { continue };
+        let Some(bracket) = sides::bracket(&constraint.text, base(path)) else { continue };
         for (number, member) in constraint.members.iter().enumerate() {
-            let (phase, indices) = split(&member.name);
-            let rest =
-                phase.strip_prefix(agent).filter(|rest| agent.is_empty() || rest.is_empty() || rest.starts_with('.'));
-            let Some(rest) = rest else { continue };
-            let named = is_member(own.as_deref(), bracket, (&indices, constraint.members.len()));
-            if is_limit(constraint, member) && named && is_alike(series, member) {
+            let Some(rest) = sides::phase_of(path, bracket, (&member.name, constraint.members.len())) else { continue };
+            if is_limit(constraint, member) && is_alike(series, member) {
+                let phase = sides::split(&member.name).0;
                 let mut limit = Limit::new(run, (index, number), &during(run, phase, (series, member)));
-                limit.phase = rest.trim_start_matches('.').to_owned();
+                limit.phase = rest.to_owned();
                 found.push(limit);
             }
         }
     }
     found
-}
-
-/// The phase's path and the indices of `climb [1, 2]`.
-fn split(member: &str) -> (&str, Vec<i64>) {
-    let (phase, indices) = match member.strip_prefix('[') {
-        Some(indices) => ("", indices),
-        None => member.split_once(" [").unwrap_or((member, "")),
-    };
-    (phase, numbers(indices))
-}
-
-/// The whole numbers of `1, 2]`.
-fn numbers(indices: &str) -> Vec<i64> {
-    indices.trim_end_matches(']').split(',').filter_map(|index| index.trim().parse().ok()).collect()
-}
-
-/// What stands in brackets after a quantity that is one side of a constraint: `i` of `lim: x[i] <= top[i]`, nothing of
-/// `x <= 1`. None where no side is the quantity and nothing else.
-fn side<'t>(text: &'t str, name: &str) -> Option<&'t str> {
-    let text =
-        text.split_once(':').filter(|(label, _)| !label.contains(['<', '>', '='])).map_or(text, |(_, rest)| rest);
-    let mut sides = text.split("<=").flat_map(|part| part.split(">=")).flat_map(|part| part.split(" in "));
-    sides.find_map(|side| {
-        let rest = side.trim().strip_prefix(name)?;
-        let bracket = rest.trim().strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
-        if rest.is_empty() { Some("") } else { bracket.filter(|inside| !inside.contains(['[', ']'])) }
-    })
-}
-
-/// Whether the member with these indices is about the element `own` of a quantity that stands with this bracket.
-fn is_member(own: Option<&[i64]>, bracket: &str, (indices, members): (&[i64], usize)) -> bool {
-    let own = match own {
-        None => return bracket.is_empty(),
-        Some([own]) => *own,
-        // An element of a matrix; of other brackets the values decide.
-        Some(own) => return indices.ends_with(own) || numbers(bracket).len() < own.len() || numbers(bracket) == own,
-    };
-    let last = indices.last().copied();
-    match bracket.trim().parse::<i64>() {
-        // The element by its number, or the size of a declaration, `input a[2] in -4 .. 4`, of which each has a member.
-        Ok(number) if last.is_none_or(|last| last > number) || (members as i64).checked_rem(number) != Some(0) => {
-            number == own
-        }
-        Ok(_) => last == Some(own),
-        // A loop's index, or a whole array; of `x[i + 1]` the values decide.
-        Err(_) => {
-            let is_name = bracket.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
-            let is_whole = bracket.is_empty() || bracket.contains("..");
-            if is_whole || (is_name && indices.len() == 1) { last == Some(own) } else { true }
-        }
-    }
 }
 
 /// Whether a member has the values of the quantity at its times.
@@ -183,12 +139,37 @@ fn at(series: &Series, t: f64) -> f64 {
     (1.0 - share) * of(&series.value, next - 1) + share * of(&series.value, next)
 }
 
+/// The times between which a member holds where it has no times in the rest of its phase, which is longer than what lies
+/// between the points of a grid.
+fn part(run: &Run, phase: &str, member: &Member) -> Option<(f64, f64)> {
+    let (from, to) = span(&member.t);
+    let phase = run.phases.iter().find(|own| own.name == phase);
+    let all = run.outputs.values().chain(run.lets.values()).map(|series| span(&series.t));
+    let all = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), own| (low.min(own.0), high.max(own.1)));
+    let (start, end) = phase.map_or(all, |phase| (phase.start, phase.end));
+    let step = member.t.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    (from - start > step || end - to > step).then_some((from, to))
+}
+
+/// From the first to the last of some times.
+fn span(times: &[f64]) -> (f64, f64) {
+    times.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(*t), high.max(*t)))
+}
+
+/// Whether the values of a member are the difference of both sides of its constraint, and its bound nothing but the zero
+/// between them.
+pub(super) fn is_difference(constraint: &Constraint, member: &Member) -> bool {
+    let is_zero = matches!((member.lower, member.upper), (Some(0.0), None) | (None, Some(0.0)));
+    let written = sides::unnamed(&constraint.text);
+    let is_written = |side: &str| side.trim().split(' ').next() == Some("0");
+    is_zero && !written.split("<=").flat_map(|part| part.split(">=")).any(is_written)
+}
+
 /// The samples of a phase, all of them without one, while the limit holds. The left value at a start is a sample before it.
 fn during(run: &Run, phase: &str, (series, member): (&Series, &Member)) -> Vec<f64> {
     let end = series.t.last().copied().unwrap_or(f64::NAN);
     let phase = run.phases.iter().find(|own| own.name == phase);
-    let fold = |(low, high): (f64, f64), t: &f64| (low.min(*t), high.max(*t));
-    let (from, to) = member.t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), fold);
+    let (from, to) = span(&member.t);
     let inside = |t: f64| {
         let in_phase = phase.is_none_or(|phase| t >= phase.start && (t < phase.end || t >= end));
         in_phase && (from..=to).contains(&t)
