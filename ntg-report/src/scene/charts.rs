@@ -40,7 +40,8 @@ impl Height<'_> {
 }
 
 impl<'a> Charts<'a> {
-    /// The tables that are heights: over the two coordinates of a plane, or over the one beside the height.
+    /// The tables that may be heights: over the two coordinates of a plane, or over the one beside the height. What their
+    /// arguments are called says nothing: a limit that follows one shows which are.
     pub(super) fn heights(&self) -> Vec<Height<'a>> {
         let scene = self.scene;
         let Some(up) = scene.up else { return vec![] };
@@ -50,8 +51,10 @@ impl<'a> Charts<'a> {
         };
         let is_height = |table: &structure::Table| {
             let height = ratio(&table.unit.symbol, &scene.axes[up].unit).is_some();
-            let axes: Vec<&Coordinate> = flat.iter().map(|axis| &scene.axes[*axis]).collect();
-            height && are_arguments(table, &axes)
+            let axes = flat.iter().map(|axis| &scene.axes[*axis].unit);
+            height
+                && table.axes.len() == flat.len()
+                && table.axes.iter().zip(axes).all(|(own, axis)| is_alike(own, axis))
         };
         let all = self.declared.iter().zip(self.tables).filter(|(declared, _)| is_height(declared));
         let height = |(declared, table): (&'a structure::Table, &'a Table)| Height {
@@ -80,10 +83,14 @@ pub(super) fn levels(charts: &Charts<'_>, (core, rectangle): (Rectangle, Rectang
     grid.levels(&core).into_iter().map(level).filter(|level| !level.lines.is_empty()).collect()
 }
 
+/// Whether an argument is of the kind of a coordinate.
+fn is_alike(argument: &structure::TableAxis, unit: &str) -> bool {
+    ratio(&argument.unit.symbol, unit).is_some()
+}
+
 /// Whether the arguments of a table are coordinates.
 fn are_arguments(table: &structure::Table, axes: &[&Coordinate]) -> bool {
-    let alike = |argument: &structure::TableAxis, unit: &str| ratio(&argument.unit.symbol, unit).is_some();
-    if table.axes.len() != axes.len() || !table.axes.iter().zip(axes).all(|(own, axis)| alike(own, &axis.unit)) {
+    if table.axes.len() != axes.len() || !table.axes.iter().zip(axes).all(|(own, axis)| is_alike(own, &axis.unit)) {
         return false;
     }
     let own: Vec<&str> = axes.iter().map(|axis| base(&axis.name)).collect();
