@@ -184,6 +184,60 @@ fn heights_in_a_table_are_hills_under_the_track_and_a_list_of_lengths_is_no_plac
     assert_eq!(places(&scene), ["radar[1]", "radar[2]"]);
 }
 
+/// A glider over hills, its height above them given, and a speed limit that falls with time.
+fn glider(clearance: &str) -> Value {
+    let spec = "problem Glider {
+        duration T = 10 [s];
+        state x [m], z [m], w [m/s];
+        input a in -9 .. 9 [m/s^2]: held;
+        collocation gauss(points = 3, intervals = 10);
+        table hills(s [m]) [m] = monotone { 0: 0; 100: 20; 200: 5; 300: 30; 400: 0; }
+        minimize integral(a^2) / 1 [m^2/s^3];
+        dynamics { der(x) == 40 [m/s]; der(z) == w; der(w) == a; }
+        initial { x == 0; z == 30 [m]; w == 0; }
+        final { z == 30 [m]; }
+        trajectory { clear: z >= hills(x) CLEARANCE; w <= 20 [m/s] - 1 [m/s^2] * t; }
+        trajectory from 4 [s] to 6 [s] { slow: w >= -5 [m/s]; }
+    }";
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("glider.ntg"), spec.replace("CLEARANCE", clearance)).expect("written");
+    let saved = ["solve", "glider.ntg", "--save", "run.json", "--between-tolerance", "1"];
+    assert!(matches!(ntg(folder.path(), &saved).status.code(), Some(0 | 3)));
+    serde_json::from_str(&read(folder.path(), "run.json")).expect("a run")
+}
+
+#[test]
+fn a_table_is_the_ground_whatever_its_argument_is_called() {
+    let grounds = |run: &Value| -> Vec<(String, bool)> {
+        let outlines = run["scene"]["outlines"].as_array().cloned().unwrap_or_default();
+        let of = |own: &Value| (own["name"].as_str().unwrap_or_default().to_owned(), own["ground"] == true);
+        outlines.iter().map(of).collect()
+    };
+    let told = |pairs: &[(&str, bool)]| pairs.iter().map(|(name, is)| ((*name).to_owned(), *is)).collect::<Vec<_>>();
+    assert_eq!(grounds(&glider("+ 8 [m]")), told(&[("hills", true), ("clear", false)]));
+    assert_eq!(grounds(&glider("")), told(&[("clear", true)]));
+}
+
+#[test]
+fn a_limit_over_time_is_saved_as_a_curve_and_that_of_a_part_holds_there() {
+    let run = glider("+ 8 [m]");
+    let all = run["constraints"].as_array().expect("a list");
+    let member = |text: &str| {
+        let of = |own: &&Value| own["text"].as_str().is_some_and(|own| own.starts_with(text));
+        &all.iter().find(of).expect("it is there")["members"][0]
+    };
+    let curve = &member("w <= 20")["curve"];
+    assert_eq!((&curve["of"], &curve["upper"]), (&Value::from("w"), &Value::from(true)));
+    let (t, limit) = (&member("w <= 20")["t"], &curve["limit"]);
+    for (t, limit) in t.as_array().expect("times").iter().zip(limit.as_array().expect("limits")) {
+        assert!((number(limit) - (20.0 - number(t))).abs() < 1e-6, "{t}: {limit}");
+    }
+    let slow = member("slow")["t"].as_array().expect("times");
+    let ends = (number(&slow[0]), number(slow.last().expect("times")));
+    assert!((ends.0 - 4.0).abs() < 1e-9 && (ends.1 - 6.0).abs() < 1e-9, "{ends:?}");
+    assert!(member("slow")["curve"].is_null());
+}
+
 #[test]
 fn samples_are_equally_spaced_and_end_at_the_end() {
     let (folder, run) = tour();
