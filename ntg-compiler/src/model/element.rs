@@ -8,6 +8,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::problem::Form;
 use super::scope::Context;
@@ -101,9 +102,30 @@ impl<'a> Elaborator<'a> {
             let finding = Diagnostic::new(Code::MixedVector, value.span, message)
                 .label(first.span, format!("this is {}", a.describe()))
                 .label(value.span, format!("this is {}", b.describe()));
-            self.report(finding.help("make them two vectors"));
+            let help = self.unit_of_bare_numbers(&first, value).or_else(|| self.unit_of_bare_numbers(value, &first));
+            self.report(finding.help(help.unwrap_or_else(|| "make them two vectors".to_owned())));
             return;
         }
+    }
+
+    /// Of a list such as `(2 * n, 0) [m]`, in which the unit behind it reaches one element and not the other.
+    fn unit_of_bare_numbers(&self, formula: &Value, number: &Value) -> Option<String> {
+        let is_number = |value: &Value| self.text(value.span).parse::<f64>().is_ok();
+        let is_bare = is_number(number) && !is_number(formula);
+        if is_number(formula) && !number.dimension_or_none().is_none() && formula.dimension == Some(Dimension::NONE) {
+            let unit =
+                number.unit.as_ref().map_or_else(|| number.dimension_or_none().to_string(), |unit| unit.symbol.clone());
+            let text = self.text(formula.span);
+            return Some(format!(
+                "give the number a unit, `{text} [{unit}]`, or write it once behind the list: `(...) [{unit}]`"
+            ));
+        }
+        let unit =
+            number.unit.as_ref().map_or_else(|| number.dimension_or_none().to_string(), |unit| unit.symbol.clone());
+        let reaches = is_bare && formula.dimension == Some(Dimension::NONE) && !number.dimension_or_none().is_none();
+        reaches.then(|| {
+            format!("a unit behind a list is that of its bare numbers; a formula in it is multiplied by `1 [{unit}]`")
+        })
     }
 
     fn kind_in_words(&self, value: &Value) -> String {

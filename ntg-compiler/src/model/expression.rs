@@ -176,6 +176,9 @@ impl<'a> Elaborator<'a> {
         for (number, other) in [(a, b), (b, a)] {
             if number.dimension == Some(Dimension::NONE) {
                 let text = self.grouped(number.span);
+                if text.starts_with('(') && text.ends_with(')') && is_numbers(&text) {
+                    return format!("a unit stands behind the list: `{text} [{}]`", unit_of(other));
+                }
                 let is_list = text.rsplit_once('[').is_some_and(|(list, _)| list.trim_end().ends_with(')'));
                 if text.ends_with(']') && is_list {
                     let unit = unit_of(other);
@@ -335,6 +338,11 @@ impl<'a> Elaborator<'a> {
             .help(format!("make the base a pure number: `({} / 1 [{unit}]) ^ ...`", self.grouped(base.span)));
         self.refuse(finding, span)
     }
+}
+
+/// Whether a list holds bare numbers alone: `(1, -2.5, 3)`.
+fn is_numbers(list: &str) -> bool {
+    list.trim_matches(['(', ')']).split(',').all(|element| element.trim().parse::<f64>().is_ok())
 }
 
 /// Of `1/300 [1/m]`, whose unit is that of 300: what to write where that was not meant.

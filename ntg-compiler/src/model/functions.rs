@@ -199,6 +199,11 @@ impl<'a> Elaborator<'a> {
                     duration.map_or_else(|| right.to_owned(), |(name, _)| right.replace("/ T", &format!("/ {name}")));
                 finding.help(format!("over the whole time write `{right}`; of elements `sum(i in 1 .. n, x[i]) / n`"))
             }
+            _ if name == "length" => finding
+                .help("`norm(v)` is the length of a vector; how many elements it has is a constant, `const n = 3;`"),
+            _ if matches!(name, "len" | "size" | "numel" | "eachindex") => {
+                finding.help("how many elements there are is a constant: `const n = 3;`, then `r[n]` and `1 .. n`")
+            }
             (Some(right), _) => finding.help(format!("write `{right}`")),
             (None, Some(near)) if !matches!(name, "inv" | "det") => finding.help(format!("did you mean `{near}`?")),
             (None, _) if matches!(name, "inv" | "inverse" | "det" | "solve") => {

@@ -258,7 +258,12 @@ impl<'a> Elaborator<'a> {
             _ => None,
         });
         let (first, second) = (found.next(), found.next());
-        if let (Some((_, span)), Some((_, again))) = (first, second) {
+        let name = |duration: &ast::Duration| duration.name.as_ref().map(|name| name.text.clone());
+        // Of two with one name it is told already that it is declared twice.
+        let is_told = |one: &ast::Duration, other: &ast::Duration| name(one).is_some() && name(one) == name(other);
+        if let (Some((one, span)), Some((other, again))) = (first, second)
+            && !is_told(one, other)
+        {
             self.report(
                 Diagnostic::new(Code::WrongDuration, again, "a second duration in one place")
                     .label(again, "the second")

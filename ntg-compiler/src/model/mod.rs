@@ -100,8 +100,8 @@ mod vectors;
 mod widths;
 mod windows;
 
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::source::Source;
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::source::{Source, Span};
 use crate::syntax::{self, ast};
 use elaborator::{Elaborator, doc_text};
 pub use given::{Given, constants, given};
@@ -149,7 +149,15 @@ fn elaborated(
     let pass = |problem: &ast::Problem| elaborated_once(problem, (libraries, &spec.uses), loader, given);
     let (problem, found) = pass(&spec.problem);
     let found = borrowed::told_once(&spec.problem, &libraries.joined, found, &|other| pass(other).1);
-    (problem, found)
+    (problem, without_lists(found))
+}
+
+/// Without what is said of elements of a list that is of several kinds: that is told of the list.
+fn without_lists(mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mixed = found.iter().filter(|finding| finding.code == Code::MixedVector).map(|finding| finding.span);
+    let mixed: Vec<Span> = mixed.collect();
+    found.retain(|own| own.code != Code::DimensionMismatch || !mixed.iter().any(|list| own.span.contains(*list)));
+    found
 }
 
 fn elaborated_once(

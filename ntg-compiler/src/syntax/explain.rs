@@ -25,6 +25,9 @@ mod relations;
 
 use expected::Expected;
 
+/// What holds at times only.
+const PART: &str = "over a part of the time write `trajectory from a to b { ... }`";
+
 /// What stands at the place where the grammar got stuck.
 struct Here<'a> {
     scan: &'a Scan,
@@ -277,6 +280,11 @@ impl Here<'_> {
         }
         let is_called = word(self.scan.tokens.get(self.index + 1)) == "(";
         let may_be_unit = is_word && !is_called && !matches!(this, "from" | "spline" | "column" | "columns");
+        if in_declaration
+            && matches!(this, "bounds" | "bounded" | "between" | "min" | "max" | "lb" | "ub" | "lower" | "upper")
+        {
+            return Some("bounds are written `in 0 .. 1`".into());
+        }
         if in_declaration && may_be_unit && self.expected.has(Rule::semicolon) && self.expected.has(Rule::comma) {
             return Some(format!("a unit stands in brackets, `[{this}]`"));
         }

@@ -206,6 +206,9 @@ impl Walk<'_> {
         if let Some(next) = self.broken_block(body, at, end) {
             return next;
         }
+        if self.is_leftover(at) {
+            return self.next_statement(body, at, end);
+        }
         let finding = match explain::misplaced(self.scan, body, at, end) {
             Some(finding) => finding,
             None => explain(self.scan, stuck, self.start(at)),
@@ -269,7 +272,7 @@ impl Walk<'_> {
             match self.text(index) {
                 ";" => return index + 1,
                 "if" => has_branches = true,
-                "{" if has_branches => index = self.closers[index],
+                "{" if has_branches || self.is_list(index) => index = self.closers[index],
                 "{" => {
                     return (self.closers[index] + 1 + usize::from(self.text(self.closers[index] + 1) == ";")).min(end);
                 }
@@ -286,9 +289,33 @@ impl Walk<'_> {
         end
     }
 
-    /// The first `{` before the statement's `;`.
+    /// The first `{` before the statement's `;` that opens a block.
     fn next_brace(&self, from: usize, end: usize) -> Option<usize> {
-        (from..end).take_while(|index| self.text(*index) != ";").find(|index| self.text(*index) == "{")
+        let mut index = from;
+        while index < end && self.text(index) != ";" {
+            match self.text(index) {
+                "{" if self.is_list(index) => index = self.closers[index],
+                "{" => return Some(index),
+                _ => {}
+            }
+            index += 1;
+        }
+        None
+    }
+
+    /// Whether a brace stands where a value does and holds no statements: `{1, 2, 3}`.
+    fn is_list(&self, brace: usize) -> bool {
+        let before = brace.checked_sub(1).map_or("", |before| self.text(before));
+        let closer = self.closers[brace];
+        stands_for_value(before) && closer > brace && (brace..closer).all(|at| self.text(at) != ";")
+    }
+
+    /// Whether a statement is what ends a loop or a condition in other languages, `end for;`, and the loop is blamed already.
+    fn is_leftover(&self, at: usize) -> bool {
+        let ends = matches!(self.text(at), "end" | "endfor" | "endif" | "endwhile" | "done" | "od" | "fi" | "next");
+        let opens = |word: &str| matches!(word, "for" | "foreach" | "forall" | "while" | "if" | "do" | "loop" | "then");
+        let mut earlier = (0..at).rev().take_while(|index| self.text(*index) != "{");
+        ends && self.text(at + 1) != "(" && !self.found.is_empty() && earlier.any(|index| opens(self.text(index)))
     }
 
     /// The first token that begins at `byte` or after it.
@@ -308,6 +335,13 @@ impl Walk<'_> {
 /// The clean text of a token.
 pub(super) fn text<'a>(scan: &'a Scan, token: &Token) -> &'a str {
     &scan.clean[token.span.start as usize..token.span.end as usize]
+}
+
+/// Whether a value stands behind this, so that a brace there can be no block.
+pub(super) fn stands_for_value(before: &str) -> bool {
+    let sums = matches!(before, "sum" | "prod" | "min" | "max" | "norm");
+    let is_sign = matches!(before, "==" | "<=" | ">=" | "=" | "(" | "[" | "," | "+" | "-" | "*" | "/" | "^" | "..");
+    sums || is_sign || matches!(before, "in" | "through" | "{")
 }
 
 /// For each token, itself, or the token that closes the brace that it opens.

@@ -14,6 +14,7 @@ impl Here<'_> {
         let first = self.first_word().unwrap_or_default();
         let has = |rule| self.expected.has(rule);
         Some(match (before, this) {
+            ("(", ":") => "all elements are the name alone, `r`, some of them `r[1 .. 2]`",
             ("[" | ",", ":") => {
                 "a range is written `1 .. 3`; indices that are left out at the end give the rest: `A[1]` is a row"
             }
@@ -58,6 +59,13 @@ impl Here<'_> {
             (_, "for" | "in") if self.is_behind("sum") || self.is_behind("prod") => {
                 "the index comes first: `sum(i in 1 .. 3, r[i])`"
             }
+            (_, "dt" | "dtau") if has(Rule::operator) && self.is_written("integral") => {
+                "an integral is over time without saying so: leave the differential out"
+            }
+            ("+" | "-" | "*" | "/" | "^", ";" | "," | ")" | "]") => {
+                "something is missing behind the sign: a number, a name, or an expression in parentheses"
+            }
+            ("=", ";") => "a value is missing here: `= 1`, with its unit behind it `= 1 [m]`",
             (")", "[") => "an element is taken of a name: `der(r[1])`, or of what has one by `let`",
             (_, "==" | "<=" | ">=" | "<" | ">" | "!=") if has(Rule::operator) => {
                 "a value is a number: comparisons stand in blocks of constraints, or behind `if`: `if a <= b { 1 } else { 0 }`"
@@ -84,6 +92,11 @@ impl Here<'_> {
             _ if first == "trajectory" && opens && (self.is_behind("from") || self.is_behind("to")) => {
                 "a part of it is written `trajectory from a to b { ... }`".into()
             }
+            "during" | "on" | "in" | "between" | "when" | "while" | "until" | "(" | "[" | "at"
+                if first == "trajectory" && opens =>
+            {
+                super::PART.into()
+            }
             _ if is_block && opens => {
                 format!("what holds there stands in braces: `{first} {{ ... }}`")
             }
@@ -97,6 +110,9 @@ impl Here<'_> {
             "=" if matches!(first, "minimize" | "maximize") && before != first && has(Rule::semicolon) => {
                 format!("the name of a term stands before a colon: `{first} {before}: ...;`")
             }
+            ":" if matches!(before, "minimize" | "maximize") => {
+                format!("write `{before} e;`, or with a name `{before} name: e;`")
+            }
             "{" if matches!(first, "minimize" | "maximize") => {
                 format!("write `{first} e;`; several terms are a sum, or statements of their own")
             }
@@ -106,6 +122,28 @@ impl Here<'_> {
             "(" if first == "let" && has(Rule::equals) => {
                 format!("a function is declared by `fn`: `fn {before}(x) = ...;`")
             }
+            "=" if before == first && matches!(first, "param" | "const" | "continuation") => {
+                format!("a value has a name: `{first} p = 3;`")
+            }
+            "=" if first == "fn" && has(Rule::right_parenthesis) => {
+                "an argument has no default: it is given wherever the function is called".into()
+            }
+            _ if first == "fn"
+                && has(Rule::equals)
+                && has(Rule::left_brace)
+                && !matches!(this, "[" | "-")
+                && !(this == ":" && (self.index..self.index + 4).any(|at| self.word(at) == "=")) =>
+            {
+                let head = self.written(self.statement_start(), self.index);
+                format!("what a function is stands behind one `=`: `{head} = ...;`")
+            }
+            _ if before == first
+                && matches!(first, "state" | "input" | "output" | "variable")
+                && (this == "-" || self.token.is_some_and(|token| token.kind == TokenKind::Number)) =>
+            {
+                format!("bounds stand behind the name: `{first} z in -1 .. 1;`")
+            }
+            _ if before == "mut" && first == "let" => "what is defined never changes: leave `mut` out".into(),
             _ if first == "fn" && has(Rule::left_parenthesis) => "write `fn f(a) = a / 2;`".into(),
             "{" if first == "table" && has(Rule::method) => {
                 "say how it goes between the nodes: `= monotone { 0: 1;  2: 3; }`".into()
@@ -135,6 +173,11 @@ impl Here<'_> {
             }
             _ => return None,
         })
+    }
+
+    /// Whether a word stands earlier in the statement.
+    fn is_written(&self, word: &str) -> bool {
+        (self.statement_start()..self.index).any(|at| self.word(at) == word)
     }
 
     /// `der x`, `duration;`

@@ -18,11 +18,29 @@ impl Here<'_> {
         if this == ".." && !has(Rule::dots) {
             return self.without_parentheses();
         }
+        if this == "{" && before == "in" {
+            return Some("a range is written `1 .. 3`".into());
+        }
+        if this == "{" && matches!(before, "sum" | "prod" | "min" | "max") {
+            return Some(format!("the index comes first, in parentheses: `{before}(i in 1 .. 3, r[i])`"));
+        }
+        if this == "=" && (self.is_behind("sum") || self.is_behind("prod")) && has(Rule::comma) {
+            return Some("the index comes first: `sum(i in 1 .. 3, r[i])`".into());
+        }
+        if first == "while" && self.is_in_relations() {
+            return Some(format!("a constraint has no condition: {}, or a phase", super::PART));
+        }
+        if this == "for" && matches!(self.word(self.index + 1), "t" | "time") && self.is_in_relations() {
+            return Some(super::PART.into());
+        }
         if this == "for" && has(Rule::semicolon) && self.is_in_relations() {
             let end = self.statement_end();
             return Some(format!("the loop stands around it: `{} {{ ... }}`", self.written(self.index, end)));
         }
         let collects = this == "for" || (this == "[" && self.expected.has_expression() && self.collects());
+        if let Some(fold) = ["min", "max"].into_iter().find(|fold| this == "for" && self.is_behind(fold)) {
+            return Some(format!("the index comes first: `{fold}(i in 1 .. 3, r[i])`"));
+        }
         if first == "let" && collects && !self.is_behind("sum") && !self.is_behind("prod") {
             return Some(self.for_each(self.word(self.statement_start() + 1)));
         }
@@ -34,8 +52,8 @@ impl Here<'_> {
         }
         match this {
             "{" if has(Rule::dots) => Some(format!("a range is written `1 .. {}`", self.last_of(before))),
-            "{" if before == "in" => Some("a range is written `1 .. 3`".into()),
             "(" if before == "for" => Some(LOOP.into()),
+            "," if has(Rule::dots) => Some("a range is written `1 .. 3`".into()),
             "," if opens => {
                 Some("each index has a loop of its own: `for i in 1 .. 3 { for j in 1 .. 3 { ... } }`".into())
             }

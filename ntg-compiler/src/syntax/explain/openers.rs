@@ -18,6 +18,13 @@ const LAST_TIMES: &[&str] = &["T", "tf", "t_f", "t_end", "end"];
 /// Where constraints stand.
 pub(super) const BLOCKS: &str = "constraints stand in `initial { }`, `trajectory { }`, `final { }` or `temporal { }`";
 
+/// Letters with a dot for a derivative.
+const DOTTED: [char; 4] = ['ẋ', 'ẏ', 'ż', 'ṙ'];
+
+/// What declares what is sought.
+const KINDS: &str =
+    "what is sought is declared by its kind: `state x;`, `input u;`, `output z: spline(...);`, a number `variable p;`";
+
 /// Words that people begin statements with, and what to write.
 const OPENERS: &[(&[&str], &str)] = &[
     (
@@ -45,7 +52,6 @@ const OPENERS: &[(&[&str], &str)] = &[
             "such",
             "constraint",
             "constraints",
-            "path",
             "boundary",
             "bounds",
             "events",
@@ -60,7 +66,8 @@ const OPENERS: &[(&[&str], &str)] = &[
     ),
     (ENDS, "what holds at the end stands in `final { }`"),
     (STARTS, "what holds at the start stands in `initial { }`"),
-    (&["along", "throughout", "always", "during", "everywhere"], "what holds all along stands in `trajectory { }`"),
+    (&["during", "between", "while", "when"], super::PART),
+    (&["along", "throughout", "always", "everywhere", "path"], "what holds all along stands in `trajectory { }`"),
     (&["cyclic", "cycle", "period"], "what ends as it begins is written `periodic x, y;`"),
     (&["soft", "slack"], "what may be missed stands in a block: `trajectory { soft(w): x <= 1; }`"),
     (&["initial_guess", "initialize", "start_values"], "where the search begins stands in `guess { }`"),
@@ -93,6 +100,10 @@ pub(super) fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: us
     let is_at_a_time = behind(1) == "(" && behind(3) == ")" && [FIRST_TIMES, LAST_TIMES].concat().contains(&behind(2));
     if (relates || (is_at_a_time && behind(4) == "=")) && word != "if" {
         let finding = Diagnostic::new(Code::Misplaced, token.span, "a constraint stands in no block");
+        let is_derivative = matches!(word, "der" | "d" | "dt" | "ddt") && matches!(behind(1), "(" | "/");
+        if is_derivative || word.ends_with("dot") || word.starts_with(DOTTED) {
+            return finding.help("equations of motion stand in `dynamics { der(x) == ...; }`");
+        }
         return match (is_at_a_time, FIRST_TIMES.contains(&behind(2))) {
             (true, true) => finding.help(format!("what holds at the start stands in `initial {{ {word} == ...; }}`")),
             (true, false) => finding.help(format!("what holds at the end stands in `final {{ {word} == ...; }}`")),
@@ -102,6 +113,36 @@ pub(super) fn no_item(scan: &Scan, token: &Token, word: &str, at: usize, end: us
         };
     }
     let finding = Diagnostic::new(Code::Unexpected, token.span, format!("`{word}` begins no statement"));
+    let has = |words: &[&str]| statement.iter().any(|part| words.contains(part));
+    if word == "der" && has(&["="]) {
+        return finding.help("equations of motion stand in `dynamics { der(x) == ...; }`");
+    }
+    if behind(1) == "."
+        && has(&["minimize", "minimise", "Minimize", "Obj", "Objective", "set_objective", "add_objective"])
+    {
+        return finding.help("write `minimize e;`");
+    }
+    if behind(1) == "." && has(&["maximize", "maximise", "Maximize"]) {
+        return finding.help("write `maximize e;`");
+    }
+    if has(&["sym", "Var", "MV", "CV", "SV", "FV", "Variable", "add_state", "add_control", "DerivativeVar"]) {
+        return finding.help(KINDS);
+    }
+    if behind(1) == "=" && has(&["lambda", "function"]) {
+        return finding.help(format!("a function is declared by `fn`: `fn {word}(x) = ...;`"));
+    }
+    if behind(1) == "=" && matches!(word, "cost" | "objective" | "obj" | "J") {
+        return finding.help("write `minimize name: e;` or `maximize name: e;`");
+    }
+    if behind(1) == "in" && word == "t" {
+        return finding
+            .help("the time runs by itself; how long it takes is `duration T = 5;`, or `duration T in 1 .. 9;`");
+    }
+    if behind(1) == "in" && token.kind == TokenKind::Word && !matches!(word, "for" | "if") {
+        return finding.help(format!(
+            "say what it is: `duration {word} in ...;` for a time, `variable {word} in ...;` for another number; limits along the way stand in `trajectory {{ }}`"
+        ));
+    }
     if behind(1) == "=" {
         return finding.help(format!(
             "say what it is: `const {word} = ...;`, `param {word} = ...;` if it may be set, `let {word} = ...;` if it is made of others, `duration {word} = ...;`"

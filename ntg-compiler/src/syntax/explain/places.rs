@@ -115,6 +115,11 @@ impl Here<'_> {
             ("==" | "<=" | ">=", ";") => {
                 format!("write what it is held against: `{} 1;`", self.written(self.statement_start(), self.index))
             }
+            (_, "during" | "on" | "when" | "while" | "until" | "before" | "after" | "from" | "to" | "at")
+                if has(Rule::semicolon) && !self.is_within("measure") =>
+            {
+                super::PART.into()
+            }
             (_, "soft") if has(Rule::semicolon) => {
                 let constraint = self.written(self.statement_start(), self.index);
                 format!("the price stands in front: `soft(w): {constraint};`")

@@ -7,6 +7,7 @@
 use super::{MAX_DEPTH, MAX_FINDINGS, Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
+use crate::syntax::recover::stands_for_value;
 use crate::syntax::words::ITEM_WORDS;
 
 /// Brackets that are open, and the chains of `-` and `^` inside them.
@@ -103,12 +104,28 @@ impl Brackets {
 
     fn open(&mut self, opener: u8, (span, text): (Span, &str), found: &mut Vec<Diagnostic>) {
         let mut head = None;
-        if opener == b'{' && !self.begins_branch(text, found) {
+        if opener == b'{' && !self.is_list((span, text)) && !self.begins_branch(text, found) {
             self.drop_parentheses(found);
             head = self.first_word.take();
         }
         self.open.push(Frame { opener, span, head, chain: 0, ifs: 0 });
         self.depth += 1;
+    }
+
+    /// Whether a brace within other brackets holds a list, `sum(i in {1, 2, 3}, x[i])`: they are closed behind it.
+    fn is_list(&self, (span, text): (Span, &str)) -> bool {
+        let before = self.last.map_or("", |last| &text[last.span.start as usize..last.span.end as usize]);
+        let mut depth = 0_usize;
+        let rest = text[span.start as usize..].bytes().take_while(|byte| !matches!(byte, b';' | b'\n'));
+        let closes = rest.into_iter().any(|byte| {
+            depth = match byte {
+                b'{' => depth + 1,
+                b'}' => depth - 1,
+                _ => depth,
+            };
+            depth == 0
+        });
+        closes && stands_for_value(before) && self.open.iter().any(|frame| frame.opener != b'{')
     }
 
     /// Whether a brace opens a branch of an `if`; brackets inside its condition were forgotten then.

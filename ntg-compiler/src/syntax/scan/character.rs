@@ -36,9 +36,22 @@ impl Scanner<'_> {
             format!("`{}`", c.to_string().repeat(count.min(8)))
         };
         let message = format!("{name} is not part of the language");
+        // Strings in single quotes are one habit, and told once in a statement.
+        let is_told =
+            |known: &&Diagnostic| known.message == message && c == '\'' && length > 1 && self.is_of_statement(known);
+        if self.found.last().filter(is_told).is_some() {
+            self.replace(start, start + length, instead);
+            self.pos += length;
+            return;
+        }
         self.report(Diagnostic::new(Code::UnknownCharacter, self.ahead(length), message).help(help));
         self.replace(start, start + length, instead);
         self.pos += length;
+    }
+
+    /// Whether a finding stands in the statement that goes on here.
+    fn is_of_statement(&self, known: &Diagnostic) -> bool {
+        !self.text[known.span.start as usize..self.pos].contains([';', '{', '}'])
     }
 
     /// Macros begin with `@` in Julia.
