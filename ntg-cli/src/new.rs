@@ -41,12 +41,19 @@ fn start(name: &Path, spec: &str, force: bool) -> Result<PathBuf, String> {
 
 /// What to do with the spec.
 fn next(path: &Path) -> String {
-    let (spec, stem) = (path.display(), path.with_extension(""));
-    let stem = stem.display();
+    let written = path.display();
+    let [spec, json, svg, html] = ["ntg", "json", "svg", "html"].map(|kind| word(&path.with_extension(kind)));
     format!(
-        "{spec}: written. Edit it, then:\n  ntg check {spec}\n  ntg solve {spec} --save {stem}.json\n  \
-         ntg plot {stem}.json -o {stem}.svg\n  ntg report {stem}.json -o {stem}.html"
+        "{written}: written. Edit it, then:\n  ntg check {spec}\n  ntg solve {spec} --save {json}\n  \
+         ntg plot {json} -o {svg}\n  ntg report {json} -o {html}"
     )
+}
+
+/// A path as one word of a shell.
+fn word(path: &Path) -> String {
+    let path = path.display().to_string();
+    let is_plain = |c: char| c.is_alphanumeric() || "_-./\\:~".contains(c);
+    if path.chars().all(is_plain) { path } else { format!("\"{path}\"") }
 }
 
 fn with_extension(name: &Path) -> PathBuf {

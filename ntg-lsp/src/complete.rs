@@ -8,6 +8,7 @@ use ntg_compiler::syntax::ast::ItemKind;
 use ntg_compiler::syntax::{EXPRESSION_WORDS, ITEM_WORDS, OTHER_ITEM_WORDS};
 
 use crate::analysis::Analysis;
+use crate::explained::explained;
 use crate::libraries;
 use crate::names::Kind;
 
@@ -23,6 +24,9 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
     }
     if let Some(items) = of_libraries(analysis, start) {
         return items;
+    }
+    if let Some(words) = expected(text, start) {
+        return words.iter().map(|word| keyword(word)).collect();
     }
     let mut items = names(analysis, byte);
     if text[..start].trim_end().ends_with([';', '{', '}']) || text[..start].trim().is_empty() {
@@ -48,6 +52,34 @@ pub fn proposals(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {
     }
     items.extend(tools::functions().map(function));
     items
+}
+
+/// The words that alone may stand at a place: settings, methods of tables, what follows a colon.
+fn expected(text: &str, start: usize) -> Option<&'static [&'static str]> {
+    let before = statement(text, start);
+    let first = before.split_whitespace().next()?;
+    let so_far = before.trim_end();
+    if so_far.ends_with(['(', ',']) {
+        let open = before.rfind('(')?;
+        let settings = match before[..open].trim_end().rsplit(|c: char| !c.is_alphanumeric()).next()? {
+            _ if before[open..].contains(')') => return None,
+            "spline" => &["order", "intervals", "smoothness", "knots"][..],
+            "gauss" => &["points", "intervals", "equalities", "inequalities"],
+            "uniform" => &["breakpoints"],
+            "monotone" => &["extrapolate"],
+            "bspline" => &["order", "intervals"],
+            _ => return None,
+        };
+        // Within the parentheses of a value another one stands.
+        return (before[open..].matches('(').count() == 1).then_some(settings);
+    }
+    Some(match first {
+        "input" if so_far.ends_with(':') => &["held", "continuous", "spline"],
+        "output" | "state" if so_far.ends_with(':') => &["spline"],
+        "collocation" if so_far == before[..before.find("collocation")? + 11].trim_end() => &["gauss", "uniform"],
+        "table" if so_far.ends_with('=') && !before.contains('{') => &["monotone", "linear", "bspline", "fit"],
+        _ => return None,
+    })
 }
 
 /// The names behind `std::` or behind a library and `::`.
@@ -210,74 +242,27 @@ pub fn is_in_unit(text: &str, byte: usize) -> bool {
     is_number || is_declared || outside.ends_with(')') || outside.ends_with(']')
 }
 
-/// What a word of the language means, in a line.
-pub fn explained(word: &str) -> Option<String> {
-    let words = match word {
-        "agent" => "`agent uav[i in 1 .. 3] { ... }`: an independent timeline, or a family of them",
-        "phase" => "`phase leg after start { ... }`: a stretch of time with its own splines and constraints",
-        "const" => "`const N = 3;`: known when the spec is compiled",
-        "param" => "`param v_max = 0.25 [km/s];`: a value that a program may change without compiling again",
-        "variable" => "`variable m0 in 1 .. 5 [kg];`: a free number, constant in time",
-        "output" => "`output x, y [km]: spline(order = 5, intervals = 8);`: what moves",
-        "use" => {
-            "`use std::rotation;`, `use \"shuttle.ntg\" as shuttle;`: constants, functions and tables of a library"
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_few_words_may_stand_they_alone_are_proposed() {
+        let at = |text: &str| expected(text, text.len()).unwrap_or_default();
+        assert_eq!(at("problem P { input u[3] [N]: "), ["held", "continuous", "spline"]);
+        assert_eq!(at("problem P { output x [m]:"), ["spline"]);
+        assert_eq!(at("output x: spline(order = 5, ").first(), Some(&"order"));
+        assert_eq!(at("collocation gauss(").first(), Some(&"points"));
+        assert_eq!(at("collocation "), ["gauss", "uniform"]);
+        assert_eq!(at("table f(x) = ").first(), Some(&"monotone"));
+        for elsewhere in [
+            "let a = norm(",
+            "output x: spline(order = ",
+            "output x: spline(order = half(",
+            "minimize a: ",
+            "state x, ",
+        ] {
+            assert!(at(elsewhere).is_empty(), "{elsewhere}");
         }
-        "fn" => {
-            "`fn blend(u, w) = ...;`, `fn lift(v [m/s]) [N] { let q = ...; ... }`: a function, written out where it is applied"
-        }
-        "let" => "`let speed [km/s] = hypot(der(x), der(y));`: a named expression, also reported and plotted",
-        "table" => "`table thrust(t [s]) [kN] = linear { 0: 18; 6: 0; }`: data",
-        "continuation" => "`continuation width = (20, 10, 5) [deg];`: a parameter solved for in turn",
-        "duration" => "`duration T in 1 .. 9 [s];`, or `duration(phase)` in an expression",
-        "start" => "`start in 0 .. 600 [s];` in an agent, or `start(phase)` in an expression",
-        "end" => "`end(phase)`: the time at which a phase or agent ends",
-        "initial" => "`initial { ... }`: what holds at the start; `initial(e)`: the value there",
-        "trajectory" => "`trajectory { ... }`: what holds all the way",
-        "final" => "`final { ... }`: what holds at the end; `final(e)`: the value there",
-        "temporal" => "`temporal { ... }`: what belongs to no single point, such as event times",
-        "minimize" => "`minimize fuel [kg]: e;`: a term of the objective; terms add up",
-        "maximize" => "`maximize range: e;`: a term of the objective; terms add up",
-        "collocation" => "`collocation gauss(points = 5);`, `collocation uniform(breakpoints = 41);`",
-        "guess" => "`guess { (x, y) through (0, 0), (1, 5) [km];  T = 9 [s]; }`: where to begin",
-        "continuous" => "`continuous x up to 1;`: how smoothly phases meet",
-        "at" => "`at 2.5 [s] { ... }`: what holds at one time; `at(2.5 [s], e)`: the value there",
-        "domain" => "`domain s [m];`: everything is a function of `s` instead of the time `t`",
-        "scenario" => "`scenario plant[k in 1 .. 20] { ... }`: the same problem for several cases at once",
-        "shared" => "`shared u until 1 [s];`: an input that all members of a scenario have in common",
-        "until" => "`shared u until 1 [s];`: up to when the members of a scenario share an input",
-        "weight" => "`scenario plant[k in 1 .. 20] weight p[k] { ... }`: with what each member counts",
-        "periodic" => "`periodic x, y;`: outputs that end as they begin, with their derivatives",
-        "soft" => "`soft(200 [1/s]): c;`: a constraint that may be missed, at a price",
-        "except" => "`trajectory except final { ... }`: everywhere but at that end",
-        "from" => {
-            "`trajectory from a to b { ... }`: a part of the trajectory; `param a[n, 3] [m] from \"a.csv\" columns 1 .. 3;`: data"
-        }
-        "measure" => "`measure { at(2 [s], x) == 3 [m] sigma 0.1 [m]; }`: what was measured, by least squares",
-        "sigma" => "`at(2 [s], x) == 3 [m] sigma 0.1 [m];` in `measure`: the standard deviation",
-        "rows" => "`const n = rows(\"a.csv\");`: how many rows a file has",
-        "jump" => "`jump m;`: an output that is not continuous at the start of the phase",
-        "der" => "`der(e)`, `der(e, 2)`: derivative in real time, by the chain rule",
-        "partial" => "`partial(f(s, w), s)`: partial derivative of a function or table",
-        "integral" => "`integral(e)`: over real time",
-        "sum" => "`sum(i in 1 .. N, e)`",
-        "prod" => "`prod(i in 1 .. N, e)`",
-        "if" => "`if a <= b smooth w { x } else { y }`: a value that depends on a condition",
-        "else" => "`if a <= b { x } else { y }`: the value where the condition does not hold",
-        "smooth" => "`if a <= b smooth w { x } else { y }`: the width over which both branches blend",
-        "for" => "`for i in 1 .. N { ... }`: constraints or guesses for every index",
-        "t" => "mission time",
-        "tau" => "scaled time of the phase, from 0 to 1",
-        "pi" => "3.14159...",
-        "hypot" => "`hypot(a, b, ...)`: sqrt(a^2 + b^2 + ...)",
-        "atan2" => "`atan2(y, x)`: the angle of the point (x, y)",
-        "logistic" => "`logistic(u)`: 1 / (1 + exp(-u))",
-        "softplus" => "`softplus(u)`: log(1 + exp(u))",
-        "smooth_abs" => "`smooth_abs(u, width)`: hypot(u, width)",
-        "smooth_max" => "`smooth_max(u, v, width)`",
-        "spline" => "`spline(order = 5, intervals = 8, smoothness = 3)`, or `knots = (0, 0.2, 1)`",
-        "gauss" => "`gauss(points = 5)`: Gauss-Legendre points in every knot interval",
-        "uniform" => "`uniform(breakpoints = 41)`: equally spaced points, trapezoid rule",
-        _ => return None,
-    };
-    Some(words.to_owned())
+    }
 }

@@ -9,6 +9,7 @@ use ntg_structure::Unit;
 
 use crate::analysis::Analysis;
 use crate::complete;
+use crate::explained::explained;
 use crate::libraries;
 use crate::names::{Declaration, Derivative, Kind};
 use crate::words;
@@ -44,7 +45,11 @@ pub fn hover(analysis: &Analysis, byte: usize) -> Option<(String, Span)> {
         let texts: Vec<String> = declared.map(|declaration| about(analysis, declaration)).collect();
         return Some((texts.join("\n\n---\n\n"), mention.span));
     }
-    complete::explained(text).map(|words| (words, word))
+    if let Some(used) = uses.iter().find(|used| used.name == text) {
+        let about = used.about().map(|line| format!("\n\n{line}")).unwrap_or_default();
+        return Some((format!("the library `{}`{about}", used.source.name), word));
+    }
+    explained(text).map(|words| (words, word))
 }
 
 /// A declaration as it is written, its documentation, and what it means.

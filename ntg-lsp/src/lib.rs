@@ -9,6 +9,7 @@
 
 pub mod analysis;
 pub mod complete;
+pub mod explained;
 pub mod hover;
 pub mod libraries;
 pub mod lines;

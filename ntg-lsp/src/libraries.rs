@@ -94,6 +94,12 @@ impl Used {
         })
     }
 
+    /// What its first line says that it is.
+    pub fn about(&self) -> Option<&str> {
+        let line = self.source.text.lines().next()?.trim();
+        line.strip_prefix("//").map(|rest| rest.trim_start_matches('/').trim()).filter(|line| !line.is_empty())
+    }
+
     /// A declaration without the steps or rows in its braces.
     pub fn head(&self, item: &Item) -> String {
         let text = self.source.slice(item.span);
