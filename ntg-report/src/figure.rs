@@ -297,8 +297,10 @@ fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize
             panel.least = panel.least.max(least_miss(constraint));
             // A range with a formula as a bound is two constraints about one quantity.
             for line in lines.into_iter().filter(|line| line.points.len() > 1) {
-                if !panel.lines.contains(&line) {
-                    panel.lines.push(line);
+                match panel.lines.iter_mut().find(|own| are_one(own, &line)) {
+                    Some(own) if own.name.is_empty() => own.name = line.name,
+                    Some(_) => {}
+                    None => panel.lines.push(line),
                 }
             }
             for limit in limits {
@@ -309,6 +311,19 @@ fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize
         }
     }
     panels
+}
+
+/// Whether two lines of one run are the same, one of them perhaps without a name.
+fn are_one(own: &Line, other: &Line) -> bool {
+    /// What two ways to compute a value leave between them, relative to its size.
+    const ROUNDED: f64 = 1e-6;
+    let named = own.name == other.name || own.name.is_empty() || other.name.is_empty();
+    let size = own.points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    let mut pairs = own.points.iter().zip(&other.points);
+    named
+        && own.run == other.run
+        && own.points.len() == other.points.len()
+        && pairs.all(|(p, q)| p.0 == q.0 && (p.1 - q.1).abs() <= ROUNDED * size)
 }
 
 fn line(name: String, run: usize, t: &[f64], value: &[f64]) -> Line {
@@ -395,7 +410,7 @@ pub fn convergence(runs: &Runs<'_>) -> Panel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::{Member, Worst};
+    use crate::run::{Curve, Member, Worst};
 
     #[test]
     fn what_is_nearly_constant_has_a_least_span_and_other_curves_their_own() {
@@ -417,6 +432,25 @@ mod tests {
         };
         assert!((least_miss(&equation(0.0, 0.0)) - 3e-6).abs() < 1e-18);
         assert_eq!((least_miss(&equation(0.0, 1.0)), least_miss(&Constraint::default())), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_range_with_one_formula_is_drawn_once_with_the_name_of_what_it_limits() {
+        let (t, value) = (vec![0.0, 1.0], vec![2.0, 3.0]);
+        let number = Member { upper: Some(5.0), t: t.clone(), value: value.clone(), ..Member::default() };
+        let curve = Curve { of: "v".to_owned(), upper: false, limit: vec![-1.0, -2.0], value: value.clone() };
+        let formula = Member { upper: Some(0.0), value: vec![-3.0, -5.0], curve: Some(curve), ..number.clone() };
+        let of =
+            |member: Member| Constraint { name: "band".to_owned(), members: vec![member], ..Constraint::default() };
+        for both in [[number.clone(), formula.clone()], [formula, number]] {
+            let run = Run { constraints: both.map(of).to_vec(), ..Run::default() };
+            let panels = constraints(&[("a".to_owned(), &run)]);
+            assert_eq!(panels.len(), 1);
+            let names: Vec<&str> = panels[0].lines.iter().map(|line| line.name.as_str()).collect();
+            assert_eq!(names, ["v"]);
+            let lower = panels[0].limits.iter().find(|limit| limit.name == "lower").expect("a limit");
+            assert_eq!(lower.curve, [(0.0, -1.0), (1.0, -2.0)]);
+        }
     }
 
     #[test]
