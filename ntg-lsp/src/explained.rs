@@ -33,7 +33,7 @@ pub fn explained(word: &str) -> Option<String> {
         "maximize" => "`maximize range: e;`: a term of the objective; terms add up",
         "collocation" => "`collocation gauss(points = 5);`, `collocation uniform(breakpoints = 41);`",
         "guess" => "`guess { (x, y) through (0, 0), (1, 5) [km];  T = 9 [s]; }`: where to begin",
-        "continuous" => "`continuous x up to 1;`: how smoothly phases meet",
+        "continuous" => "`input u: continuous;`: no jumps; `continuous x up to 1;`: how smoothly phases meet",
         "at" => "`at 2.5 [s] { ... }`: what holds at one time; `at(2.5 [s], e)`: the value there",
         "domain" => "`domain s [m];`: everything is a function of `s` instead of the time `t`",
         "scenario" => "`scenario plant[k in 1 .. 20] { ... }`: the same problem for several cases at once",
