@@ -59,3 +59,37 @@ fn an_epigraph_of_integrals_has_the_optimum_of_what_is_below_it() {
     close(epigraph.0, direct.0, 1e-7);
     assert!(epigraph.1 <= 2 * direct.1 + 10, "{} iterations for {}", epigraph.1, direct.1);
 }
+
+#[test]
+fn lengths_of_curves_are_held_from_a_straight_input() {
+    // Dido's problem: the largest area under a curve of a length. The input has no guess, so that the length has no slope at
+    // the start, and a linear objective no curvature. An arc of radius r and half angle a: 2 r a = length, 2 r sin a = 1.
+    for length in [1.2, 1.4] {
+        let angle = (0..60).fold((1e-6, std::f64::consts::PI), |(low, high): (f64, f64), _| {
+            let middle = 0.5 * (low + high);
+            if middle / middle.sin() < length { (middle, high) } else { (low, middle) }
+        });
+        let radius = 0.5 / angle.0.sin();
+        let area = radius * radius * (angle.0 - angle.0.sin() * angle.0.cos());
+        for intervals in [5, 10, 40] {
+            let text = format!(
+                "problem Dido {{
+                    duration T = 1;
+                    state x;
+                    input u;
+                    collocation gauss(points = 3, intervals = {intervals});
+                    maximize integral(x);
+                    dynamics {{ der(x) == u; }}
+                    temporal {{ integral(sqrt(1 + u^2)) == {length}; }}
+                    initial {{ x == 0; }}
+                    final {{ x == 0; }}
+                    guess {{ x = 2 * tau * (1 - tau); }}
+                }}"
+            );
+            let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
+            assert!(report.is_solved(), "{text}\n{report}");
+            close(report.objective, area, 1e-4);
+            assert!(report.iterations < 60, "{length} {intervals}: {}", report.iterations);
+        }
+    }
+}

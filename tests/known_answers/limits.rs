@@ -73,7 +73,7 @@ fn vehicles_that_pass_through_one_another_are_told_of() {
 #[test]
 fn what_always_holds_holds_nothing_back() {
     // From -0.5 through 0, where the gradient of the limit is 0: 1 = -0.5 * 2 + 2^2 / 2.
-    for limit in ["v^2 >= 0", "0 <= v^2 + x^2", "-(v^2) <= 0", "abs(v) >= -1", "2 * v^4 + 1 >= 1"] {
+    for limit in ["v^2 >= 0", "0 <= v^2 + x^2", "-(v^2) <= 0", "abs(v) >= -1", "2 * v^4 + abs(x) >= 0"] {
         let report = solved(&format!(
             "problem Turn {{
                 duration T = 2;

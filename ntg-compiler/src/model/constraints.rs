@@ -219,8 +219,9 @@ impl<'a> Elaborator<'a> {
             (Comparison::AtLeast, false) | (Comparison::AtMost, true) => Bounds { lower: Some(bound), upper: None },
         };
         let unit = self.shown(&[&body, left, right]);
-        // Equations of motion are sums of 0 as they are written.
-        let body = if comparison == Comparison::Equal { body } else { self.limited(body, &mut bounds) };
+        // Equations of motion are sums of 0 as they are written, and limits by something else differences.
+        let is_limit = comparison != Comparison::Equal && (a || b);
+        let body = if is_limit { self.limited(body, &mut bounds) } else { body };
         Some(Body { value: body, bounds, unit })
     }
 
