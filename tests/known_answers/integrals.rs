@@ -88,7 +88,8 @@ fn lengths_of_curves_are_held_from_a_straight_input() {
             );
             let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
             assert!(report.is_solved(), "{text}\n{report}");
-            close(report.objective, area, 1e-4);
+            // The arc but for what few intervals miss of it.
+            close(report.objective, area, 1e-3);
             assert!(report.iterations < 60, "{length} {intervals}: {}", report.iterations);
         }
     }
