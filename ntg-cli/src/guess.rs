@@ -49,7 +49,7 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
         && let Some(unknowns) = numbers(&saved["unknowns"])
     {
         check_units(saved, path, &structure)?;
-        return Ok(Guess::raw(unknowns));
+        return Ok(Guess::saved(unknowns));
     }
     let mut guess = Guess::new();
     let own = structure.phases.iter().flat_map(|p| &p.outputs).filter(|output| !output.is_helper());

@@ -233,3 +233,31 @@ fn a_solution_is_no_worse_than_a_guess_that_is_one() {
     close(again.objective, first.objective, 1e-8);
     assert!(again.warnings().iter().all(|warning| !warning.to_string().contains("the guess keeps")), "{again}");
 }
+
+/// Way-points in the least time, whose solution is no better start than a straight line for a method that begins far inside
+/// of bounds.
+const WAY_POINTS: &str = "
+    problem WayPoints {
+        const n = 3;
+        param gate[n, 2] = ((1, 0.7), (2, -0.7), (3, 0.7));
+        state r[2], v[2];
+        input u[2];
+        collocation gauss(points = 3, intervals = 5);
+        phase leg[i in 1 .. n] { duration in 0.01 .. 10;  final { r == gate[i]; } }
+        duration T in 0.1 .. 100;
+        minimize T;
+        dynamics { der(r) == v;  der(v) == u; }
+        trajectory { norm(u) <= 1; }
+        initial { r == 0;  v == 0; }
+        final { v == 0; }
+    }";
+
+#[test]
+fn a_solution_is_no_worse_a_start_than_none() {
+    for spec in [Shipped::text(WAY_POINTS), Shipped::spec("gates"), Shipped::spec("missile_intercept")] {
+        let cold = solved(solve(spec.problem(), &Settings::default()));
+        let again = solved(solve_from(spec.problem(), &Guess::from(&cold.solution), &Settings::default()));
+        close(again.objective, cold.objective, 1e-6);
+        assert!(again.iterations <= cold.iterations + 5, "{} for {}", again.iterations, cold.iterations);
+    }
+}

@@ -61,6 +61,8 @@ pub(super) enum Base {
     Solution(Solution),
     /// All variables of the nonlinear program, SI.
     Variables(Vec<f64>),
+    /// The same, of an earlier solution of a program with these variables.
+    Saved(Vec<f64>),
 }
 
 /// One statement.
@@ -89,6 +91,16 @@ impl Guess {
     pub(crate) fn is_near(&self) -> bool {
         !matches!(self.base, Base::Spec)
             || self.statements.iter().any(|statement| matches!(statement, Statement::Coefficients { .. }))
+    }
+
+    /// As [`Guess::raw`], of an earlier solution: a solve begins near it, and from anywhere where that fails.
+    pub fn saved(variables: Vec<f64>) -> Self {
+        Self { base: Base::Saved(variables), statements: vec![] }
+    }
+
+    /// Whether it is an earlier solution.
+    pub(crate) fn is_solution(&self) -> bool {
+        matches!(self.base, Base::Solution(_) | Base::Saved(_))
     }
 
     /// Whether it is the spec's own guess and no more.
@@ -162,6 +174,7 @@ impl fmt::Debug for Guess {
             Base::Spec => "the spec's guess",
             Base::Solution(_) => "a solution",
             Base::Variables(_) => "raw variables",
+            Base::Saved(_) => "the variables of a solution",
         };
         f.debug_struct("Guess").field("base", &base).field("statements", &self.statements.len()).finish()
     }

@@ -39,7 +39,7 @@ pub fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, Set
     let nothing = Guess::default();
     let guess = guess.unwrap_or(&nothing);
     let layout = &nlp.model.layout;
-    if let Base::Variables(raw) = &guess.base {
+    if let Base::Variables(raw) | Base::Saved(raw) = &guess.base {
         return raw_start(nlp, guess, raw);
     }
     let mut x = vec![0.0; layout.variables];

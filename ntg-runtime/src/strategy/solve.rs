@@ -66,7 +66,8 @@ impl Session {
                     (first, Start::Cold)
                 }
             };
-            let mut guessed = None;
+            // The guess beside a solution on coarser knots, and a saved solution that is begun near.
+            let (mut guessed, mut again) = (None, None);
             let simulated = match i {
                 0 => self.solve_simulated(&mut nlp, (task, &first), settings, &mut budget)?,
                 _ => None,
@@ -85,13 +86,16 @@ impl Session {
                 None if i == 0 && guess.is_some_and(Guess::is_near) => {
                     let (own, _) = self.first_point(&nlp, None)?;
                     nlp.set_scales_near(&first, &own, settings)?;
+                    if guess.is_some_and(Guess::is_solution) {
+                        (from, again) = (Start::Near, Some(first.clone()));
+                    }
                 }
                 None => nlp.set_scales(&first, settings)?,
             }
             if let Some(last) = last.as_ref().filter(|last| last.status.has_solution()) {
                 from = Start::Warm(last.multipliers());
             }
-            let first_point = (FirstPoint { x: &first, from }, guessed.as_deref());
+            let first_point = (FirstPoint { x: &first, from }, guessed.as_deref().or(again.as_deref()));
             let mut is_guess_better = false;
             let mut outcome = match simulated {
                 Some(outcome) if is_simulated => outcome,

@@ -132,11 +132,14 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
     for (index, group) in elements.batches.iter().enumerate() {
         let block = &elements.blocks[index];
         let mut u = vec![f64::NAN; block.slots * block.elements];
+        // What rounding leaves of each.
+        let mut tolerance = vec![0.0; u.len()];
         let mut ends = vec![];
         for element in (0..block.elements).filter(|e| at_end(group.batch.sites[*e].point.tau)) {
             for slot in 0..block.slots {
-                if let Some(value) = system.value(&slot_map(block, element, slot)) {
-                    u[slot * block.elements + element] = value;
+                if let Some(known) = system.known(&(&slot_map(block, element, slot)).into()) {
+                    u[slot * block.elements + element] = known.constant;
+                    tolerance[slot * block.elements + element] = known.tolerance();
                 }
             }
             let rows = 0..block.rows;
@@ -153,7 +156,20 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
             let Target::Row(target) = block.target[at] else { continue };
             let (target, value) = (target as usize, work.values[at]);
             if elements.rows[target].maker == (index, element, row) && value.is_finite() {
-                check(frame, elements, (target, value), ROUNDING * value.abs(), Why::Conditions)?;
+                let mut rounding = ROUNDING * value.abs();
+                if check(frame, elements, (target, value), rounding, Why::Conditions).is_err() {
+                    // Of what terms of large numbers leave.
+                    for slot in slots_of(block, row) {
+                        let lane = slot * block.elements + element;
+                        let own = u[lane];
+                        u[lane] += tolerance[lane];
+                        group.batch.node.values(frame.problem, frame.tables, &u, &mut work);
+                        rounding += (work.values[at] - value).abs();
+                        u[lane] = own;
+                    }
+                    group.batch.node.values(frame.problem, frame.tables, &u, &mut work);
+                }
+                check(frame, elements, (target, value), rounding, Why::Conditions)?;
                 if group.degree[row] > Degree::Linear && is_on_bound(frame, elements, target, value) {
                     met.push(target);
                 }
