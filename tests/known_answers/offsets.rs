@@ -210,3 +210,23 @@ fn a_guess_may_be_far_too_large() {
         close(report.objective, 4.0, 1e-6);
     }
 }
+
+#[test]
+fn rounding_of_far_positions_is_no_contradiction() {
+    // At rest 3.5e9 m away and at rest at 0: a derivative from coefficients of 3.5e9 is 0 but for rounding.
+    let problem = |far: &str| {
+        format!(
+            "problem Far {{
+                const n = 3;
+                duration T = 10 [s];
+                output x[1 .. n] [m]: spline(order = 6, intervals = 3);
+                minimize integral(sum(i in 1 .. n, der(x[i], 2)^2));
+                initial {{ for i in 1 .. n {{ x[i] == {far} * cos(2 * pi * i / n + 0.03 * i);  der(x[i]) == 0; }} }}
+                final {{ for i in 1 .. n {{ x[i] == 0;  der(x[i]) == 0; }} }}
+            }}"
+        )
+    };
+    let near = solved(&problem("3.5 [m]"));
+    let far = solved(&problem("3.5e9 [m]"));
+    close(far.objective / 1e18, near.objective, 1e-6);
+}

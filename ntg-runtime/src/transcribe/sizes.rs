@@ -191,8 +191,9 @@ impl Transcription<'_> {
             let is_known = largest > f64::MIN_POSITIVE && (variables[0] as usize) < integrals;
             variables.iter().for_each(|v| balance.group[*v as usize] = balance.size.len());
             let bounds = variables.iter().map(|v| {
-                // A bound that is far from anything that happens is no size.
-                let duration = self.durations.iter().find(|duration| duration.variable == *v);
+                // A bound that is far from anything that happens is no size; durations come behind all coefficients.
+                let is_late = *v as usize >= self.model.layout.coefficients;
+                let duration = self.durations.iter().find(|duration| is_late && duration.variable == *v);
                 let v = *v as usize;
                 bound_size((self.limits.lower[v], duration.map_or(self.limits.upper[v], |duration| duration.reach)))
             });
@@ -393,12 +394,9 @@ impl Balance {
             terms.extend((value > CONSTANT * terms.iter().sum::<f64>()).then_some(value));
             terms.sort_by(|a, b| b.total_cmp(a));
         }
-        let decades = match &terms[..] {
-            [largest, ..] if self.is_inequality[constraint] => {
-                let largest = terms.iter().copied().fold(*largest, f64::max);
-                if bound > 0.0 { (largest / bound).log10().max(0.0) } else { 0.0 }
-            }
-            [largest, next, ..] if *next > 0.0 => (largest / next).log10(),
+        let decades = match terms[..] {
+            _ if self.is_inequality[constraint] => (terms.into_iter().fold(0.0, f64::max) / bound).log10().max(0.0),
+            [largest, next, ..] if next > 0.0 => (largest / next).log10(),
             _ => 0.0,
         };
         if decades.is_finite() { decades } else { 0.0 }
