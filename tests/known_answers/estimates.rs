@@ -25,9 +25,9 @@ fn measured(count: i32) -> (String, String, String) {
 fn rates_are_found_on_any_mesh_from_no_guess() {
     // The model saturates, `k1 A / (k3 + A)`, with a pole at -k3 beside the axis to which the states fall.
     let (times, a, b) = measured(15);
-    let mut found = vec![];
-    for intervals in [6, 10, 20, 40] {
-        for upper in [10, 30, 100] {
+    for upper in [10, 30, 100] {
+        let mut found = vec![];
+        for intervals in [6, 10, 20, 40] {
             let text = format!(
                 "problem Kinetics {{
                     const n = 15;
@@ -49,13 +49,12 @@ fn rates_are_found_on_any_mesh_from_no_guess() {
             let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
             assert!(report.is_solved(), "{text}\n{report}");
             assert!(report.iterations < 100, "{}", report.iterations);
-            if upper == 100 {
-                found.push(report.objective);
-            }
+            found.push(report.objective);
         }
+        // One optimum on all meshes, of the order of half a residual each; the wrong ones are of 16 000 and more.
+        let [coarse, rest @ ..] = &found[..] else { panic!("there are meshes") };
+        close(*coarse, rest[2], 0.05);
+        rest.iter().for_each(|objective| close(*objective, rest[2], 2e-3));
+        assert!(found.iter().all(|objective| *objective < 30.0), "{found:?}");
     }
-    // Of finer meshes one optimum, of the order of half a residual each.
-    let last = found[found.len() - 1];
-    assert!(last < 30.0, "{found:?}");
-    close(found[2] / last, 1.0, 1e-3);
 }

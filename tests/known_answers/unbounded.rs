@@ -4,7 +4,7 @@ use ntg::prelude::*;
 
 use crate::support::Shipped;
 
-/// Linear programs along a ray of which the objective falls, and a state that nothing limits.
+/// Variables and linear constraints, with a ray along which the objective falls.
 const PROGRAMS: [&str; 3] = [
     "variable a; variable b; minimize -b;
      temporal { -1000 * a - 3000 * b <= 19001;  -2000 * a <= 11001;  -2000 * a + 2000 * b <= -2000;  a - b == 3; }",

@@ -29,7 +29,7 @@ pub(super) const LEFT: f64 = 1e-4;
 /// Where the first step is so many times as long as the largest variable, or as its size, nothing curves that would say how
 /// far the objective falls: of a linear objective under equalities whose multipliers are not known yet. Where the matrix had no
 /// inertia of a minimum, the second number. Fits: of 199 gallery and held-out specs one begins so, and takes a third of its
-/// iterations; below 1e4 and 1e2 guesses that are far off are held back.
+/// iterations; with 1e4 in place of the first number another one is lost, whose guess is that far off.
 const STRAIGHT: f64 = 1e5;
 const STRAIGHT_INDEFINITE: f64 = 1e3;
 /// Such a step is shortened to so many times that, if one of these shifts does it: from the first one of (11.5b) to the
