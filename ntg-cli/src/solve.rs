@@ -203,6 +203,7 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
         arguments::Restoration::Squared => Violations::Squared,
     };
     settings.inertia_correction = match arguments.inertia_correction {
+        arguments::InertiaCorrection::InTurns => InertiaCorrection::InTurns,
         arguments::InertiaCorrection::ByElement => InertiaCorrection::ByElement,
         arguments::InertiaCorrection::ByShift => InertiaCorrection::ByShift,
     };

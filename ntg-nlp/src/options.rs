@@ -77,12 +77,14 @@ pub enum Violations {
 }
 
 /// How the matrix of a step is given the inertia of a minimum where it has another one (docs/maths.md, section 11.3).
-/// Either solves programs that the other one does not.
+/// Either way solves programs that the other one does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum InertiaCorrection {
+    /// By element at first; where that takes long, by shift and by element in turns that grow.
+    #[default]
+    InTurns,
     /// The second derivatives of each element are made positive semidefinite: steps keep a measure of length along
     /// directions of negative curvature, and stay in the neighbourhood of a good guess.
-    #[default]
     ByElement,
     /// The least multiple of the identity that is enough is added: steps keep Newton's curvature along all other
     /// directions, and large elements cost less.

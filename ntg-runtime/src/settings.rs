@@ -112,7 +112,7 @@ impl Default for Settings {
             second_order_correction: true,
             exact_hessian: true,
             restoration: Violations::Absolute,
-            inertia_correction: InertiaCorrection::ByElement,
+            inertia_correction: InertiaCorrection::InTurns,
         }
     }
 }

@@ -90,3 +90,26 @@ fn what_always_holds_holds_nothing_back() {
         close(report.objective, 1.0, 1e-6);
     }
 }
+
+/// A hill of 25 m below a flight that begins at 3 km, between two points.
+#[test]
+fn a_hill_is_as_high_as_it_is_and_not_as_the_flight() {
+    for form in ["h >= ground", "h - ground >= 0", "ground <= h", "ground - h in .. 0 [m]"] {
+        let report = solved(&format!(
+            "problem Terrain {{
+                duration T = 400 [s];
+                state x, h [km], w [km/s];
+                input a in -0.01 .. 0.01 [km/s^2];
+                collocation gauss(points = 3, intervals = 20);
+                let ground [km] = 0.025 [km] * exp(-((x - 19.3 [km]) / 0.15 [km])^2);
+                minimize integral(h);
+                dynamics {{ der(x) == 0.1 [km/s];  der(h) == w;  der(w) == a; }}
+                initial {{ x == 0;  h == 3 [km];  w == 0; }}
+                trajectory {{ clear: {form}; }}
+                final {{ h == 3 [km];  w == 0; }}
+            }}"
+        ));
+        assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{form}\n{report}");
+        assert!(report.violated_between().iter().any(|own| own.name == "clear"), "{form}\n{report}");
+    }
+}

@@ -8,6 +8,7 @@ mod angles;
 mod car;
 mod constructs;
 mod corners;
+mod corrections;
 mod data;
 mod degenerate;
 mod durations;

@@ -5,8 +5,12 @@ use ntg::prelude::*;
 use crate::support::{Shipped, close};
 
 fn solved(text: &str, known: f64) {
+    solved_to(text, known, 1e-6);
+}
+
+fn solved_to(text: &str, known: f64, relative: f64) {
     let report = Shipped::text(text).solve();
-    close(report.objective, known, 1e-6);
+    close(report.objective, known, relative);
     assert!(!report.to_string().contains("no minimum"), "{report}");
 }
 
@@ -182,4 +186,30 @@ fn what_equations_decide_alone_is_no_saddle() {
     .solve();
     assert!(report.is_solved(), "{report}");
     assert!(!report.warnings().iter().any(|warning| warning.message.contains("this is no minimum")), "{report}");
+}
+
+/// At rest the input has no slope, on any mesh: `3` by `u = 1`, and `exp(3)` by `k = 1`.
+#[test]
+fn what_is_squared_does_not_stay_at_rest() {
+    for intervals in [4, 10, 25] {
+        for (declared, rate, first, known) in [
+            ("state x;  input u in -1 .. 1;", "u^2", 0, 3.0),
+            ("state x;  variable k in -1 .. 1;", "k^2 * x", 1, 3.0_f64.exp()),
+        ] {
+            solved_to(
+                &format!(
+                    "problem Rest {{
+                        duration T = 3;
+                        {declared}
+                        collocation gauss(points = 3, intervals = {intervals});
+                        maximize final(x);
+                        dynamics {{ der(x) == {rate}; }}
+                        initial {{ x == {first}; }}
+                    }}"
+                ),
+                known,
+                1e-5, // On four intervals of the exponential.
+            );
+        }
+    }
 }

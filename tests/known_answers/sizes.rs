@@ -372,3 +372,27 @@ fn an_objective_within_bounds_is_not_unbounded() {
         assert_ne!(report.status, Status::Unbounded, "{intervals}: {report}");
     }
 }
+
+/// A tank that runs empty (Torricelli), `T = 2 (sqrt h0 - sqrt h1) / k`: a first height of one unit is a height.
+#[test]
+fn a_tank_may_be_full_to_one_unit() {
+    for unit in ["mm", "m", "km"] {
+        for full in [0.5_f64, 1.0, 2.0] {
+            let report = Shipped::text(&format!(
+                "problem Tank {{
+                    duration T in 0.1 .. 60 [s];
+                    state h [{unit}];
+                    collocation gauss(points = 3, intervals = 25);
+                    minimize T;
+                    dynamics {{ der(h) == -1 [{unit}/s] * sqrt(h / 1 [{unit}] + 1e-9); }}
+                    initial {{ h == {full} [{unit}]; }}
+                    trajectory {{ h >= 0; }}
+                    final {{ h <= 0.0001 [{unit}]; }}
+                }}"
+            ))
+            .solve();
+            close(report.objective, 2.0 * (full.sqrt() - 1e-2), 1e-6);
+            assert!(report.iterations < 100, "{unit} {full}: {}", report.iterations);
+        }
+    }
+}

@@ -3,7 +3,6 @@
 use super::mode::Mode;
 use super::state::State;
 use crate::contract::Nlp;
-use crate::options::InertiaCorrection;
 use crate::status::Status;
 
 /// The last barrier parameter as a fraction of the tolerance. WB: 1/10 of the tolerance.
@@ -58,7 +57,7 @@ impl<N: Nlp> State<'_, N> {
         let last = self.last_barrier();
         let inequalities = self.slacks.inequalities.len() as f64;
         // Steps that a shift has shortened promise little wherever they are.
-        let is_short = self.record.shift > 0.0 && self.options.inertia_correction == InertiaCorrection::ByShift;
+        let is_short = self.record.shift > 0.0 && !self.record.convexified;
         if inequalities == 0.0 || is_short {
             return true;
         }

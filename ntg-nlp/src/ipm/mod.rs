@@ -54,7 +54,7 @@ pub(crate) use saddle::below_saddle;
 pub use state::Analysis;
 use state::State;
 
-/// Tiny steps in a row that end a solve. A law: one may be an accident of rounding.
+/// Tiny steps in a row, at one barrier parameter, that end a solve. A law: one may be an accident of rounding.
 const TINY_STEPS: usize = 3;
 
 /// Solves `nlp` from `start`, which is first moved to within the bounds of the variables.
@@ -153,7 +153,7 @@ fn initial<'a, N: Nlp>(
 
 /// Lines 2 to 11 of Algorithm 11, whose numbers stand beside them.
 fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
-    let mut tiny_steps = 0;
+    let (mut tiny_steps, mut mu) = (0, state.mu);
     loop {
         state.compute_residuals(); // 3
         if let Some(sizes) = state.outgrown_sizes() {
@@ -176,7 +176,12 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
             return state.end(status); // 6
         }
         let searched = state.step_and_search(); // 7 to 9
-        tiny_steps = if searched == SearchOutcome::Tiny { tiny_steps + 1 } else { 0 };
+        tiny_steps = match searched {
+            SearchOutcome::Tiny if state.mu == mu => tiny_steps + 1,
+            SearchOutcome::Tiny => 1,
+            SearchOutcome::Stuck | SearchOutcome::Accepted => 0,
+        };
+        mu = state.mu;
         let ended = match searched {
             // WB, section 3.9: a barrier problem whose steps are rounding is solved.
             SearchOutcome::Tiny if tiny_steps >= TINY_STEPS => {

@@ -376,6 +376,10 @@ impl<W> System<W> {
         for (variable, weight) in weights.sigma[self.first_variable()..].iter().enumerate() {
             self.matrix[self.storage.position(variable, variable)] += weight;
         }
+        // What nothing depends on stays where it is, and makes no matrix singular.
+        for &variable in &self.unknowns.unused {
+            self.matrix[self.storage.position(variable as usize, variable as usize)] += 1.0;
+        }
     }
 
     /// Computes the convexifying term. Precondition: [`System::assemble`] with the same `sigma`.

@@ -19,6 +19,8 @@ pub(super) struct Unknowns {
     pub(super) variables: usize,
     /// Whether each variable is held: it then meets no other unknown, and what elements would add to it is left out.
     pub(super) held: Vec<bool>,
+    /// The variables that no element has.
+    pub(super) unused: Vec<u32>,
     /// For each row its number among the border rows; none for a condensed row.
     pub(super) border_row: Vec<Option<u32>>,
     /// The border rows.
@@ -41,7 +43,7 @@ impl Unknowns {
             border_row[row] = Some(bordered.len() as u32);
             bordered.push(row);
         }
-        Self { variables, held, border_row, bordered }
+        Self { variables, held, unused: unused(nlp), border_row, bordered }
     }
 
     /// The unknown that a variable is; none for padding and for what is held.
@@ -54,6 +56,13 @@ impl Unknowns {
         let border = (*self.border_row.get(function as usize)?)?;
         Some(self.variables as u32 + border)
     }
+}
+
+/// The variables that no element has.
+fn unused<N: Nlp>(nlp: &N) -> Vec<u32> {
+    let mut used = vec![false; nlp.variables()];
+    nlp.blocks().iter().flat_map(|block| &block.variables).for_each(|variable| used[*variable as usize] = true);
+    (0..).zip(used).filter(|(_, used)| !used).map(|(variable, _)| variable).collect()
 }
 
 /// The reach that counts as far: a multiple of the median over elements.

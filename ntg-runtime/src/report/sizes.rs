@@ -19,6 +19,10 @@ const LEAST_RATE: f64 = 1e-3;
 /// size. A choice: what a limit varies by may be next to nothing there, and no overshoot is large beside the limit.
 const LEAST_RANGE: f64 = 3e-4;
 
+/// A limit with two sides has the size of what the side varies by that varies by less, and at least this part of the other
+/// size. A choice: the points may not see a hill, and what is missed by 3e-5 of all is no hill.
+const LEAST_SIDE: f64 = 3e-3;
+
 /// The sizes of one member of a constraint, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Size {
@@ -45,6 +49,8 @@ struct Terms {
     slope: f64,
     /// Of a limit: the least and the largest value at the points.
     limited: Option<(f64, f64)>,
+    /// Of rows that have linear slots and others: the least and the largest value of what is left without the linear terms.
+    rest: Option<(f64, f64)>,
 }
 
 impl Terms {
@@ -55,7 +61,11 @@ impl Terms {
         let between = match self.limited {
             _ if self.rate > 0.0 => seen.min(at_points).max(LEAST_BETWEEN * at_points).max(self.least),
             // Neither a height above the sea nor the slope of a wall says how high the wall is.
-            Some((low, high)) if seen.max(high - low) > LEAST_RANGE * at_points => seen.max(high - low).min(at_points),
+            Some((low, high)) if seen.max(high - low) > LEAST_RANGE * at_points => {
+                let whole = seen.max(high - low).min(at_points);
+                let side = self.rest.map_or(whole, |(low, high)| self.variation.min(high - low));
+                side.clamp(LEAST_SIDE * whole, whole)
+            }
             _ => at_points,
         };
         Some(Size { at_points, between })
@@ -117,7 +127,12 @@ impl Sizes {
             let is_linear = |slot: usize| block.hessian.iter().all(|(i, j)| *i != slot && *j != slot);
             let kinds: Vec<(bool, bool)> = (0..block.slots).map(|slot| (is_rate(slot), is_linear(slot))).collect();
             let mut ranges = Ranges::of(block, &relations.of_row);
-            let mut slots = vec![];
+            let has_slots = |row: usize, linear: bool| {
+                block.jacobian.iter().any(|(of, slot)| *of == row && kinds[*slot] == (false, linear))
+            };
+            let two_sided: Vec<bool> =
+                (0..block.rows).map(|row| has_slots(row, true) && has_slots(row, false)).collect();
+            let (mut slots, mut rest) = (vec![], vec![0.0; block.rows]);
             for e in 0..block.elements {
                 let variables = block.variables(e);
                 slots.clear();
@@ -126,6 +141,10 @@ impl Sizes {
                     let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
                     (value, typical.map_or(0.0, |(j, _)| nlp.limits.scale[*j as usize]))
                 }));
+                for (row, rest) in rest.iter_mut().enumerate() {
+                    let lane = row * block.elements + e;
+                    *rest = block.weight[lane] * values.values[lane];
+                }
                 for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                     let lane = row * block.elements + e;
                     let Target::Row(target) = block.target[lane] else { continue };
@@ -145,9 +164,16 @@ impl Sizes {
                         }
                         (false, true) => {
                             ranges.add((relation, entry), slope * value);
+                            rest[row] -= slope * value;
                         }
                         (false, false) => {}
                     }
+                }
+                for (row, rest) in rest.iter().enumerate().filter(|(row, rest)| two_sided[*row] && rest.is_finite()) {
+                    let Target::Row(target) = block.target[row * block.elements + e] else { continue };
+                    let (low, high) =
+                        terms[relations.of_row[target as usize] as usize].rest.get_or_insert((*rest, *rest));
+                    (*low, *high) = (low.min(*rest), high.max(*rest));
                 }
             }
             ranges.raise(&mut terms);

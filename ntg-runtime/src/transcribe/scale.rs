@@ -7,6 +7,7 @@ use super::error::SetupError;
 use super::instances::{family_len, family_members};
 use super::layout::Time;
 use super::rows::{RowInfo, RowKind, bound_size};
+use super::slots::AffineMap;
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
 use ntg_structure::{Family, Unit};
@@ -155,9 +156,12 @@ impl Transcription<'_> {
             }
         }
         let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
-        // One unit everywhere is what nobody has guessed of an output above 0 (section 8.1), and no size of its own.
+        // One unit everywhere is what nobody has guessed of an output above 0 (section 8.1), and no size of its own; where a
+        // boundary condition says so, it is.
+        let is_fixed = |v: &u32| self.linear.value(&AffineMap { terms: vec![(*v, 1.0)], offset: 0.0 }).is_some();
+        let is_unit = |o: &&WholeOutput| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor);
         let mut known = guess.clone();
-        for output in outputs.iter().filter(|o| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor)) {
+        for output in outputs.iter().filter(is_unit).filter(|o| !o.coefficients.iter().any(is_fixed)) {
             output.coefficients.iter().for_each(|v| known[*v as usize] = 0.0);
         }
         // Its own bound would tell it there; where functions have no slopes at the bound, so it is.
