@@ -9,7 +9,7 @@ use std::ffi::CStr;
 pub enum Code {
     /// Done; of a solve: there is a new plan, within the tolerances.
     Ok = 0,
-    /// There is a new plan, optimal to 1e-6 and not to the tolerances.
+    /// There is a new plan, optimal to 1e-6 and not to the tolerances, or stationary and no minimum.
     Acceptable = 1,
     /// A pointer is null.
     Null = 2,
@@ -57,7 +57,7 @@ impl Code {
     pub fn of(status: &Status) -> Self {
         match status {
             Status::Solved => Self::Ok,
-            Status::Acceptable => Self::Acceptable,
+            Status::Acceptable | Status::Saddle => Self::Acceptable,
             Status::Infeasible { .. } | Status::ViolatedBetween { .. } => Self::Infeasible,
             Status::IterationLimit => Self::IterationLimit,
             Status::TimeLimit => Self::TimeLimit,
@@ -91,7 +91,9 @@ impl Code {
     pub fn text(self) -> &'static CStr {
         match self {
             Self::Ok => c"done",
-            Self::Acceptable => c"there is a new plan, optimal to 1e-6 and not to the tolerances",
+            Self::Acceptable => {
+                c"there is a new plan, optimal to 1e-6 and not to the tolerances, or stationary and no minimum"
+            }
             Self::Null => c"a pointer is null",
             Self::BadArgument => c"a number is out of its range, or not a number",
             Self::BadParameter => {

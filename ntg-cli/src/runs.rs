@@ -133,7 +133,7 @@ impl Spec<'_> {
         (starts, interrupt): (Option<&MultiReport>, &Interrupt),
         iterations: &[Progress],
     ) -> Run {
-        if report.status.is_acceptable() {
+        if report.has_solution() && !report.is_solved() {
             tell!("warning: {}: {}", self.path.display(), report.status);
         } else if !report.is_solved() {
             tell!("warning: {}: {}; what follows is the last point", self.path.display(), report.status);

@@ -85,6 +85,9 @@ pub enum Status {
     /// The solve could not go on, and all residuals are within 1e-6 though not within their tolerances: in most cases
     /// the solution to five or six digits.
     Acceptable,
+    /// A stationary point within the tolerances that is no minimum: beside it the objective is better, and the solve could not get
+    /// away from it (docs/maths.md, section 11.13).
+    Saddle,
     /// All residuals are within their tolerances, but constraints are violated between the points of the transcription
     /// by more than `Settings::between_tolerance`, which [`Between::Refuse`](crate::settings::Between) does not allow.
     ViolatedBetween {
@@ -128,15 +131,16 @@ impl Status {
         matches!(self, Self::Acceptable)
     }
 
-    /// Whether there is a solution: solved or acceptable.
+    /// Whether there is a solution: solved, acceptable, or at least stationary.
     pub fn has_solution(&self) -> bool {
-        self.is_solved() || self.is_acceptable()
+        matches!(self, Self::Solved | Self::Acceptable | Self::Saddle)
     }
 
-    /// One word for a solution, `solved` or `acceptable`; else why there is none, in words.
+    /// One word for a solution, `solved`, `acceptable` or `stationary`; else why there is none, in words.
     pub fn label(&self) -> String {
         match self {
             Self::Acceptable => "acceptable".into(),
+            Self::Saddle => "stationary".into(),
             other => other.to_string(),
         }
     }
@@ -149,6 +153,9 @@ impl Status {
             Self::Acceptable => {
                 "Compare the residuals with what you need; for more digits give typical sizes (`scales`), or remove \
                  constraints that say the same thing twice."
+            }
+            Self::Saddle => {
+                "Give a guess that does not lie in the symmetry of the problem, or try several starts (`starts`)."
             }
             Self::ViolatedBetween { .. } => {
                 "Use more points or intervals, or let the mesh be refined (`between`, `refine`)."
@@ -187,6 +194,7 @@ impl fmt::Display for Status {
         match self {
             Self::Solved => f.write_str("solved"),
             Self::Acceptable => f.write_str("acceptable: optimal to 1e-6, not to the tolerances"),
+            Self::Saddle => f.write_str("stationary: this is no minimum, beside it the objective is better"),
             Self::ViolatedBetween { constraints } => {
                 f.write_str("not a solution between the points")?;
                 list(f, constraints, |f, constraint| f.write_str(constraint))

@@ -69,7 +69,8 @@ impl Row {
     /// Whether it has a solution that is less than a solved one: acceptable, or one of the points alone.
     pub fn is_less_than_solved(&self) -> bool {
         let alone = |status: &str| Resolution::Unresolved.ending(status);
-        [ACCEPTABLE.to_owned(), alone(SOLVED), alone(ACCEPTABLE)].contains(&self.status)
+        [ACCEPTABLE.to_owned(), SADDLE.to_owned(), alone(SOLVED), alone(ACCEPTABLE), alone(SADDLE)]
+            .contains(&self.status)
     }
 
     /// Whether it was solved.
@@ -80,6 +81,8 @@ impl Row {
 
 /// The status of a row that was solved to 1e-6 only.
 const ACCEPTABLE: &str = "acceptable";
+/// The status of a row whose solution is stationary and no minimum.
+const SADDLE: &str = "stationary";
 /// The status of a row that was solved.
 pub const SOLVED: &str = "solved";
 

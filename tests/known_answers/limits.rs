@@ -113,3 +113,29 @@ fn a_hill_is_as_high_as_it_is_and_not_as_the_flight() {
         assert!(report.violated_between().iter().any(|own| own.name == "clear"), "{form}\n{report}");
     }
 }
+
+/// A corridor that a disc blocks: nothing but a swing of hundreds of corridors between two points passes.
+#[test]
+fn a_path_that_swings_through_an_obstacle_between_two_points_is_told_of() {
+    for radius in ["1.2", "1.5"] {
+        for form in ["x^2 + y^2 >= R^2", "norm((x, y)) >= R", "-(x^2 + y^2) <= -R^2"] {
+            let text = format!(
+                "problem Blocked {{
+                    duration T in 0.1 .. 1;
+                    param R = {radius};
+                    state x, y;
+                    input u, v;
+                    collocation gauss(points = 3, intervals = 10);
+                    minimize T;
+                    dynamics {{ der(x) == u;  der(y) == v; }}
+                    initial {{ x == -3;  y == 0; }}
+                    trajectory {{ disc: {form};  y in -1 .. 1; }}
+                    final {{ x == 3;  y == 0; }}
+                }}"
+            );
+            let report = solved(&text);
+            let is_trusted = report.is_solved() && report.resolution() != Some(Resolution::Unresolved);
+            assert!(!is_trusted, "{form}\n{report}");
+        }
+    }
+}

@@ -213,3 +213,21 @@ fn what_is_squared_does_not_stay_at_rest() {
         }
     }
 }
+
+/// The greatest value of what falls to 0 on both sides and nowhere has a minimum: it is told of, and is no solution.
+#[test]
+fn a_stationary_point_that_nothing_leaves_is_not_solved() {
+    let bell = Shipped::text(
+        "problem Bell {
+            duration T = 1;
+            state x;
+            input u;
+            collocation gauss(points = 3, intervals = 4);
+            minimize integral(1 / (1 + x^2));
+            dynamics { der(x) == u; }
+            initial { x == 0; }
+        }",
+    );
+    let report = solve(bell.problem(), &Settings::default()).expect("it can be set up");
+    assert!(!report.is_solved(), "{report}");
+}

@@ -114,16 +114,15 @@ impl<'a, N: Nlp> State<'a, N> {
         let is_near = |system: &System<N::Workspace>| {
             !is_little(&outcome) && is_near_scales(nlp, (system.scales.objective, system.latest()), &outcome)
         };
+        let holds = || below.map_or(Measure::Holds, Measure::Saddle);
         analysis.measure = if !rows_hold {
             Measure::Rows
-        } else if let Some(below) = below {
-            Measure::Saddle(below) // Scales at a saddle say nothing of those beside it.
         } else if !outcome.status.has_solution() || analysis.system.as_ref().is_none_or(is_near) {
-            Measure::Holds
+            holds()
         } else {
             match sizes_at_end(nlp, &outcome, options) {
                 Some(sizes) => Measure::Sizes(sizes),
-                None => objective_at_end(nlp, &outcome, options).map_or(Measure::Holds, Measure::Objective),
+                None => objective_at_end(nlp, &outcome, options).map_or_else(holds, Measure::Objective),
             }
         };
         outcome

@@ -533,9 +533,9 @@ impl Run {
         self.status == "acceptable"
     }
 
-    /// Whether there is a solution: solved or acceptable.
+    /// Whether there is a solution: solved, acceptable, or at least stationary.
     pub fn has_solution(&self) -> bool {
-        self.is_solved() || self.is_acceptable()
+        self.is_solved() || self.is_acceptable() || self.status == "stationary"
     }
 
     /// The largest relative violation between the points of which nothing is said: what the run was told, or what holds

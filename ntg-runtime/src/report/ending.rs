@@ -94,6 +94,21 @@ impl Resolution {
     }
 }
 
+/// Where a simulation leads that does not follow the motion that was found, of a problem without an objective.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Elsewhere {
+    /// How far apart both are in the output in which they are most, relative to its size.
+    pub(crate) apart: f64,
+    /// The same in words.
+    pub(crate) words: String,
+}
+
+impl Elsewhere {
+    /// A motion that is to be found alone and is apart from its own simulation by more than this part of its size is none. A
+    /// choice, that of objectives on shorter intervals ([`Confirmation`]).
+    const OTHER: f64 = 0.25;
+}
+
 impl Report {
     /// How far the solution of the points is one of the problem; nothing where there is no solution.
     pub fn resolution(&self) -> Option<Resolution> {
@@ -108,7 +123,8 @@ impl Report {
         let cost = Missed::Objective(self.cost_missed());
         let equations = Missed::Objective(self.correction_part());
         let refutes = |confirmation: &Confirmation| confirmation.refutes(self.objective);
-        if !self.poles.is_empty() || self.confirmation.as_ref().is_some_and(refutes) {
+        let is_elsewhere = self.simulation.as_ref().is_some_and(|simulated| simulated.apart > Elsewhere::OTHER);
+        if is_elsewhere || !self.poles.is_empty() || self.confirmation.as_ref().is_some_and(refutes) {
             return Some(Resolution::Unresolved);
         }
         Some(Resolution::of(constraints.chain([cost, equations]), self.between_tolerance))

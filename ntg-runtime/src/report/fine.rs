@@ -5,6 +5,7 @@
 //! To build it costs far more than to evaluate it, so a problem that is solved again keeps it. Integrals that are
 //! variables are first replaced by their finer values.
 
+use super::dips;
 use crate::transcribe::batch::{Batch, BatchWork, batches};
 use crate::transcribe::elements::sites;
 use crate::transcribe::node::Site;
@@ -88,17 +89,7 @@ impl Plan {
     }
 
     fn set_bounds(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
-        let frame = nlp.frame();
-        for Part { group, batch, bounds, .. } in self.parts.iter_mut().filter(|part| part.checks) {
-            let group = nlp.model.structure.group(*group);
-            bounds.clear();
-            for (element, site) in batch.sites.iter().enumerate() {
-                if element == 0 || !batch.sites[element - 1].is_of_member(site) {
-                    bounds.push((element, group_bounds(&frame, group, &site.indices)?));
-                }
-            }
-        }
-        Ok(())
+        self.parts.iter_mut().filter(|part| part.checks).try_for_each(|part| part.set_bounds(nlp))
     }
 
     /// Evaluates everything: calls `visit` with constraints, and gives the minimised value of every term, SI.
@@ -134,11 +125,15 @@ impl Plan {
             });
         }
         for part in self.parts.iter().filter(|part| part.checks) {
-            part.check(nlp, (&parts, wanted), &mut |checked| {
+            let mut checked = |checked: &Checked<'_>| {
                 if counts(&constraints_shown, checked.constraint, part.group) {
                     visit(checked);
                 }
-            });
+            };
+            part.check(nlp, (&parts, wanted), &mut checked);
+            for dips in part.at_dips(nlp, &x)? {
+                dips.check(nlp, (&parts, wanted), &mut checked);
+            }
         }
         Ok(terms)
     }
@@ -173,6 +168,42 @@ impl Plan {
 }
 
 impl Part {
+    fn set_bounds(&mut self, nlp: &Transcription) -> Result<(), SetupError> {
+        let (frame, group) = (nlp.frame(), nlp.model.structure.group(self.group));
+        self.bounds.clear();
+        for (element, site) in self.batch.sites.iter().enumerate() {
+            if element == 0 || !self.batch.sites[element - 1].is_of_member(site) {
+                self.bounds.push((element, group_bounds(&frame, group, &site.indices)?));
+            }
+        }
+        Ok(())
+    }
+
+    /// The same group, with values, where limits may be crossed between the points. Before: [`Part::values`].
+    fn at_dips(&self, nlp: &Transcription, x: &[f64]) -> Result<Vec<Self>, SetupError> {
+        let group = nlp.model.structure.group(self.group);
+        let sites = &self.batch.sites;
+        let mut dips = vec![];
+        let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
+        for ((first, bounds), end) in self.bounds.iter().zip(ends) {
+            for row in (0..group.rows.len()).filter(|row| matches!(group.rows[*row], Row::Constraint { .. })) {
+                let values = &self.work.node.values[row * sites.len()..][*first..end];
+                dips::between(&sites[*first..end], values, bounds[row], &mut dips);
+            }
+        }
+        if dips.is_empty() {
+            return Ok(vec![]);
+        }
+        let at = |batch: Batch| {
+            let work = batch.work();
+            let mut part = Self { group: self.group, adds: false, checks: true, batch, work, bounds: vec![] };
+            part.set_bounds(nlp)?;
+            part.values(nlp, x);
+            Ok(part)
+        };
+        batches(&nlp.frame(), &group.call, dips)?.into_iter().map(at).collect()
+    }
+
     /// Evaluates all rows.
     fn values(&mut self, nlp: &Transcription, x: &[f64]) {
         self.batch.values(nlp.problem, &nlp.model.tables, x, &mut self.work);

@@ -7,6 +7,7 @@ mod by_own_points;
 mod confirmation;
 mod constraints;
 mod cost;
+mod dips;
 mod display;
 mod ending;
 mod estimate;
@@ -24,6 +25,7 @@ mod warnings;
 pub use crate::transcribe::rows::member_words;
 pub use confirmation::Confirmation;
 pub use cost::cost_apart;
+pub(crate) use ending::Elsewhere;
 pub use ending::{Missed, Resolution};
 pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
 pub use refined::{RefineStatus, Refined, Round};
@@ -100,8 +102,6 @@ pub struct Report {
     /// Expressions whose value or derivative is singular at the guess. They stop nothing; where a
     /// solve ends badly, they are the first to look at.
     pub singular: Vec<Singular>,
-    /// Whether the solution fails the second-order conditions ([`Outcome::is_saddle`]).
-    pub(crate) is_saddle: bool,
     /// What violations of bounds of 0 are relative to.
     pub(crate) sizes: sizes::Sizes,
     /// What is to be looked at beside constraints and residuals, in words, each with its place in the spec: durations without
@@ -111,7 +111,7 @@ pub struct Report {
     /// no motion. None from a kept solver, which does not look for them.
     pub poles: Vec<Singular>,
     /// What a simulation tells of the motion that was to be found.
-    pub(crate) simulation: Option<String>,
+    pub(crate) simulation: Option<Elsewhere>,
     /// What a solve on intervals half as long says of a solution that leaves its own equations of motion; none where that is in
     /// no doubt, and from a kept solver.
     pub confirmation: Option<Confirmation>,
@@ -312,7 +312,7 @@ impl Report {
                 sizes: nlp.limits.scale.clone(),
             }),
         };
-        let status = status::in_words(nlp, outcome.status);
+        let status = status::of_end(nlp, outcome.status, outcome.is_saddle);
         let estimate = estimate::estimate(nlp, &solution, status.has_solution())?;
         told.extend(match status.has_solution() {
             true => hints::of_estimate(nlp, solution.coefficients(), estimate.as_ref()),
@@ -346,7 +346,6 @@ impl Report {
             violation,
             between_tolerance: Settings::default().between_tolerance,
             singular: vec![],
-            is_saddle: outcome.is_saddle,
             sizes,
             told,
             poles: vec![],

@@ -2,6 +2,7 @@
 
 use crate::status::{Crossing, Status, Violation};
 use crate::transcribe::Transcription;
+use ntg_nlp::Outcome;
 use ntg_nlp::status::Bounded;
 use ntg_structure::{Structure, Unit};
 
@@ -24,8 +25,21 @@ pub(super) fn advice(status: &Status, structure: &Structure) -> String {
     format!("{advice} Gradients jump at {}: a smooth form may be needed there.", named.join(", "))
 }
 
-/// The status of a solve of this transcription.
-pub(crate) fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
+/// The status of an outcome of this transcription.
+pub(crate) fn of_outcome(nlp: &Transcription, outcome: &Outcome) -> Status {
+    of_end(nlp, outcome.status.clone(), outcome.is_saddle)
+}
+
+/// As [`of_outcome`], of the solver's status and of whether the end is a saddle.
+pub(super) fn of_end(nlp: &Transcription, status: ntg_nlp::Status, is_saddle: bool) -> Status {
+    match in_words(nlp, status) {
+        Status::Solved if is_saddle => Status::Saddle,
+        status => status,
+    }
+}
+
+/// A solver's status.
+fn in_words(nlp: &Transcription, status: ntg_nlp::Status) -> Status {
     use ntg_nlp::Status as Solver;
     match status {
         Solver::Solved => Status::Solved,

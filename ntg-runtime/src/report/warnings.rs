@@ -2,6 +2,7 @@
 
 use super::{ConstraintReport, RefineStatus, Report, hints};
 use crate::digits::brief;
+use crate::status::Status;
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::member_words;
 use crate::transcribe::times::phase_words;
@@ -56,8 +57,8 @@ impl Report {
             time: None,
         });
         let equation = self.constraints.iter().find(|constraint| constraint.block == Block::Trajectory);
-        let coarse = self.simulation.iter().map(|message| Warning {
-            message: message.clone(),
+        let coarse = self.simulation.iter().map(|elsewhere| Warning {
+            message: elsewhere.words.clone(),
             place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
@@ -70,7 +71,7 @@ impl Report {
         });
         let independent = &self.solution.structure().independent;
         let between = self.violated_between().into_iter().map(|constraint| violated_between(constraint, independent));
-        let saddle = self.is_saddle.then(|| Warning {
+        let saddle = (self.status == Status::Saddle).then(|| Warning {
             message:
                 "this is no minimum: beside it the objective is better, and the solve could not get away from it; \
                       give a guess that does not lie in its symmetry, or try several starts"

@@ -8,7 +8,7 @@ use super::simulated_start::told_by_simulation;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
 use crate::report::fine::Plan;
-use crate::report::status::in_words;
+use crate::report::status::of_outcome;
 use crate::report::{Report, StepReport, user};
 use crate::settings::{Method, Settings};
 use crate::solution::{Inner, Solution, Value};
@@ -284,7 +284,7 @@ pub(super) fn record(nlp: &Transcription, step: &[Setting], outcome: &Outcome, b
     };
     StepReport {
         parameters: step.iter().map(parameter).collect(),
-        status: in_words(nlp, outcome.status.clone()),
+        status: of_outcome(nlp, outcome),
         objective: user(nlp, outcome.objective),
         iterations: outcome.iterations,
         seconds: began.elapsed().as_secs_f64(),

@@ -5,6 +5,7 @@ use super::budget::Budget;
 use super::session::{FirstPoint, Session, Task};
 use crate::digits::brief;
 use crate::guess::{Guess, simulated};
+use crate::report::Elsewhere;
 use crate::settings::{Method, Settings};
 use crate::transcribe::{SetupError, Transcription, names};
 use ntg_nlp::{Outcome, Start};
@@ -40,17 +41,15 @@ const APART: f64 = 1e-2;
 
 /// What a simulation tells of the motion that was to be found, in words: that the mesh is too coarse, where no motion was
 /// found, or another one. `x` has inputs, times and variables, and the motion.
-pub(super) fn told_by_simulation(nlp: &Transcription, x: &[f64], is_found: bool) -> Option<String> {
+pub(super) fn told_by_simulation(nlp: &Transcription, x: &[f64], is_found: bool) -> Option<Elsewhere> {
     if !is_only_motion(nlp) {
         return None;
     }
     let simulated = simulated(nlp, x)?;
     if !is_found {
-        return Some(
-            "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more intervals where it \
-             changes fast, which refining the mesh finds"
-                .into(),
-        );
+        let words = "a simulation follows this motion to its end, but the splines on this mesh do not: it needs more intervals where it \
+             changes fast, which refining the mesh finds";
+        return Some(Elsewhere { apart: f64::INFINITY, words: words.to_owned() });
     }
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
     let apart = |v: u32| (x[v as usize] - simulated[v as usize]).abs();
@@ -68,10 +67,11 @@ pub(super) fn told_by_simulation(nlp: &Transcription, x: &[f64], is_found: bool)
             }
         }
     }
-    worst.map(|(_, what)| {
-        format!(
+    worst.map(|(apart, what)| {
+        let words = format!(
             "a simulation of this motion leads elsewhere, {what}: the mesh is too coarse for it (refining it tells), or small \
              errors grow without limit"
-        )
+        );
+        Elsewhere { apart, words }
     })
 }

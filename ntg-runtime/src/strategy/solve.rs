@@ -8,7 +8,7 @@ use super::session::{FirstPoint, Session, Task, record, solution};
 use crate::error::Error;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
-use crate::report::status::in_words;
+use crate::report::status::of_outcome;
 use crate::report::{Report, StepReport, user};
 use crate::settings::Settings;
 use crate::solution::Solution;
@@ -170,7 +170,7 @@ impl Session {
             outcome = Outcome { iterations, ..better(outcome, second) };
         }
         let (iterations, objective) = (outcome.iterations, user(&nlp, outcome.objective));
-        let status = in_words(&nlp, outcome.status.clone());
+        let status = of_outcome(&nlp, &outcome);
         let found = status.has_solution().then(|| solution(&nlp, outcome));
         self.kept = Some(nlp.keep());
         let seconds = began.elapsed().as_secs_f64();

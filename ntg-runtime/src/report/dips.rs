@@ -1,0 +1,86 @@
+//! Where a limit may be crossed between two points of the finer grid (docs/maths.md, section 9).
+//!
+//! A path that is fast beside what it passes may have an obstacle between two points, however fine they are. A distance that falls
+//! and rises again is convex: between two points it is above the lines through the two points before and the two after. Where
+//! these meet beyond the limit, the limit is evaluated around the place where they meet and around the vertices of the
+//! parabolas through three of the four points.
+
+use crate::transcribe::node::Site;
+use crate::transcribe::points::Point;
+use crate::transcribe::rows::Pair;
+
+/// What is missed by less of its bound is not looked for. A law: the default of what is worth a warning.
+const WORTH: f64 = 1e-2;
+/// How often the distance from such a place, a quarter of a step at first, is halved. A choice: what is missed of the distance
+/// to the least value is then at most a third of it, down to a ten thousandth of a step.
+const HALVINGS: i32 = 11;
+
+/// The places between the points at which values of one row that stay within their bounds may leave them. Bounds of 0 have no size
+/// that is known here, and are left out, as equations are.
+pub(super) fn between(sites: &[Site], values: &[f64], (lower, upper): Pair, found: &mut Vec<Site>) {
+    if lower == upper {
+        return;
+    }
+    // Breakpoints stand twice, once from either side.
+    let is_new = |i: &usize| *i == 0 || sites[*i].point.tau != sites[*i - 1].point.tau;
+    let distinct: Vec<usize> = (0..sites.len()).filter(is_new).collect();
+    for window in distinct.windows(4) {
+        let [first, before, after, last] = [0, 1, 2, 3].map(|i| sites[window[i]].point);
+        let step = after.tau - before.tau;
+        let is_even = |one: Point, next: Point| {
+            one.phase == next.phase && ((next.tau - one.tau) - step).abs() <= 1e-6 * step.abs()
+        };
+        if !(step > 0.0 && is_even(first, before) && is_even(before, after) && is_even(after, last)) {
+            continue;
+        }
+        for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
+            if bound == 0.0 || !bound.is_finite() {
+                continue;
+            }
+            let above = [0, 1, 2, 3].map(|i| sign * (values[window[i]] - bound));
+            for at in dips(above, WORTH * bound.abs()).into_iter().flatten() {
+                let distances = (0..=HALVINGS).map(|k| 0.25 * 0.5_f64.powi(k)).flat_map(|d| [-d, d]);
+                let places = std::iter::once(0.0).chain(distances).map(|distance| at + distance);
+                let within = places.filter(|at| (0.0..=1.0).contains(at));
+                let site = |at: f64| Site {
+                    point: Point { tau: before.tau + at * step, ..before },
+                    ..sites[window[1]].clone()
+                };
+                found.extend(within.map(site));
+            }
+        }
+    }
+}
+
+/// Where values between the second and the third of four equidistant points that are all above 0 may be below 0 by more than
+/// `worth`, in steps from the second.
+fn dips([first, before, after, last]: [f64; 4], worth: f64) -> [Option<f64>; 3] {
+    let (fall, rise) = (before - first, last - after);
+    let meet = (before - after + rise) / (rise - fall);
+    let depth = before + fall * meet;
+    let is_dip = before >= 0.0 && after >= 0.0 && fall < 0.0 && rise > 0.0 && (0.0..=1.0).contains(&meet);
+    if !(is_dip && depth < -worth) {
+        return [None; 3];
+    }
+    let within = |at: f64| (0.0..=1.0).contains(&at).then_some(at);
+    let vertex = |a: f64, b: f64, c: f64| -0.5 * (c - a) / (a - 2.0 * b + c);
+    [Some(meet), within(vertex(first, before, after)), within(1.0 + vertex(before, after, last))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::dips;
+
+    #[test]
+    fn corners_and_parabolas_are_found_from_points_around_them() {
+        // |x - 0.3| and (x - 0.3)^2, less a hundredth, at -1, 0, 1, 2.
+        let corner = [-1.0, 0.0, 1.0, 2.0].map(|x: f64| (x - 0.3).abs() - 0.01);
+        assert!((dips(corner, 0.0)[0].expect("it is met") - 0.3).abs() < 1e-12);
+        let parabola = [-1.0, 0.0, 1.0, 2.0].map(|x: f64| (x - 0.3) * (x - 0.3) - 0.01);
+        for vertex in &dips(parabola, 0.0)[1..] {
+            assert!((vertex.expect("it is within") - 0.3).abs() < 1e-12);
+        }
+        assert_eq!(dips([4.0, 3.0, 3.0, 4.0], 0.0), [None; 3], "nothing is near");
+        assert_eq!(dips([1.0, 2.0, 3.0, 4.0], 0.0), [None; 3], "it does not fall");
+    }
+}
