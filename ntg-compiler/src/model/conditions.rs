@@ -309,9 +309,14 @@ impl<'a> Elaborator<'a> {
                 None => candidates.push(&branch.value),
             }
         }
+        let is_open = !candidates.is_empty();
         candidates.extend(last.take());
         for expr in candidates {
-            let shape = self.shape(cx, expr)?;
+            let around = self.may_not_be_chosen;
+            self.may_not_be_chosen |= is_open;
+            let shape = self.shape(cx, expr);
+            self.may_not_be_chosen = around;
+            let shape = shape?;
             let Some(both) = joined.joined(&shape) else {
                 let help = match std::mem::take(&mut self.recurs) {
                     true => "a family that needs its own members states their size: `let w[i in 1 .. n, 3] = ...`",

@@ -312,6 +312,9 @@ impl<'a> Elaborator<'a> {
         if self.unknown_indices > 0 && form.terms.iter().any(|(index, _)| unknown(index)) {
             return true;
         }
+        if self.may_not_be_chosen {
+            return true; // The value of the branch that is chosen is looked at for itself.
+        }
         let Some((least, most)) = extremes(form, &cx.loops) else { return true };
         let (first, last) = ends;
         let outside = if least < first { least } else { most };

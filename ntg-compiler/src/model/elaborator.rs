@@ -188,6 +188,8 @@ pub(super) struct Elaborator<'a> {
     pub(super) shapes_open: Vec<usize>,
     pub(super) recurs: bool,
     pub(super) unknown_indices: u32,
+    /// Whether shapes of branches are looked for that may not be chosen for all members: their indices may be outside.
+    pub(super) may_not_be_chosen: bool,
     /// The sums of squares of which nodes are the roots.
     pub(super) squares: Map<NodeId, NodeId>, // Looked up, never iterated.
     /// An index that something settled must know.
@@ -283,6 +285,7 @@ impl<'a> Elaborator<'a> {
             shapes_open: Vec::new(),
             recurs: false,
             unknown_indices: 0,
+            may_not_be_chosen: false,
             squares: Map::default(),
             opened: None,
             kinds: Kinds::default(),

@@ -124,10 +124,13 @@ impl<'a> Elaborator<'a> {
             Some(before) => format!("two phases follow `{}`", self.phase_name(before)),
             None => "two phases begin at the start".to_owned(),
         };
+        // What follows a family follows its last member.
+        let family = self.phases[first].item.and_then(|item| item.family.as_ref());
+        let last = family.map_or(String::new(), |family| format!("[{}]", self.text(family.last.span)));
         let finding = Diagnostic::new(Code::PhaseFork, self.phases[second].span, message)
             .label(self.phases[second].span, format!("`{b}` does"))
             .label(self.phases[first].span, format!("and so does `{a}`"))
-            .help(format!("write `phase {b} after {a}`, or start another agent at that event"));
+            .help(format!("write `phase {b} after {a}{last}`, or start another agent at that event"));
         self.report(finding);
     }
 

@@ -80,7 +80,7 @@ pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span
         if may_fail(dag, dag.node(*id)) {
             let probe = match divisor(dag, *id) {
                 Some(divisor) => inverse(dag, divisor),
-                None => *id,
+                None => overflow(dag, *id).unwrap_or(*id),
             };
             nodes.extend(guards.around(dag, *id, probe));
             spans.resize(nodes.len(), origin[id]);
@@ -106,6 +106,20 @@ pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span
 fn inverse(dag: &mut Dag, of: NodeId) -> NodeId {
     let one = dag.constant(1.0);
     dag.div(one, of)
+}
+
+/// What is NaN where a function without poles overflows, and between 1/2 and 1 elsewhere: the top of a bell is far above its
+/// feet, and nothing is singular there.
+fn overflow(dag: &mut Dag, id: NodeId) -> Option<NodeId> {
+    let one = dag.constant(1.0);
+    let least_one = match *dag.node(id) {
+        Node::Unary(Unary::Exp, _) => dag.add(one, id),
+        Node::Unary(Unary::Cosh, _) => id,
+        Node::Unary(Unary::Sinh, a) => dag.unary(Unary::Cosh, a),
+        _ => return None,
+    };
+    let more = dag.add(one, least_one);
+    Some(dag.div(least_one, more))
 }
 
 /// What an operation divides by.

@@ -386,3 +386,51 @@ fn ends_of_functions_of_time_are_written_as_the_helps_say() {
     let text = format!("{MOVING}\n    let d = a / 2;\n    let b = d2 / 3;");
     assert!(!told(&text).contains("der("), "{}", told(&text));
 }
+
+#[test]
+fn a_size_of_zero_is_told_once_where_it_is_declared() {
+    for declaration in ["state z[0] [m];", "output z[0] [m]: spline(order = 5, intervals = 4);", "param z[0] = 1;"] {
+        let told = told(&format!("{MOVING}\n    {declaration}\n    let w = z;"));
+        let column = declaration.find('0').expect("a size") + 5;
+        let help = "a vector is declared with how many elements it has, `[3]`, which are counted from 1; one number is \
+                    declared without a size";
+        says(&told, "error[E028]: a size of 0: there are no elements", &format!("spec.ntg:5:{column}"), help);
+        assert_eq!(errors(&told), 1, "{told}");
+    }
+}
+
+#[test]
+fn points_of_a_route_that_are_wrong_in_one_way_are_one_mistake() {
+    let of = |points: &str| {
+        told(&format!(
+            "{MOVING}\n    output y [m]: spline(order = 5, intervals = 4);\n    guess {{ (x, y) through {points} [m]; }}"
+        ))
+    };
+    let help = "give each point one coordinate for each output";
+    let told = of("0, 1");
+    says(&told, "error[E017]: this point has one coordinate, the route has 2 outputs", "spec.ntg:6:28", help);
+    assert_eq!(errors(&told), 1, "{told}");
+    assert_eq!(errors(&of("0, (1, 2, 3), 4, (1, 2), (4, 5, 6)")), 2);
+}
+
+#[test]
+fn the_help_of_a_fork_names_the_last_member_of_a_family() {
+    let of = |first: &str| {
+        let phases = format!(
+            "output x [m]: spline(order = 5, intervals = 4);\n phase {first} {{ duration = 1 [s]; }}\n \
+             phase c after q {{ duration = 1 [s]; }}\n phase q {{ duration = 1 [s]; }}"
+        );
+        told(&format!("const n = 3;\n {phases}\n minimize integral(der(x, 2)^2);"))
+    };
+    let family = of("p[i in 1 .. n] after p[i - 1]");
+    assert!(family.contains("write `phase q after p[n]`, or start another agent"), "{family}");
+    assert!(
+        !told(
+            "const n = 3; output x [m]: spline(order = 5, intervals = 4); phase p[i in 1 .. n] after p[i - 1] { \
+        duration = 1 [s]; } phase q after p[n] { duration = 1 [s]; } minimize integral(der(x, 2)^2);"
+        )
+        .contains("error")
+    );
+    let single = of("p");
+    assert!(single.contains("write `phase q after p`, or start another agent"), "{single}");
+}

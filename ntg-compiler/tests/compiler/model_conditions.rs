@@ -77,6 +77,10 @@ fn a_member_of_phases_or_agents_is_held_against_the_branch_that_it_takes() {
         ))
     };
     assert_eq!(of("if i == 1 { 0 } else { h[i - 1] }"), "");
+    assert_eq!(of("if i == 1 { 0 } else { final(leg[i - 1], z) }"), "");
+    assert_eq!(of("if i == 1 { 0 } else { if i <= 2 { 1 } else { final(leg[i - 2], z) } }"), "");
+    let told = of("if i == 1 { 0 } else { final(leg[i - 2], z) }");
+    assert!(told.contains("error[E028]: `i - 2`") && told.contains("is outside the indices of `leg`"), "{told}");
     let told = of("if i <= 2 { 0 } else { h[i + 1] }");
     assert!(told.contains("error[E028]: `i + 1` is outside the indices of `h`"), "{told}");
 }

@@ -68,8 +68,15 @@ impl Build {
             lists.into_iter().map(|list| Point { coordinates: list.elements, span: list.span }).collect();
         // One output may be a vector, whose elements are then the coordinates.
         let several = outputs.len() > 1;
-        for point in points.iter().filter(|point| several && point.coordinates.len() != outputs.len()) {
+        let is_wrong = |point: &&Point| several && point.coordinates.len() != outputs.len();
+        // Points of one kind of wrong are one mistake.
+        let mut told = vec![];
+        for point in points.iter().filter(is_wrong) {
             let (have, want) = (point.coordinates.len(), outputs.len());
+            if told.contains(&have) {
+                continue;
+            }
+            told.push(have);
             let message =
                 format!("this point has {}, the route has {}", plural(have, "coordinate"), plural(want, "output"));
             self.report(Code::Misplaced, point.span, message, "give each point one coordinate for each output");

@@ -31,6 +31,11 @@ impl Build {
                 self.report(Code::Misplaced, index.span, message, help);
             }
             sized |= axis.index.is_none();
+            if axis.first.is_none() && matches!(&axis.last.kind, ExprKind::Number(size) if size.value == 0.0) {
+                let help = "a vector is declared with how many elements it has, `[3]`, which are counted from 1; \
+                            one number is declared without a size";
+                self.report(Code::IndexOutside, axis.span, "a size of 0: there are no elements", help);
+            }
         }
         Shape { axes, span }
     }
