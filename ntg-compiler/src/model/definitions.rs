@@ -213,6 +213,9 @@ impl<'a> Elaborator<'a> {
     /// Tells of a member that needs itself.
     fn member_cycle(&mut self, definition: usize, place: &[Form], span: Span) -> Value {
         let words = |this: &Self, (definition, place): &(usize, Vec<Form>)| {
+            if place.iter().any(|form| form.as_number().is_none()) {
+                return this.text(span); // Every member does: it is named as it is written.
+            }
             let indices: Vec<String> = place.iter().map(|form| form.constant.to_string()).collect();
             format!("{}[{}]", this.definitions[*definition].name.text, indices.join(", "))
         };

@@ -204,6 +204,10 @@ impl<'a> Elaborator<'a> {
             _ if matches!(name, "len" | "size" | "numel" | "eachindex") => {
                 finding.help("how many elements there are is a constant: `const n = 3;`, then `r[n]` and `1 .. n`")
             }
+            _ if matches!(name, "delay" | "lag" | "transportDelay") => finding.help(
+                "a delay is not in the language; a chain of states approximates it: \
+                 `der(z1) == 2 * (x - z1) / d`, `der(z2) == 2 * (z1 - z2) / d`, ...",
+            ),
             (Some(right), _) => finding.help(format!("write `{right}`")),
             (None, Some(near)) if !matches!(name, "inv" | "det") => finding.help(format!("did you mean `{near}`?")),
             (None, _) if matches!(name, "inv" | "inverse" | "det" | "solve") => {

@@ -57,11 +57,14 @@ impl<'a> Elaborator<'a> {
                 };
                 let outer = Context { lexical: scope, ..outer };
                 let stretches = self.own_stretches(&outer, agent, phase);
-                let ends = [from, to].map(|end| end.as_ref().map(|time| self.end_of_part(&outer, time, &stretches)));
-                let [from, to] = match ends {
-                    [Some(None), _] | [_, Some(None)] => return,
-                    ends => ends.map(Option::flatten),
-                };
+                let mut ends = [None; 2];
+                for (end, time) in ends.iter_mut().zip([from, to]) {
+                    let Some(time) = time else { continue };
+                    // What is wrong with the first end is wrong with the other.
+                    let Some(place) = self.end_of_part(&outer, time, &stretches) else { return };
+                    *end = Some(place);
+                }
+                let [from, to] = ends;
                 let from = from.unwrap_or((0, Instant::START));
                 let to = to.unwrap_or((stretches.len().saturating_sub(1), Instant::END));
                 if from >= to {

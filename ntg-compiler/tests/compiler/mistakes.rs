@@ -5,6 +5,7 @@
 
 use std::fmt::Write as _;
 
+use crate::mistakes_words::WORDS;
 use crate::model_support::Files;
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
 use ntg_compiler::source::Source;
@@ -481,7 +482,13 @@ const MISTAKES: &[(&str, &[(&str, &str)])] = &[
 ];
 
 fn files() -> Files {
-    Files(vec![("a.ntg", "use \"b.ntg\"; const k = 1;"), ("b.ntg", "use \"a.ntg\"; const l = 1;")])
+    let two = ("two.csv", "1, 2\n3, 4\n5, 6\n");
+    Files(vec![two, ("a.ntg", "use \"b.ntg\"; const k = 1;"), ("b.ntg", "use \"a.ntg\"; const l = 1;")])
+}
+
+/// The sections of the page.
+fn sections() -> impl Iterator<Item = &'static (&'static str, &'static [(&'static str, &'static str)])> {
+    MISTAKES.iter().chain([&WORDS])
 }
 
 fn found(spec: &str) -> Vec<Diagnostic> {
@@ -493,9 +500,10 @@ fn found(spec: &str) -> Vec<Diagnostic> {
 
 /// The problem with a mistake in it.
 fn with(written: &str) -> String {
-    match written.starts_with("dynamics") {
-        true => GOOD.replace(EQUATIONS, written).replace("HERE", ""),
-        false => GOOD.replace("HERE", written),
+    match written.split([' ', '{']).next() {
+        Some("dynamics") => GOOD.replace(EQUATIONS, written).replace("HERE", ""),
+        Some("use") => format!("{written}\n{}", GOOD.replace("HERE", "")),
+        _ => GOOD.replace("HERE", written),
     }
 }
 
@@ -510,7 +518,7 @@ fn page() -> String {
          This page is made by a test, so the words are those of the compiler.\n\
          [coming-from.md](coming-from.md) puts whole problems side by side; [errors.md](errors.md) explains the codes.\n",
     );
-    for (title, mistakes) in MISTAKES {
+    for (title, mistakes) in sections() {
         let _ = write!(page, "\n## {title}\n\n| written | said | help |\n|---|---|---|\n");
         for (written, _) in *mistakes {
             let Some(finding) = first(written) else { continue };
@@ -532,7 +540,7 @@ fn the_problem_around_is_right() {
 #[test]
 fn every_mistake_has_the_code_of_the_table_and_a_place() {
     let mut wrong = String::new();
-    let mistakes: Vec<&(&str, &str)> = MISTAKES.iter().flat_map(|(_, mistakes)| *mistakes).collect();
+    let mistakes: Vec<&(&str, &str)> = sections().flat_map(|(_, mistakes)| *mistakes).collect();
     assert!(mistakes.len() >= 150);
     for (written, code) in mistakes {
         let Some(finding) = first(written) else {
@@ -555,7 +563,7 @@ const SEVERAL: &[&str] = &["let a = dx/dt;", "let a = d/dt(x);"];
 #[test]
 fn one_mistake_is_told_once() {
     let mut several = String::new();
-    for (written, _) in MISTAKES.iter().flat_map(|(_, mistakes)| *mistakes) {
+    for (written, _) in sections().flat_map(|(_, mistakes)| *mistakes) {
         let found = found(&with(written));
         let errors: Vec<&Diagnostic> = found.iter().filter(|finding| finding.severity == Severity::Error).collect();
         if (errors.len() > 1) != SEVERAL.contains(written) {

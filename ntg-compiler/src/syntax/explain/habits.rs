@@ -52,9 +52,20 @@ impl Here<'_> {
             ("=" | "==" | "<=" | ">=" | "(" | "," | "+" | "-" | "*" | "/", "{") if first != "fn" => {
                 "a list stands in parentheses, `(1, 2, 3)`; braces are blocks of statements"
             }
+            _ if is(TokenKind::String, self.token) && matches!(first, "param" | "const") && before == "(" => {
+                "numbers of a file are taken by columns, `param a[n] [m] from \"a.csv\" column 1;`, and `rows(\"a.csv\")` is how \
+                 many rows it has"
+            }
             _ if is(TokenKind::String, self.token) && self.expected.has_expression() => {
                 "a number stands without quotes, its unit in brackets: `1 [kg]`"
             }
+            (_, "*") if first == "use" => {
+                "name what is used, `use std::atmosphere::{density, sound};`, or use the library and write `atmosphere::density(h)`"
+            }
+            ("except", "start" | "begin" | "beginning" | "first" | "start_time") => {
+                "write `trajectory except initial { ... }`"
+            }
+            ("except", _) => "without its last point it is written `trajectory except final { ... }`",
             ("lambda", _) | ("-", ">") => "a function is declared by `fn`: `fn f(x) = x^2;`",
             (_, "for" | "in") if self.is_behind("sum") || self.is_behind("prod") => {
                 "the index comes first: `sum(i in 1 .. 3, r[i])`"

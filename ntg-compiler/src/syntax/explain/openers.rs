@@ -68,6 +68,10 @@ const OPENERS: &[(&[&str], &str)] = &[
     (STARTS, "what holds at the start stands in `initial { }`"),
     (&["during", "between", "while", "when"], super::PART),
     (&["along", "throughout", "always", "everywhere", "path"], "what holds all along stands in `trajectory { }`"),
+    (
+        &["independent", "independent_variable", "abscissa"],
+        "what everything is a function of is written `domain s [m];`",
+    ),
     (&["cyclic", "cycle", "period"], "what ends as it begins is written `periodic x, y;`"),
     (&["soft", "slack"], "what may be missed stands in a block: `trajectory { soft(w): x <= 1; }`"),
     (&["initial_guess", "initialize", "start_values"], "where the search begins stands in `guess { }`"),
