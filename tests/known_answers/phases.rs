@@ -240,3 +240,12 @@ fn a_typed_solution_nests_as_the_spec_does() {
     assert_eq!(solution.multiplier_wait().len(), 1);
     assert_eq!(second.multiplier_far().len(), 2, "one for each member");
 }
+
+#[test]
+fn a_report_tells_when_phases_without_named_durations_are() {
+    let said = cart(3.0, "phase a { duration = 2; }  phase b after a { duration = 3; }").to_string();
+    assert!(said.contains("\n  a: from 0 to 2, for 2\n  b: from 2 to 5, for 3"), "{said}");
+    let said = cart(3.0, "phase leg[i in 1 .. 30] after leg[i - 1] { duration = 0.1; }").to_string();
+    assert!(said.contains("\n  leg[21]: from 2 to 2.1, for 0.1\n  and 9 more"), "{said}");
+    assert!(!cart(3.0, "duration T = 5;").to_string().contains(" from "));
+}

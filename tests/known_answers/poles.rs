@@ -99,3 +99,30 @@ fn what_has_a_value_or_an_integral_where_a_divisor_is_0_is_no_pole() {
         assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{formula}\n{report}");
     }
 }
+
+#[test]
+fn the_top_of_a_bell_is_no_pole() {
+    let of = |width: f64| {
+        format!(
+            "duration T = 1; state x, v; input u in -50 .. 50; minimize integral(u^2);
+            dynamics {{ der(x) == v;  der(v) == u - 100 * exp(-((x - 0.5) / {width})^2); }}
+            initial {{ x == 0;  v == 0; }}
+            final {{ x == 1;  v == 0; }}"
+        )
+    };
+    for width in [0.02, 0.03] {
+        let report = report(&of(width), (3, 5));
+        assert!(report.has_solution() && report.poles.is_empty(), "{width}: {:?}\n{report}", report.poles);
+        assert!(!report.to_string().contains("singular"), "{report}");
+    }
+}
+
+#[test]
+fn what_is_no_number_is_not_told_as_one() {
+    let mut report = report(&uptake(0.3, 6.0), (3, 12));
+    assert!(report.is_solved(), "{report}");
+    report.objective_correction = f64::NAN;
+    let said = report.to_string();
+    assert!(!said.contains("NaN"), "{said}");
+    assert!(said.contains("how far the objective is off is no number: somewhere they have no value"), "{said}");
+}

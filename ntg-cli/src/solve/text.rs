@@ -1,7 +1,6 @@
 //! The solution for people: the report, then a table of outputs and named expressions over time.
 
 use ntg_runtime::problem::Problem;
-use ntg_runtime::solution::Solution;
 use ntg_runtime::status::Status;
 use ntg_runtime::structure::Unit;
 
@@ -10,6 +9,8 @@ use crate::terminal;
 
 /// How many rows of the table are printed at most.
 const MOST_ROWS: usize = 21;
+/// How deep the table of refinement stands.
+const INDENT: usize = 4;
 /// How wide a column is at least.
 const LEAST_WIDTH: usize = 11;
 
@@ -27,7 +28,6 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
     let solution = &solved.report.solution;
     let trajectories = solution.trajectories();
     let signals = solution.signals(problem);
-    lines.extend(phases(solution).iter().map(|line| terminal::folded(line, solved.width)));
     for signal in signals.iter().filter(|s| s.is_constant()) {
         let line = format!("  {} = {}{}", signal.name(), number(signal.at(0.0)), spaced(signal.unit()));
         lines.push(terminal::folded(&line, solved.width));
@@ -57,7 +57,15 @@ pub(super) fn document(solved: &Solved<'_>) -> String {
 fn led(solved: &Solved<'_>) -> String {
     let mut report = solved.report.clone();
     solved.report.advice_beside(solved.explanation).clone_into(&mut report.advice);
-    let text = report.to_string();
+    let mut text = report.to_string();
+    if let Some(refined) = report.refined.as_ref().filter(|_| solved.width.is_some()) {
+        // Folded between words, a table is none.
+        let inner = solved.width.map(|width| width.saturating_sub(INDENT));
+        let rows = terminal::table(&refined.columns(), inner);
+        let rows = rows.iter().map(|row| format!("{:INDENT$}{row}", "").trim_end().to_owned());
+        let table = std::iter::once(refined.headline()).chain(rows).collect::<Vec<_>>().join("\n");
+        text = text.replace(&refined.to_string(), &table);
+    }
     let conflict = solved.explanation.and_then(|explanation| explanation.conflict());
     let headline = conflict.filter(|conflict| conflict.settled).and_then(|conflict| conflict.headline());
     match (headline, &solved.report.status, text.split_once('\n')) {
@@ -66,27 +74,6 @@ fn led(solved: &Solved<'_>) -> String {
         }
         _ => text,
     }
-}
-
-/// When each phase and each agent begins and ends, and how long it lasts; nothing where the whole is all there is.
-fn phases(solution: &Solution) -> Vec<String> {
-    let independent = &solution.structure().independent;
-    let times = solution.event_times();
-    let of = |word: &str, name: &str| {
-        let found = times.iter().find(|(own, _)| *own == format!("{word}({name})"))?;
-        Some(independent.amount(found.1, brief))
-    };
-    let names = times.iter().filter_map(|(name, _)| name.strip_prefix("duration(")?.strip_suffix(')'));
-    let names: Vec<&str> = names.collect();
-    let told = names.iter().take(MOST_ROWS).filter_map(|name| {
-        let (start, end, duration) = (of("start", name)?, of("end", name)?, of("duration", name)?);
-        Some(format!("  {name}: from {start} to {end}, for {duration}"))
-    });
-    let mut lines: Vec<String> = told.collect();
-    if names.len() > MOST_ROWS {
-        lines.push(format!("  and {} more: --format json", names.len() - MOST_ROWS));
-    }
-    lines
 }
 
 fn head(name: &str, unit: &Unit) -> String {
@@ -127,17 +114,6 @@ pub(super) fn number(value: f64) -> String {
     rounded(value, DIGITS)
 }
 
-/// The same without zeros at its end.
-fn brief(value: f64) -> String {
-    let shown = number(value);
-    let zeros = |text: &str| text.trim_end_matches('0').trim_end_matches('.').to_owned();
-    match shown.split_once('e') {
-        Some((mantissa, exponent)) => format!("{}e{exponent}", zeros(mantissa)),
-        None if shown.contains('.') => zeros(&shown),
-        None => shown,
-    }
-}
-
 /// So many significant digits; where they reach behind the point, or nearly, without an exponent.
 fn rounded(value: f64, significant: i32) -> String {
     if value == 0.0 || (1e-3..10_f64.powi(significant)).contains(&value.abs()) {
@@ -162,12 +138,6 @@ mod tests {
         assert_eq!(cells(&[5e6, 5_000_001.5, 5_000_003.0])[1..], ["5000000.0000", "5000001.5000", "5000003.0000"]);
         assert_eq!(cells(&[-2e13, -2e13 + 1e9])[1..], ["-2.00000000e13", "-1.99990000e13"]);
         assert_eq!(cells(&[300.0, 300.002])[1..], ["300.0000000", "300.0020000"]);
-    }
-
-    #[test]
-    fn a_number_in_a_sentence_has_no_zeros_at_its_end() {
-        let shown = [0.0, 0.3, 40.0, 1200.0, 999_999.0, 2e6, 1.5e-7].map(brief);
-        assert_eq!(shown, ["0", "0.3", "40", "1200", "999999", "2e6", "1.5e-7"]);
     }
 
     #[test]

@@ -10,6 +10,14 @@ use std::fmt;
 const NEGLIGIBLE: f64 = 1e-6;
 /// Most lines of constraints that are missed.
 const LISTED: usize = 8;
+/// Most lines of phases and agents.
+const MOST_PHASES: usize = 21;
+/// How wide the labels `objective`, `violation` are, and names among them at least.
+const LEAST_LABEL: usize = 11;
+/// How wide names of terms and of measurements are at least.
+const LEAST_TERM: usize = 24;
+/// Longer names, such as a whole formula, make no column.
+const MOST_NAME: usize = 48;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -24,8 +32,9 @@ impl fmt::Display for Report {
         let (objective, fine) = (digits(self.objective), digits(self.objective_fine));
         writeln!(f, "  objective   {objective}{unit}  (finely integrated: {fine}{unit})")?;
         if self.terms.len() > 1 {
+            let width = width(self.terms.iter().map(|term| term.name.as_str()), LEAST_TERM);
             for term in &self.terms {
-                writeln!(f, "    {:<24} {}{}", term.name, brief(term.value), symbol(&term.unit))?;
+                writeln!(f, "    {:<width$} {}{}", term.name, brief(term.value), symbol(&term.unit))?;
             }
         }
         let steps = match self.history.len() {
@@ -36,6 +45,7 @@ impl fmt::Display for Report {
         let (points, between) = (self.violation.points, self.violation.between);
         if self.resolution().is_some_and(|resolution| resolution != Resolution::Fine)
             && self.objective_correction != 0.0
+            && self.objective_correction.is_finite()
         {
             let correction = self.objective_correction;
             writeln!(
@@ -48,18 +58,20 @@ impl fmt::Display for Report {
             write!(f, "\n{refined}")?;
         }
         let independent = &self.solution.structure().independent;
-        for time in self.solution.event_times().iter().filter(|(name, _)| !name.contains('(')) {
-            write!(f, "\n  {:<11} {}", time.0, independent.amount(time.1, brief))?;
+        let (events, variables) = (self.solution.event_times(), self.solution.variables());
+        let named = || events.iter().filter(|(name, _)| !name.contains('('));
+        let names = named().map(|(name, _)| name.as_str()).chain(variables.iter().map(|own| own.name.as_str()));
+        let width = width(names, LEAST_LABEL);
+        for (name, time) in named() {
+            write!(f, "\n  {name:<width$} {}", independent.amount(*time, brief))?;
         }
         let deviations = self.estimate.as_ref().map_or(&[][..], |estimate| &estimate.deviations);
-        for (k, variable) in self.solution.variables().into_iter().enumerate() {
-            if let Some(deviation) = deviations.get(k) {
-                let (sigma, unit) = (brief(deviation.sigma), symbol(&variable.unit));
-                write!(f, "\n  {:<11} {} +- {sigma}{unit}", variable.name, brief(variable.value))?;
-                continue;
-            }
-            write!(f, "\n  {:<11} {}{}", variable.name, brief(variable.value), symbol(&variable.unit))?;
+        for (k, variable) in variables.into_iter().enumerate() {
+            let deviation = deviations.get(k).map_or(String::new(), |own| format!(" +- {}", brief(own.sigma)));
+            let (name, value, unit) = (&variable.name, brief(variable.value), symbol(&variable.unit));
+            write!(f, "\n  {name:<width$} {value}{deviation}{unit}")?;
         }
+        phases(f, &events, independent)?;
         self.estimate.iter().try_for_each(|estimate| estimated(f, estimate))?;
         // What refinement has to say stands above.
         let is_new = |warning: &&Warning| !warning.place.text.is_empty() || !warning.constraint.is_empty();
@@ -87,15 +99,40 @@ impl fmt::Display for Report {
     }
 }
 
+/// When each phase and each agent begins and ends, and how long it lasts; nothing where the whole is all there is.
+fn phases(f: &mut fmt::Formatter<'_>, events: &[(String, f64)], independent: &Independent) -> fmt::Result {
+    let of = |word: &str, name: &str| {
+        let found = events.iter().find(|(own, _)| *own == format!("{word}({name})"))?;
+        Some(independent.amount(found.1, brief))
+    };
+    let names: Vec<&str> =
+        events.iter().filter_map(|(name, _)| name.strip_prefix("duration(")?.strip_suffix(')')).collect();
+    for name in names.iter().take(MOST_PHASES) {
+        if let (Some(start), Some(end), Some(duration)) = (of("start", name), of("end", name), of("duration", name)) {
+            write!(f, "\n  {name}: from {start} to {end}, for {duration}")?;
+        }
+    }
+    match names.len().saturating_sub(MOST_PHASES) {
+        0 => Ok(()),
+        more => write!(f, "\n  and {more} more"),
+    }
+}
+
+/// How wide a column of names is: as the longest that is not out of all measure, which stick out.
+fn width<'n>(names: impl Iterator<Item = &'n str>, least: usize) -> usize {
+    names.map(|name| name.chars().count()).filter(|length| *length <= MOST_NAME).fold(least, usize::max)
+}
+
 /// How well the measurements are met: all together, then each statement.
 fn estimated(f: &mut fmt::Formatter<'_>, estimate: &Estimate) -> fmt::Result {
     write!(f, "\n  chi^2       {} of {} measured numbers", brief(estimate.chi2), estimate.count)?;
+    let width = width(estimate.measurements.iter().map(|measurement| measurement.name.as_str()), LEAST_TERM);
     for measurement in &estimate.measurements {
         let count = measurement.residuals.len();
         let mean = (measurement.chi2 / count.max(1) as f64).sqrt();
         let worst = measurement.residuals.iter().max_by(|a, b| a.ratio.abs().total_cmp(&b.ratio.abs()));
         let share = 100.0 * measurement.share;
-        write!(f, "\n    {:<24} {share:.0} %, {count} of {} sigma in the mean", measurement.name, brief(mean))?;
+        write!(f, "\n    {:<width$} {share:.0} %, {count} of {} sigma in the mean", measurement.name, brief(mean))?;
         if let Some(worst) = worst.filter(|_| count > 1) {
             let indices: Vec<String> = worst.indices.iter().map(i64::to_string).collect();
             write!(f, ", at most {}", brief(worst.ratio))?;
@@ -134,7 +171,15 @@ fn symbol(unit: &Unit) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::digits;
+    use super::{LEAST_LABEL, digits, width};
+
+    #[test]
+    fn columns_are_as_wide_as_their_longest_name_but_formulas() {
+        let formula = "minimize 1e-6 [s^6] * sum(i in 1 .. n, integral(der(q[i], 3)^2))";
+        assert_eq!(width(["T", formula].into_iter(), LEAST_LABEL), LEAST_LABEL);
+        assert_eq!(width(["T", "radius_of_the_crater"].into_iter(), LEAST_LABEL), 20);
+        assert_eq!(width(["größe_der_störung"].into_iter(), LEAST_LABEL), 17);
+    }
 
     #[test]
     fn small_numbers_keep_their_digits_and_zero_has_no_sign() {

@@ -93,19 +93,69 @@ impl fmt::Display for RefineStatus {
     }
 }
 
+impl Refined {
+    /// What the rounds are told by: columns of the same length, each with its head first.
+    pub fn columns(&self) -> Vec<Vec<String>> {
+        type Cell = fn(usize, &Round) -> String;
+        let columns: [(&str, Cell); 8] = [
+            ("round", |number, _| (number + 1).to_string()),
+            ("intervals", |_, round| round.intervals.to_string()),
+            ("variables", |_, round| round.variables.to_string()),
+            ("objective", |_, round| format!("{:.10}", round.objective)),
+            ("quadrature", |_, round| format!("{:.1e}", round.quadrature)),
+            ("change", |_, round| if round.change.is_nan() { String::new() } else { format!("{:.1e}", round.change) }),
+            ("violation", |_, round| format!("{:.1e}", round.violation)),
+            ("iterations", |_, round| round.iterations.to_string()),
+        ];
+        let cells = |of: Cell| self.rounds.iter().enumerate().map(move |(number, round)| of(number, round));
+        columns.into_iter().map(|(head, of)| std::iter::once(head.to_owned()).chain(cells(of)).collect()).collect()
+    }
+
+    /// What came of it, in one line.
+    pub fn headline(&self) -> String {
+        format!("  refinement to {:.0e}: {}", self.tolerance, self.status)
+    }
+}
+
 impl fmt::Display for Refined {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "  refinement to {:.0e}: {}", self.tolerance, self.status)?;
-        let heads = ["round", "intervals", "variables", "objective", "quadrature", "change", "violation", "iterations"];
-        let [round, intervals, variables, objective, quadrature, change, violation, iterations] = heads;
-        write!(f, "    {round:>5} {intervals:>9} {variables:>9} {objective:>18} ")?;
-        write!(f, "{quadrature:>10} {change:>9} {violation:>9} {iterations:>10}")?;
-        for (number, round) in self.rounds.iter().enumerate() {
-            let Round { intervals, variables, objective, iterations, .. } = round;
-            let change = if round.change.is_nan() { String::new() } else { format!("{:.1e}", round.change) };
-            write!(f, "\n    {:>5} {intervals:>9} {variables:>9} {objective:>18.10} ", number + 1)?;
-            write!(f, "{:>10.1e} {change:>9} {:>9.1e} {iterations:>10}", round.quadrature, round.violation)?;
+        f.write_str(&self.headline())?;
+        let columns = self.columns();
+        let width = |column: &[String]| column.iter().map(String::len).max().unwrap_or(0);
+        for row in 0..=self.rounds.len() {
+            f.write_str("\n   ")?;
+            columns.iter().try_for_each(|column| write!(f, " {:>w$}", column[row], w = width(column)))?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{RefineStatus, Refined, Round};
+
+    #[test]
+    fn rounds_stand_in_columns_as_wide_as_what_is_in_them() {
+        let round = |variables, objective: f64, change| Round {
+            intervals: 8,
+            variables,
+            objective,
+            fine: objective,
+            quadrature: 1e-4,
+            change,
+            violation: 2e-9,
+            iterations: 7,
+            seconds: 0.0,
+        };
+        let rounds = vec![round(75, 1.5, f64::NAN), round(1500, -1234.5, 1e-3)];
+        let refined = Refined { rounds, status: RefineStatus::Met, tolerance: 1e-6 };
+        let expected = [
+            "  refinement to 1e-6: the tolerance is met",
+            "    round intervals variables        objective quadrature change violation iterations",
+            "        1         8        75     1.5000000000     1.0e-4           2.0e-9          7",
+            "        2         8      1500 -1234.5000000000     1.0e-4 1.0e-3    2.0e-9          7",
+        ];
+        assert_eq!(refined.to_string(), expected.join("\n"));
+        assert!(refined.columns().iter().all(|column| column.len() == 3));
     }
 }

@@ -116,13 +116,18 @@ impl Report {
         let part = self.correction_part();
         let is_off = self.meets_points() && part > self.between_tolerance;
         let side = if self.objective_correction < 0.0 { "large" } else { "small" };
+        let missed = format!(
+            "the objective is about {} too {side}, {} % of the larger: the points are too few for them",
+            brief(self.objective_correction.abs()),
+            brief((1e3 * part).round() / 10.0)
+        );
+        // Equations without a value somewhere are missed by no number.
+        let missed = match self.objective_correction.is_finite() {
+            true => missed,
+            false => "how far the objective is off is no number: somewhere they have no value".to_owned(),
+        };
         is_off.then(|| Warning {
-            message: format!(
-                "by what equations miss between the points, the objective is about {} too {side}, {} % of the larger: the \
-                 points are too few for them",
-                brief(self.objective_correction.abs()),
-                brief((1e3 * part).round() / 10.0)
-            ),
+            message: format!("by what equations miss between the points, {missed}"),
             place: self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone()),
             constraint: String::new(),
             time: None,
