@@ -12,7 +12,7 @@ mod track;
 pub use measured::residuals;
 pub use track::{Space, side, space, track, tracks};
 
-use crate::run::{Constraint, Curve, Run, Series};
+use crate::run::{Constraint, Curve, Member, Run, Series, bounding};
 
 /// One pair of axes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -165,6 +165,7 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
                 panels.push(Panel { title, x, y, marks: marks(runs), ..Panel::default() });
                 panels.len() - 1
             });
+            add_limits(&mut panels[known].limits, own_limits(run, path, series));
             let lines = &mut panels[known].lines;
             curves.push((known, lines.len(), index, path));
             lines.push(line);
@@ -242,7 +243,7 @@ pub fn constraints(runs: &Runs<'_>) -> Vec<Panel> {
             None => line(label(runs, run, &member.name), run, &member.t, &member.value),
         });
         let lines: Vec<Line> = lines.collect();
-        (with_unit(ordinate(&constraint.name), &constraint.unit), lines, limits(constraint))
+        (with_unit(ordinate(&constraint.name), &constraint.unit), lines, limits(constraint.members.iter()))
     })
 }
 
@@ -297,27 +298,25 @@ fn over_constraints(runs: &Runs<'_>, show: impl Fn(&Constraint, &Runs<'_>, usize
             panel.least = panel.least.max(least_miss(constraint));
             // A range with a formula as a bound is two constraints about one quantity.
             for line in lines.into_iter().filter(|line| line.points.len() > 1) {
-                match panel.lines.iter_mut().find(|own| are_one(own, &line)) {
-                    Some(own) if own.name.is_empty() => own.name = line.name,
+                // Of several runs, what has no name has that of its run.
+                let nameless = label(runs, index, "");
+                match panel.lines.iter_mut().find(|own| are_one(own, &line, &nameless)) {
+                    Some(own) if own.name == nameless => own.name = line.name,
                     Some(_) => {}
                     None => panel.lines.push(line),
                 }
             }
-            for limit in limits {
-                if !panel.limits.contains(&limit) {
-                    panel.limits.push(limit);
-                }
-            }
+            add_limits(&mut panel.limits, limits);
         }
     }
     panels
 }
 
-/// Whether two lines of one run are the same, one of them perhaps without a name.
-fn are_one(own: &Line, other: &Line) -> bool {
+/// Whether two lines of one run are the same, one of them perhaps with no name but `nameless`.
+fn are_one(own: &Line, other: &Line, nameless: &str) -> bool {
     /// What two ways to compute a value leave between them, relative to its size.
     const ROUNDED: f64 = 1e-6;
-    let named = own.name == other.name || own.name.is_empty() || other.name.is_empty();
+    let named = own.name == other.name || own.name == nameless || other.name == nameless;
     let size = own.points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
     let mut pairs = own.points.iter().zip(&other.points);
     named
@@ -330,10 +329,32 @@ fn line(name: String, run: usize, t: &[f64], value: &[f64]) -> Line {
     Line { name, run, points: t.iter().copied().zip(value.iter().copied()).collect(), ..Line::default() }
 }
 
-/// The bounds of a constraint, each once over the times at which it holds.
-fn limits(constraint: &Constraint) -> Vec<Limit> {
+/// Adds limits that are not yet there.
+fn add_limits(all: &mut Vec<Limit>, limits: Vec<Limit>) {
+    for limit in limits {
+        if !all.contains(&limit) {
+            all.push(limit);
+        }
+    }
+}
+
+/// The limits of a quantity: numbers, and curves where they are functions of time.
+fn own_limits(run: &Run, path: &str, series: &Series) -> Vec<Limit> {
+    // Limits hold for an angle as it is, not as it goes on beyond a turn.
+    if unwrapped(series) != series.value {
+        return vec![];
+    }
+    let by_number = bounding::members(run, path, series).into_iter();
+    let by_number = by_number.map(|(index, number, _)| &run.constraints[index].members[number]);
+    let members = run.constraints.iter().flat_map(|constraint| &constraint.members);
+    let by_curve = members.filter(|member| member.curve.as_ref().is_some_and(|curve| curve.of == path));
+    limits(by_number.chain(by_curve))
+}
+
+/// The bounds of members of constraints, each once over the times at which it holds.
+fn limits<'m>(members: impl Iterator<Item = &'m Member>) -> Vec<Limit> {
     let mut found: Vec<Limit> = vec![];
-    for member in &constraint.members {
+    for member in members {
         let fold = |(low, high): (f64, f64), t: &f64| (low.min(*t), high.max(*t));
         let over = member.t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), fold);
         if over.0 > over.1 {
@@ -448,9 +469,42 @@ mod tests {
             assert_eq!(panels.len(), 1);
             let names: Vec<&str> = panels[0].lines.iter().map(|line| line.name.as_str()).collect();
             assert_eq!(names, ["v"]);
+            let two = constraints(&[("a".to_owned(), &run), ("b".to_owned(), &run)]);
+            let names: Vec<&str> = two[0].lines.iter().map(|line| line.name.as_str()).collect();
+            assert_eq!(names, ["v (a)", "v (b)"]);
             let lower = panels[0].limits.iter().find(|limit| limit.name == "lower").expect("a limit");
             assert_eq!(lower.curve, [(0.0, -1.0), (1.0, -2.0)]);
         }
+    }
+
+    #[test]
+    fn a_chart_of_a_quantity_shows_its_limits_and_no_others() {
+        let t: Vec<f64> = (0..11).map(f64::from).collect();
+        let of = |slope: f64| t.iter().map(|t| slope * t).collect::<Vec<f64>>();
+        let series = |slope: f64| Series { unit: "m".to_owned(), t: t.clone(), value: of(slope), ..Series::default() };
+        let constraint = |text: &str, slope: f64, lower: Option<f64>, upper: Option<f64>| Constraint {
+            text: text.to_owned(),
+            block: "trajectory".to_owned(),
+            unit: "m".to_owned(),
+            members: vec![Member { lower, upper, t: t.clone(), value: of(slope), ..Member::default() }],
+            ..Constraint::default()
+        };
+        let mut below = constraint("x <= y + 3 [m]", -1.0, None, Some(0.0));
+        let curve = Curve { of: "x".to_owned(), upper: true, limit: of(2.0), value: of(1.0) };
+        below.members[0].curve = Some(curve);
+        let mut run =
+            Run { constraints: vec![constraint("x in -5 .. 20 [m]", 1.0, Some(-5.0), Some(20.0))], ..Run::default() };
+        run.constraints.extend([below, constraint("x == y", 1.0, Some(0.0), Some(0.0))]);
+        run.constraints.push(constraint("x + y <= 7 [m]", 3.0, None, Some(7.0)));
+        run.outputs.extend([("x".to_owned(), series(1.0)), ("y".to_owned(), series(2.0))]);
+        let panels = outputs(&[("a".to_owned(), &run)]);
+        let told = |panel: &Panel| -> Vec<(f64, String, usize)> {
+            panel.limits.iter().map(|limit| (limit.at, limit.name.clone(), limit.curve.len())).collect()
+        };
+        let upper = || "upper".to_owned();
+        assert_eq!(told(&panels[0]), [(-5.0, "lower".to_owned(), 0), (20.0, upper(), 0), (0.0, upper(), 11)]);
+        assert_eq!(panels[0].limits[0].over, (0.0, 10.0));
+        assert_eq!(told(&panels[1]), []);
     }
 
     #[test]

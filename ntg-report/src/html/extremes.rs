@@ -9,7 +9,7 @@ use limits::Limit;
 use super::spec::State;
 use super::tables::{number, with_unit};
 use crate::figure::{Runs, unwrapped};
-use crate::run::{Constraint, Member, Run, Series, sides};
+use crate::run::{Constraint, Member, Run, Series, bounding, sides};
 
 /// One quantity of one run.
 struct Extremes {
@@ -191,7 +191,7 @@ fn during(run: &Run, limits: &[Limit], path: &str, t: f64) -> bool {
 fn own(run: &Run, places: &[(usize, usize)]) -> Option<Extremes> {
     let constraint = &run.constraints[places.first()?.0];
     let member = |place: &(usize, usize)| &constraint.members[place.1];
-    let limits = places.iter().filter(|place| limits::is_limit(constraint, member(place)));
+    let limits = places.iter().filter(|place| bounding::is_limit(constraint, member(place)));
     let nearest = limits.map(|place| Limit::new(run, *place, &[])).min_by(|a, b| a.room.total_cmp(&b.room))?;
     let member = member(&nearest.place);
     let points = limits::points(constraint, member);

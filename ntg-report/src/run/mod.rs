@@ -3,6 +3,7 @@
 //! The fields are those of docs/solution-format.md. What an older or hand-written file does not
 //! say is empty. Numbers that are not finite are `null` in the file and NaN here.
 
+pub(crate) mod bounding;
 mod estimate;
 mod layout;
 mod measured;

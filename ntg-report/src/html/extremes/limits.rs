@@ -1,17 +1,10 @@
-//! Which members of constraints are limits of which quantity, and how near it comes to each.
+//! How near a quantity comes to each of its limits.
 //!
-//! Takes a run and the path of a quantity. A member belongs to it by name, that is by agent, name and index. Its values
-//! only tell a limit of the quantity from that of a difference: `v <= v_max` may bound `v` or `v - v_max`.
+//! Takes a run and the path of a quantity; which members of constraints are its limits says `run/bounding.rs`.
 
-use crate::figure::base;
 use crate::html::spec::{State, VIOLATED, state};
+use crate::run::bounding::{self, ALIKE, ROUNDED, at, size};
 use crate::run::{Constraint, Member, Run, Series, sides};
-
-/// Mean difference of two curves, relative to their range, up to which they are one curve: samples of one that jumps
-/// are joined by straight lines.
-const ALIKE: f64 = 0.02;
-/// What rounding may leave of equal values, relative to their size.
-const ROUNDED: f64 = 1e-6;
 
 /// A member of a constraint and how near its values come to its bounds.
 pub(super) struct Limit {
@@ -76,12 +69,6 @@ pub(super) fn points(constraint: &Constraint, member: &Member) -> Vec<(f64, f64)
     found
 }
 
-/// The range of finite values.
-fn size(values: &[f64]) -> f64 {
-    let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().filter(|v| v.is_finite()).reduce(pick);
-    fold(f64::max).zip(fold(f64::min)).map_or(f64::NAN, |(high, low)| high - low)
-}
-
 /// How one member ended; the state of its constraint is that of the worst of them.
 fn member_state(constraint: &Constraint, (member, room): (&Member, f64), tolerance: f64) -> State {
     let whole = state(constraint, tolerance);
@@ -98,45 +85,15 @@ fn member_state(constraint: &Constraint, (member, room): (&Member, f64), toleran
     }
 }
 
-/// An inequality along a trajectory.
-pub(super) fn is_limit(constraint: &Constraint, member: &Member) -> bool {
-    constraint.block == "trajectory" && member.t.len() > 1 && member.lower != member.upper
-}
-
 /// All limits of a quantity, in the order of the spec.
 pub(super) fn of(run: &Run, path: &str, series: &Series) -> Vec<Limit> {
-    let mut found = vec![];
-    for (index, constraint) in run.constraints.iter().enumerate().filter(|(_, c)| c.unit == series.unit) {
-        let Some(bracket) = sides::bracket(&constraint.text, base(path)) else { continue };
-        for (number, member) in constraint.members.iter().enumerate() {
-            let Some(rest) = sides::phase_of(path, bracket, (&member.name, constraint.members.len())) else { continue };
-            if is_limit(constraint, member) && is_alike(series, member) {
-                let phase = sides::split(&member.name).0;
-                let mut limit = Limit::new(run, (index, number), &during(run, phase, (series, member)));
-                limit.phase = rest.to_owned();
-                found.push(limit);
-            }
-        }
-    }
-    found
-}
-
-/// Whether a member has the values of the quantity at its times.
-fn is_alike(series: &Series, member: &Member) -> bool {
-    let pairs = member.t.iter().zip(&member.value).map(|(t, value)| (at(series, *t), *value));
-    let pairs: Vec<(f64, f64)> = pairs.filter(|(own, value)| own.is_finite() && value.is_finite()).collect();
-    let most = series.value.iter().copied().filter(|value| value.is_finite()).map(f64::abs).fold(0.0, f64::max);
-    let apart = pairs.iter().map(|(own, value)| (own - value).abs()).sum::<f64>() / pairs.len() as f64;
-    apart <= ALIKE * size(&series.value) + ROUNDED * most
-}
-
-/// The value of a quantity between its samples.
-fn at(series: &Series, t: f64) -> f64 {
-    let next = series.t.partition_point(|time| *time < t).clamp(1, series.t.len().max(2) - 1);
-    let of = |values: &[f64], k: usize| values.get(k).copied().unwrap_or(f64::NAN);
-    let (before, after) = (of(&series.t, next - 1), of(&series.t, next));
-    let share = if after > before { ((t - before) / (after - before)).clamp(0.0, 1.0) } else { 0.0 };
-    (1.0 - share) * of(&series.value, next - 1) + share * of(&series.value, next)
+    let members = bounding::members(run, path, series).into_iter();
+    let limits = members.map(|(index, number, rest)| {
+        let member = &run.constraints[index].members[number];
+        let phase = sides::split(&member.name).0;
+        Limit { phase: rest, ..Limit::new(run, (index, number), &during(run, phase, (series, member))) }
+    });
+    limits.collect()
 }
 
 /// The times between which a member holds where it has no times in the rest of its phase, which is longer than what lies
