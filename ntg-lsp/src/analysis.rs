@@ -91,6 +91,11 @@ impl Analysis {
         &self.loader
     }
 
+    /// Whether nothing is wrong with the syntax.
+    pub fn is_read(&self) -> bool {
+        self.whole.is_some() || self.library.is_some()
+    }
+
     /// How many errors there are.
     pub fn errors(&self) -> usize {
         self.found.iter().filter(|finding| finding.severity == Severity::Error).count()

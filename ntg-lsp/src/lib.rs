@@ -7,6 +7,7 @@
 //! `ntg lsp` starts it on standard input and output. It knows no more of the language than the compiler tells it, and
 //! keeps nothing but the open documents.
 
+pub mod actions;
 pub mod analysis;
 pub mod complete;
 pub mod explained;
@@ -17,6 +18,7 @@ pub mod names;
 pub mod outline;
 pub mod rename;
 mod server;
+pub mod signature;
 pub mod words;
 
 pub use server::{ProtocolError, serve};

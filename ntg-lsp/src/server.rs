@@ -10,19 +10,21 @@ use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response
 use lsp_types::notification::{self, Notification as _};
 use lsp_types::request::{self, Request as _};
 use lsp_types::{
-    CompletionOptions, CompletionResponse, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity,
-    DidChangeTextDocumentParams, DocumentSymbolResponse, GotoDefinitionResponse, Hover, HoverContents,
-    HoverProviderCapability, Location, MarkupContent, MarkupKind, NumberOrString, OneOf, PrepareRenameResponse,
-    PublishDiagnosticsParams, RenameOptions, ServerCapabilities, TextDocumentPositionParams,
-    TextDocumentSyncCapability, TextDocumentSyncKind, Uri, WorkspaceEdit,
+    CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionProviderCapability, CompletionOptions,
+    CompletionResponse, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DidChangeTextDocumentParams,
+    DocumentSymbolResponse, GotoDefinitionResponse, Hover, HoverContents, HoverProviderCapability, Location,
+    MarkupContent, MarkupKind, NumberOrString, OneOf, PrepareRenameResponse, PublishDiagnosticsParams, RenameOptions,
+    ServerCapabilities, SignatureHelpOptions, TextDocumentPositionParams, TextDocumentSyncCapability,
+    TextDocumentSyncKind, TextEdit, Uri, WorkspaceEdit,
 };
 use ntg_compiler::diagnostic::{Diagnostic as Finding, Severity};
+use ntg_compiler::source::Span;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::analysis::{Analysis, Beside};
 use crate::lines::Lines;
-use crate::{complete, hover, libraries, outline, rename};
+use crate::{actions, complete, hover, libraries, outline, rename, signature};
 
 /// What went wrong between the editor and the server.
 pub type ProtocolError = Box<dyn std::error::Error + Send + Sync>;
@@ -68,6 +70,11 @@ fn capabilities() -> ServerCapabilities {
             trigger_characters: Some(vec!["[".to_owned(), ".".to_owned()]),
             ..CompletionOptions::default()
         }),
+        signature_help_provider: Some(SignatureHelpOptions {
+            trigger_characters: Some(vec!["(".to_owned(), ",".to_owned()]),
+            ..SignatureHelpOptions::default()
+        }),
+        code_action_provider: Some(CodeActionProviderCapability::Simple(true)),
         definition_provider: Some(OneOf::Left(true)),
         references_provider: Some(OneOf::Left(true)),
         rename_provider: Some(OneOf::Right(RenameOptions {
@@ -190,6 +197,12 @@ impl Server<'_> {
         let answer = match method.as_str() {
             request::HoverRequest::METHOD => self.hover(given::<lsp_types::HoverParams>(params)?),
             request::Completion::METHOD => self.completion(given::<lsp_types::CompletionParams>(params)?),
+            request::SignatureHelpRequest::METHOD => {
+                let params: lsp_types::SignatureHelpParams = given(params)?;
+                let place = self.place(&params.text_document_position_params);
+                json(place.and_then(|(analysis, byte)| signature::help(analysis, byte)))
+            }
+            request::CodeActionRequest::METHOD => self.actions(given::<lsp_types::CodeActionParams>(params)?),
             request::GotoDefinition::METHOD => self.definition(given::<lsp_types::GotoDefinitionParams>(params)?),
             request::References::METHOD => self.references(given::<lsp_types::ReferenceParams>(params)?),
             request::PrepareRenameRequest::METHOD => self.prepare_rename(given(params)?),
@@ -232,6 +245,18 @@ impl Server<'_> {
     fn completion(&mut self, params: lsp_types::CompletionParams) -> Value {
         let place = self.place(&params.text_document_position);
         json(place.map(|(analysis, byte)| CompletionResponse::Array(complete::proposals(analysis, byte))))
+    }
+
+    fn actions(&mut self, params: lsp_types::CodeActionParams) -> Value {
+        let uri = params.text_document.uri.clone();
+        json(self.document(&params.text_document.uri).map(|document| {
+            let analysis = document.analysis();
+            let byte = |position| analysis.lines.byte(&analysis.source.text, position);
+            let part = Span::new(byte(params.range.start), byte(params.range.end).max(byte(params.range.start)));
+            let fixes = actions::fixes(analysis, part);
+            let only = |finding: usize| fixes.iter().filter(|fix| fix.finding == finding).count() == 1;
+            fixes.iter().map(|fix| action(analysis, &uri, fix, only(fix.finding))).collect::<Vec<_>>()
+        }))
     }
 
     fn definition(&mut self, params: lsp_types::GotoDefinitionParams) -> Value {
@@ -279,6 +304,20 @@ impl Server<'_> {
         let changes = HashMap::from([(uri, edits)]);
         Ok(json(Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() })))
     }
+}
+
+fn action(analysis: &Analysis, uri: &Uri, fix: &actions::Fix, is_preferred: bool) -> CodeActionOrCommand {
+    let edit = TextEdit::new(analysis.lines.range(&analysis.source.text, fix.span), fix.text.clone());
+    #[expect(clippy::mutable_key_type, reason = "the protocol's type is a map by URI")]
+    let changes = HashMap::from([(uri.clone(), vec![edit])]);
+    CodeActionOrCommand::CodeAction(CodeAction {
+        title: format!("write `{}`", fix.text),
+        kind: Some(CodeActionKind::QUICKFIX),
+        diagnostics: analysis.found.get(fix.finding).map(|finding| vec![diagnostic(analysis, uri, finding)]),
+        edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
+        is_preferred: Some(is_preferred),
+        ..CodeAction::default()
+    })
 }
 
 fn given<T: DeserializeOwned>(params: Value) -> Result<T, (ErrorCode, String)> {

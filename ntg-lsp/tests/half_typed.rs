@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use ntg_compiler::source::Span;
 use ntg_lsp::analysis::{Analysis, Beside};
-use ntg_lsp::{complete, hover, outline, rename};
+use ntg_lsp::{actions, complete, hover, outline, rename, signature};
 use proptest::prelude::*;
 
 /// All shipped specs, and one with every form of the language.
@@ -28,7 +29,9 @@ fn ask(text: &str, byte: usize) {
         assert!(analysis.lines.byte(text, position) <= text.len());
         let _ = hover::hover(&analysis, place);
         let _ = complete::proposals(&analysis, place);
+        let _ = signature::help(&analysis, place);
     }
+    let _ = actions::fixes(&analysis, Span::new(text.floor_char_boundary(byte), text.floor_char_boundary(byte)));
     let _ = outline::symbols(&analysis);
     let _ = outline::layout(&analysis);
     let _ = rename::edits(&analysis, text.floor_char_boundary(byte), "other_name");

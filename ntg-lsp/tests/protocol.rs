@@ -327,3 +327,74 @@ fn what_is_not_known_is_refused_and_nothing_breaks() {
     assert_eq!(editor.ask("textDocument/hover", nowhere), Value::Null);
     editor.end();
 }
+
+#[test]
+fn signatures_tell_the_arguments_and_which_is_next() {
+    let mut editor = Editor::new();
+    let with = |written: &str| TEXT.replace("der(v) + half(der(ψ, 2))", written);
+    // What is asked, the signature, the argument that is next.
+    for (written, label, argument) in [
+        ("half(▮", "fn half(u)", "u"),
+        ("hypot(der(x), ▮", "hypot(a, b, ...)", "b"),
+        ("hypot(1, (2 + x▮", "hypot(a, b, ...)", "b"),
+        ("hypot(1, half(2), 3, ▮4)", "hypot(a, b, ...)", "..."),
+        ("der(x▮", "der(e)", "e"),
+        ("der(x, ▮", "der(e, 2)", "2"),
+    ] {
+        let text = with(written).replacen('▮', "", 1);
+        let place = with(written).find('▮').expect("a place");
+        editor.version += 1;
+        editor.open(&text);
+        let before = &text[..place];
+        let line = before.matches('\n').count();
+        let character: usize = before.rsplit('\n').next().unwrap_or("").chars().map(char::len_utf16).sum();
+        let position = json!({ "line": line, "character": character });
+        let params = json!({ "textDocument": { "uri": URI }, "position": position });
+        let answer = editor.ask("textDocument/signatureHelp", params);
+        let active = answer["activeSignature"].as_u64().and_then(|at| usize::try_from(at).ok()).expect("a signature");
+        let signature = &answer["signatures"][active];
+        assert_eq!(signature["label"], label, "{written}: {answer}");
+        let next = answer["activeParameter"].as_u64().and_then(|at| usize::try_from(at).ok()).expect("an argument");
+        let ends = &signature["parameters"][next]["label"];
+        let end = |k: usize| ends[k].as_u64().and_then(|at| usize::try_from(at).ok()).expect("an offset");
+        assert_eq!(&label[end(0)..end(1)], argument, "{written}: {answer}");
+    }
+    assert_eq!(editor.at("textDocument/signatureHelp", TEXT, "x, ψ", 0, &json!({})), Ok(Value::Null));
+    editor.end();
+}
+
+#[test]
+fn what_a_help_proposes_and_mends_is_an_action() {
+    let mut editor = Editor::new();
+    // What is written, where one asks, what is proposed there: each time what leaves no error.
+    for (right, wrong, word, proposed) in [
+        ("v <= v_max", "v <= v_mx", "v_mx", &["v_max"][..]),
+        ("= der(x);", "= diff(x);", "diff", &["der(x)"]),
+        ("integral(a^2)", "a^2 * 1 [s]", "a^2", &["integral(a^2)", "initial(a^2)", "final(a^2)"]),
+        ("x == 1 [km]", "x = 1 [km]", "= 1 [km]", &["=="]),
+    ] {
+        let text = TEXT.replace(right, wrong);
+        editor.version += 1;
+        let found = editor.open(&text);
+        assert!(!found.is_empty(), "{wrong}");
+        let more = json!({ "range": found[0]["range"], "context": { "diagnostics": [] } });
+        let answer = editor.at("textDocument/codeAction", &text, word, 0, &more).expect("an answer");
+        let actions = answer.as_array().expect("actions");
+        let texts: Vec<&str> =
+            actions.iter().filter_map(|own| own["edit"]["changes"][URI][0]["newText"].as_str()).collect();
+        assert!(texts.iter().all(|own| proposed.contains(own)) && !texts.is_empty(), "{wrong}: {texts:?} {found:?}");
+        let range = &actions[0]["edit"]["changes"][URI][0]["range"];
+        let end =
+            |end: &str, part: &str| range[end][part].as_u64().and_then(|at| u32::try_from(at).ok()).expect("a place");
+        let range = (end("start", "line"), end("start", "character"), end("end", "line"), end("end", "character"));
+        assert_eq!(editor.change(range, texts[0]), Vec::<Value>::new(), "{wrong}: {actions:?}");
+        assert_eq!(actions[0]["kind"], "quickfix");
+        assert_eq!(actions[0]["isPreferred"], texts.len() == 1);
+    }
+    editor.version += 1;
+    editor.open(TEXT);
+    let range = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 14, "character": 0 } });
+    let params = json!({ "textDocument": { "uri": URI }, "range": range, "context": { "diagnostics": [] } });
+    assert_eq!(editor.ask("textDocument/codeAction", params), json!([]));
+    editor.end();
+}
