@@ -148,6 +148,7 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
     let mut panels: Vec<Panel> = vec![];
     // Panel, line, run and path: what was measured follows all curves, whose colours it leaves as they are.
     let mut curves: Vec<(usize, usize, usize, &String)> = vec![];
+    let mut owners: Vec<(usize, Limit, String)> = vec![];
     for (index, (_, run)) in runs.iter().enumerate() {
         for (path, series) in of(run) {
             if series.t.is_empty() {
@@ -165,12 +166,17 @@ fn quantities<'a>(runs: &Runs<'a>, of: impl Fn(&'a Run) -> Vec<(&'a String, &'a 
                 panels.push(Panel { title, x, y, marks: marks(runs), ..Panel::default() });
                 panels.len() - 1
             });
-            add_limits(&mut panels[known].limits, own_limits(run, path, series));
+            owners.extend(own_limits(run, path, series).into_iter().map(|limit| (known, limit, line.name.clone())));
             let lines = &mut panels[known].lines;
             curves.push((known, lines.len(), index, path));
             lines.push(line);
             lines.extend(bands(runs, index, (path, series)));
         }
+    }
+    for (number, panel) in panels.iter_mut().enumerate() {
+        let own = owners.iter().filter(|(panel, ..)| *panel == number).map(|(_, limit, line)| (limit, line.as_str()));
+        let lines = curves.iter().filter(|(panel, ..)| *panel == number).count();
+        panel.limits = named(&own.collect::<Vec<_>>(), lines);
     }
     for (panel, like, run, path) in curves {
         let measured = measured::of(runs, run, path).into_iter().map(|line| Line { like: Some(like), ..line });
@@ -336,6 +342,30 @@ fn add_limits(all: &mut Vec<Limit>, limits: Vec<Limit>) {
             all.push(limit);
         }
     }
+}
+
+/// Limits, each once over the times at which one line or another has it; one that is not that of all lines says whose it is.
+fn named(owned: &[(&Limit, &str)], lines: usize) -> Vec<Limit> {
+    let meets = |a: &Limit, b: &Limit| a.curve.is_empty() && a.over.0 <= b.over.1 && b.over.0 <= a.over.1;
+    let alike =
+        |a: &Limit, b: &Limit| a == b || (a.at == b.at && a.name == b.name && b.curve.is_empty() && meets(a, b));
+    let mut all: Vec<(Limit, Vec<&str>)> = vec![];
+    for (limit, line) in owned {
+        match all.iter_mut().find(|(known, _)| alike(known, limit)) {
+            Some((known, own)) => {
+                known.over = (known.over.0.min(limit.over.0), known.over.1.max(limit.over.1));
+                if !own.contains(line) {
+                    own.push(line);
+                }
+            }
+            None => all.push(((*limit).clone(), vec![line])),
+        }
+    }
+    let told = all.into_iter().map(|(limit, own)| match own.len() < lines {
+        true => Limit { name: format!("{} of {}", limit.name, own.join(", ")), ..limit },
+        false => limit,
+    });
+    told.collect()
 }
 
 /// The limits of a quantity: numbers, and curves where they are functions of time.
@@ -505,6 +535,21 @@ mod tests {
         assert_eq!(told(&panels[0]), [(-5.0, "lower".to_owned(), 0), (20.0, upper(), 0), (0.0, upper(), 11)]);
         assert_eq!(panels[0].limits[0].over, (0.0, 10.0));
         assert_eq!(told(&panels[1]), []);
+    }
+
+    #[test]
+    fn a_limit_of_some_lines_says_of_which() {
+        let limit = |at: f64| Limit { at, name: "upper".to_owned(), ..Limit::default() };
+        let (all, two, one) = (limit(1.0), limit(2.0), limit(3.0));
+        let owned = [(&all, "r[1]"), (&two, "r[1]"), (&all, "r[2]"), (&two, "r[2]"), (&all, "r[3]"), (&one, "r[3]")];
+        let names: Vec<String> = named(&owned, 3).into_iter().map(|limit| limit.name).collect();
+        assert_eq!(names, ["upper", "upper of r[1], r[2]", "upper of r[3]"]);
+        // The same limit of runs or phases that last differently is one.
+        let (short, long) = (Limit { over: (0.0, 2.0), ..limit(1.0) }, Limit { over: (1.0, 5.0), ..limit(1.0) });
+        let later = Limit { over: (7.0, 8.0), ..limit(1.0) };
+        let found = named(&[(&short, "a"), (&long, "b"), (&later, "b")], 2);
+        assert_eq!(found[0], Limit { over: (0.0, 5.0), ..limit(1.0) });
+        assert_eq!((found[1].name.as_str(), found.len()), ("upper of b", 2));
     }
 
     #[test]

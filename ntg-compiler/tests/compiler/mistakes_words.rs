@@ -42,6 +42,12 @@ pub(crate) const WORDS: (&str, &[(&str, &str)]) = (
         ("dynamics { der(r) == v;  der(v) == u / m;  der(m) == -norm(u) / 3 [km/s];  x == 1 [m]; }", "E068"),
         ("dynamics { der(r) == v;  der(v) == u / m;  der(m) == -norm(u) / 3 [km/s];  der(u) == 0; }", "E068"),
         ("state z [m];", "E068"),
+        (
+            "param K[3, 3] = ((2, 0, 0), (0, 3, 0), (0, 0, 4)) [kg*m];  trajectory { K * der(w) == cross(r, u); }",
+            "E041",
+        ),
+        ("param K[3, 3] = ((2, 0, 0), (0, 3, 0), (0, 0, 4));  trajectory { K * der(w) == cross(r, u); }", "E041"),
+        ("param K[3] = (2, 3, 4) [kg*m^2];  trajectory { K * der(w) == cross(r, u); }", "E046"),
         ("let a = if x <= 1 [m] smooth { 1 } else { 0 };", "E001"),
         ("let a = if x <= 1 [m] smooth 0 [m] { 1 } else { 0 };", "E049"),
         ("let a = if x <= 1 [m] smooth 1 [s] { 1 } else { 0 };", "E041"),
