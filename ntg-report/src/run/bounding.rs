@@ -22,7 +22,7 @@ pub(crate) fn is_limit(constraint: &Constraint, member: &Member) -> bool {
 pub(crate) fn members(run: &Run, path: &str, series: &Series) -> Vec<(usize, usize, String)> {
     let mut found = vec![];
     for (index, constraint) in run.constraints.iter().enumerate().filter(|(_, c)| c.unit == series.unit) {
-        let Some(bracket) = sides::bracket(&constraint.text, base(path)) else { continue };
+        let Some(bracket) = bracket(constraint, base(path)) else { continue };
         for (number, member) in constraint.members.iter().enumerate() {
             let Some(rest) = sides::phase_of(path, bracket, (&member.name, constraint.members.len())) else { continue };
             if is_limit(constraint, member) && is_alike(series, member) {
@@ -31,6 +31,18 @@ pub(crate) fn members(run: &Run, path: &str, series: &Series) -> Vec<(usize, usi
         }
     }
     found
+}
+
+/// What stands in brackets behind a quantity that a constraint limits. Rows that are made one by one have the text of all of
+/// them, `-most <= torque <= most`, and each its own name, `-most[2] <= torque[2] <= most[2]` or `burn[2]`.
+fn bracket<'c>(constraint: &'c Constraint, name: &str) -> Option<&'c str> {
+    let own = constraint.name.as_str();
+    if ["<=", ">=", " in "].iter().any(|relation| own.contains(relation)) {
+        return sides::bracket(own, name).or_else(|| sides::bracket(&constraint.text, name));
+    }
+    let written = sides::bracket(&constraint.text, name)?;
+    let element = own.strip_suffix(']').and_then(|head| head.rsplit_once('[')).map(|(_, element)| element);
+    Some(element.filter(|_| written.is_empty()).unwrap_or(written))
 }
 
 /// Whether a member has the values of the quantity at its times.
@@ -55,4 +67,26 @@ pub(crate) fn at(series: &Series, t: f64) -> f64 {
     let (before, after) = (of(&series.t, next - 1), of(&series.t, next));
     let share = if after > before { ((t - before) / (after - before)).clamp(0.0, 1.0) } else { 0.0 };
     (1.0 - share) * of(&series.value, next - 1) + share * of(&series.value, next)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_made_one_by_one_limit_their_own_element() {
+        let row = |name: &str, text: &str| Constraint {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            ..Constraint::default()
+        };
+        let all = "-most <= torque <= most";
+        let own = row("-most[2] <= torque[2] <= most[2]", all);
+        assert_eq!((bracket(&own, "torque"), bracket(&own, "most")), (Some("2"), Some("2")));
+        let named = row("burn[2]", "burn: -most <= torque <= most");
+        assert_eq!((bracket(&named, "torque"), bracket(&named, "burn")), (Some("2"), None));
+        assert_eq!(bracket(&row(all, all), "torque"), Some(""));
+        assert_eq!(bracket(&row("fast", "fast: x[i] <= 3"), "x"), Some("i"));
+        assert_eq!(bracket(&row("x[3] <= 1", "x[3] <= 1"), "y"), None);
+    }
 }
