@@ -255,7 +255,9 @@ impl<'a> Elaborator<'a> {
                     let (this, that) = (self.text(span), self.text(factor.span));
                     let message = format!("`{this} * {that}` has no one meaning: both are vectors");
                     let finding = Diagnostic::new(Code::ShapeMismatch, span.to(factor.span), message);
-                    self.report(finding.help("a product of two vectors is `dot(a, b)` or `cross(a, b)`"));
+                    self.report(finding.help(
+                        "a product of two vectors is `dot(a, b)` or `cross(a, b)`, element by element `diagonal(a) * b`",
+                    ));
                     return None;
                 }
                 _ => {
