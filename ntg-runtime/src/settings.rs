@@ -183,6 +183,15 @@ impl Settings {
         Self { tolerance, constraint_tolerance, ..self.clone() }
     }
 
+    /// With one correction of the inertia from beginning to end, where the user has chosen none: what a first attempt has failed at
+    /// by both in turns is often solved by one of them alone, and least violations are found from where it ended.
+    pub(crate) fn in_one_way(self) -> Self {
+        match self.inertia_correction {
+            InertiaCorrection::InTurns => Self { inertia_correction: InertiaCorrection::ByElement, ..self },
+            InertiaCorrection::ByElement | InertiaCorrection::ByShift => self,
+        }
+    }
+
     /// The same with a callback that, once it has asked to stop, is not asked again: a problem may be
     /// solved in several parts, and none may go on after one was cancelled.
     pub(crate) fn remembering(&self) -> Self {

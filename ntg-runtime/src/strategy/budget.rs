@@ -1,7 +1,7 @@
 //! One budget of time and iterations for everything that a call does: coarse starts, steps of a continuation and all
 //! attempts (docs/maths.md, section 11.9).
 
-use crate::settings::{InertiaCorrection, Method, Scaling, Settings};
+use crate::settings::{Method, Scaling, Settings};
 use ntg_nlp::{Outcome, Status};
 use std::time::Instant;
 
@@ -76,7 +76,7 @@ impl<'a> Budget<'a> {
     /// Settings of an attempt after a failed one, which measures rows by slopes alone and corrects the inertia in one way alone;
     /// none where nothing is left.
     pub(super) fn further(&self) -> Option<Settings> {
-        self.at_most(self.share(FURTHER)).map(by_slopes).map(in_one_way)
+        self.at_most(self.share(FURTHER)).map(by_slopes).map(Settings::in_one_way)
     }
 
     /// Settings of an attempt that takes all that is left; none where nothing is.
@@ -107,15 +107,6 @@ fn by_slopes(settings: Settings) -> Settings {
     match settings.scaling {
         Scaling::Automatic => Settings { scaling: Scaling::BySlopes, ..settings },
         Scaling::BySlopes | Scaling::Off => settings,
-    }
-}
-
-/// Settings with one correction of the inertia from beginning to end, where the user has chosen none: the first attempt has
-/// tried both in turns, and what it has failed at is often solved by one of them alone.
-fn in_one_way(settings: Settings) -> Settings {
-    match settings.inertia_correction {
-        InertiaCorrection::InTurns => Settings { inertia_correction: InertiaCorrection::ByElement, ..settings },
-        InertiaCorrection::ByElement | InertiaCorrection::ByShift => settings,
     }
 }
 
