@@ -205,7 +205,7 @@ pub(crate) struct Solve {
     #[arg(long, value_enum, default_value_t = Restoration::Absolute)]
     pub(crate) restoration: Restoration,
     /// How the interior-point method corrects the inertia of its matrix.
-    #[arg(long, value_enum, default_value_t = InertiaCorrection::InTurns)]
+    #[arg(long, value_enum, default_value_t = InertiaCorrection::ByElement)]
     pub(crate) inertia_correction: InertiaCorrection,
 }
 
@@ -221,12 +221,12 @@ pub(crate) enum Restoration {
 /// How the matrix of a step is given the inertia of a minimum.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum InertiaCorrection {
-    /// By element at first; where that takes long, by shift and by element in turns.
-    InTurns,
     /// The second derivatives of each element are made positive semidefinite.
     ByElement,
     /// A multiple of the identity is added.
     ByShift,
+    /// By element at first; where that takes long, by shift and by element in turns.
+    InTurns,
 }
 
 /// What becomes of violations between the points.

@@ -80,15 +80,15 @@ pub enum Violations {
 /// Either way solves programs that the other one does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum InertiaCorrection {
-    /// By element at first; where that takes long, by shift and by element in turns that grow.
-    #[default]
-    InTurns,
     /// The second derivatives of each element are made positive semidefinite: steps keep a measure of length along
     /// directions of negative curvature, and stay in the neighbourhood of a good guess.
+    #[default]
     ByElement,
     /// The least multiple of the identity that is enough is added: steps keep Newton's curvature along all other
     /// directions, and large elements cost less.
     ByShift,
+    /// By element at first; where that takes long, by shift and by element in turns that grow.
+    InTurns,
 }
 
 /// The loosest tolerance at which a solution is polished: with this tolerance and looser ones a solution serves as a

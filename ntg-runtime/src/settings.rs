@@ -112,7 +112,7 @@ impl Default for Settings {
             second_order_correction: true,
             exact_hessian: true,
             restoration: Violations::Absolute,
-            inertia_correction: InertiaCorrection::InTurns,
+            inertia_correction: InertiaCorrection::ByElement,
         }
     }
 }
@@ -181,15 +181,6 @@ impl Settings {
         let tolerance = self.tolerance.max(ROUGH_TOLERANCE);
         let constraint_tolerance = self.constraint_tolerance.max(ROUGH_TOLERANCE);
         Self { tolerance, constraint_tolerance, ..self.clone() }
-    }
-
-    /// With one correction of the inertia from beginning to end, where the user has chosen none: what a first attempt has failed at
-    /// by both in turns is often solved by one of them alone, and least violations are found from where it ended.
-    pub(crate) fn in_one_way(self) -> Self {
-        match self.inertia_correction {
-            InertiaCorrection::InTurns => Self { inertia_correction: InertiaCorrection::ByElement, ..self },
-            InertiaCorrection::ByElement | InertiaCorrection::ByShift => self,
-        }
     }
 
     /// The same with a callback that, once it has asked to stop, is not asked again: a problem may be

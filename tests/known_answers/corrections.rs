@@ -1,10 +1,11 @@
 //! Programs whose matrices have not the inertia of a minimum on the way.
 
 use ntg::prelude::*;
+use ntg::runtime::settings::InertiaCorrection;
 
 use crate::support::{Shipped, close};
 
-/// Swung up by a bounded torque as fast as can be; by element alone the method creeps along a flat valley. Optimum: IPOPT on this
+/// Swung up by a bounded torque as fast as can be, by both corrections in turns; by element alone the method creeps along a flat valley. Optimum: IPOPT on this
 /// mesh.
 #[test]
 fn a_pendulum_is_swung_up_on_a_hundred_intervals() {
@@ -21,7 +22,8 @@ fn a_pendulum_is_swung_up_on_a_hundred_intervals() {
             guess { T = 12;  a = pi * tau; }
         }",
     );
-    let settings = Settings { max_iterations: 500, ..Settings::default() };
+    let settings =
+        Settings { max_iterations: 500, inertia_correction: InertiaCorrection::InTurns, ..Settings::default() };
     let report = solve(pendulum.problem(), &settings).expect("it can be set up");
     assert!(report.is_solved(), "{report}");
     close(report.objective, 9.853_999_4, 1e-7);

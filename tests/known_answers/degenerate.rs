@@ -176,10 +176,7 @@ fn terrain_after_an_acceptable_end() {
 /// The first attempt runs to its limit by element; one with shifts of the diagonal finds the best known optimum.
 #[test]
 fn an_alpine_rider_with_shifts() {
-    let settings =
-        Settings { inertia_correction: ntg::runtime::settings::InertiaCorrection::ByElement, ..Settings::default() };
-    let report = solve(Shipped::spec("gallery/alpine_rider").problem(), &settings).expect("it can be set up");
-    assert!(report.is_solved(), "{report}");
+    let report = Shipped::spec("gallery/alpine_rider").solve();
     close(report.objective, 2_059.895, 1e-5);
 }
 

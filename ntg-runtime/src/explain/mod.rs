@@ -213,7 +213,7 @@ fn near(
     until: Instant,
 ) -> Explanation {
     let guess = start(nlp, None).ok();
-    let search = Search { nlp, settings: &settings.remembering().in_one_way(), until, factors: factors(nlp, x), guess };
+    let search = Search { nlp, settings: &settings.remembering(), until, factors: factors(nlp, x), guess };
     let all: Constraints = (0..nlp.rows()).filter_map(|row| search.constraint(row)).collect();
     let Some(relaxed) = search.least(&all, x, NOTHING) else { return Explanation::Unknown };
     if relaxed.violation <= NOTHING {

@@ -73,10 +73,9 @@ impl<'a> Budget<'a> {
         self.at_most(self.share(COARSE))
     }
 
-    /// Settings of an attempt after a failed one, which measures rows by slopes alone and corrects the inertia in one way alone;
-    /// none where nothing is left.
+    /// Settings of an attempt after a failed one, which measures rows by slopes alone; none where nothing is left.
     pub(super) fn further(&self) -> Option<Settings> {
-        self.at_most(self.share(FURTHER)).map(by_slopes).map(Settings::in_one_way)
+        self.at_most(self.share(FURTHER)).map(by_slopes)
     }
 
     /// Settings of an attempt that takes all that is left; none where nothing is.
