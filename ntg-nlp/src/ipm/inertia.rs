@@ -5,7 +5,7 @@
 //! by a shift:   A + delta I, with the smallest delta that helps                  (11.5b)
 //! ```
 //!
-//! The two take turns in a solve that needs many corrections (11.5c).
+//! On demand the two take turns in a solve that needs many corrections (11.5c).
 
 use super::state::State;
 use super::step::LEAST_PROXIMAL;
