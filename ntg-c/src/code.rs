@@ -57,7 +57,7 @@ impl Code {
     pub fn of(status: &Status) -> Self {
         match status {
             Status::Solved => Self::Ok,
-            Status::Acceptable | Status::Saddle => Self::Acceptable,
+            Status::Acceptable | Status::Stationary => Self::Acceptable,
             Status::Infeasible { .. } | Status::ViolatedBetween { .. } => Self::Infeasible,
             Status::IterationLimit => Self::IterationLimit,
             Status::TimeLimit => Self::TimeLimit,

@@ -225,8 +225,6 @@ pub(crate) enum InertiaCorrection {
     ByElement,
     /// A multiple of the identity is added.
     ByShift,
-    /// By element at first; where that takes long, by shift and by element in turns.
-    InTurns,
 }
 
 /// What becomes of violations between the points.

@@ -60,7 +60,7 @@ mod tests {
         let known: Vec<String> = solve.get_arguments().filter_map(|a| a.get_long()).map(|o| format!("--{o}")).collect();
         for status in [
             Status::Acceptable,
-            Status::Saddle,
+            Status::Stationary,
             Status::ViolatedBetween { constraints: vec![] },
             Status::Infeasible { rows: vec![] },
             Status::IterationLimit,

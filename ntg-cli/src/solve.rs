@@ -203,7 +203,6 @@ fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
         arguments::Restoration::Squared => Violations::Squared,
     };
     settings.inertia_correction = match arguments.inertia_correction {
-        arguments::InertiaCorrection::InTurns => InertiaCorrection::InTurns,
         arguments::InertiaCorrection::ByElement => InertiaCorrection::ByElement,
         arguments::InertiaCorrection::ByShift => InertiaCorrection::ByShift,
     };

@@ -99,22 +99,8 @@ fn a_guaranteed_solve_says_proved_beside_each_constraint() {
     std::fs::remove_file(saved).and(std::fs::remove_file(page)).expect("both files are there");
 }
 
-/// An epidemic on a mesh too coarse for it: solved at the points with a cost far below 0, of terms that are all positive.
-const EPIDEMIC: &str = "problem Epidemic {
-    param w = 200;
-    domain t [day];
-    duration T = 120 [day];
-    state S, I [1];
-    input u in 0 .. 0.9;
-    collocation gauss(points = 3, intervals = 25);
-    minimize 1 [1/day] * integral(u^2) + w * 1 [1/day] * integral(I);
-    dynamics {
-        der(S) == -0.35 [1/day] * (1 - u) * S * I;
-        der(I) == 0.35 [1/day] * (1 - u) * S * I - 0.12 [1/day] * I;
-    }
-    initial { S == 0.99;  I == 0.01; }
-    trajectory { I <= 0.1; }
-}";
+/// Solved at the points alone.
+const EPIDEMIC: &str = include_str!("specs/epidemic.ntg");
 
 #[test]
 fn a_guarantee_of_limits_makes_no_solution_of_what_leaves_its_equations() {

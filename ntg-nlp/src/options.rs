@@ -77,7 +77,7 @@ pub enum Violations {
 }
 
 /// How the matrix of a step is given the inertia of a minimum where it has another one (docs/maths.md, section 11.3).
-/// Either way solves programs that the other one does not.
+/// Either solves programs that the other one does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum InertiaCorrection {
     /// The second derivatives of each element are made positive semidefinite: steps keep a measure of length along
@@ -87,8 +87,6 @@ pub enum InertiaCorrection {
     /// The least multiple of the identity that is enough is added: steps keep Newton's curvature along all other
     /// directions, and large elements cost less.
     ByShift,
-    /// By element at first; where that takes long, by shift and by element in turns that grow.
-    InTurns,
 }
 
 /// The loosest tolerance at which a solution is polished: with this tolerance and looser ones a solution serves as a

@@ -47,10 +47,9 @@ impl Given {
             other => return Err(none_of("restoration", other, "`absolute`, `squared`")),
         };
         let inertia_correction = match self.inertia_correction.as_str() {
-            "in-turns" => InertiaCorrection::InTurns,
             "by-element" => InertiaCorrection::ByElement,
             "by-shift" => InertiaCorrection::ByShift,
-            other => return Err(none_of("inertia_correction", other, "`in-turns`, `by-element`, `by-shift`")),
+            other => return Err(none_of("inertia_correction", other, "`by-element`, `by-shift`")),
         };
         let between = match self.between.as_str() {
             "report" => Between::Report,

@@ -87,7 +87,7 @@ pub enum Status {
     Acceptable,
     /// A stationary point within the tolerances that is no minimum: beside it the objective is better, and the solve could not get
     /// away from it (docs/maths.md, section 11.13).
-    Saddle,
+    Stationary,
     /// All residuals are within their tolerances, but constraints are violated between the points of the transcription
     /// by more than `Settings::between_tolerance`, which [`Between::Refuse`](crate::settings::Between) does not allow.
     ViolatedBetween {
@@ -133,14 +133,14 @@ impl Status {
 
     /// Whether there is a solution: solved, acceptable, or at least stationary.
     pub fn has_solution(&self) -> bool {
-        matches!(self, Self::Solved | Self::Acceptable | Self::Saddle)
+        matches!(self, Self::Solved | Self::Acceptable | Self::Stationary)
     }
 
     /// One word for a solution, `solved`, `acceptable` or `stationary`; else why there is none, in words.
     pub fn label(&self) -> String {
         match self {
             Self::Acceptable => "acceptable".into(),
-            Self::Saddle => "stationary".into(),
+            Self::Stationary => "stationary".into(),
             other => other.to_string(),
         }
     }
@@ -154,7 +154,7 @@ impl Status {
                 "Compare the residuals with what you need; for more digits give typical sizes (`scales`), or remove \
                  constraints that say the same thing twice."
             }
-            Self::Saddle => {
+            Self::Stationary => {
                 "Give a guess that does not lie in the symmetry of the problem, or try several starts (`starts`)."
             }
             Self::ViolatedBetween { .. } => {
@@ -194,7 +194,7 @@ impl fmt::Display for Status {
         match self {
             Self::Solved => f.write_str("solved"),
             Self::Acceptable => f.write_str("acceptable: optimal to 1e-6, not to the tolerances"),
-            Self::Saddle => f.write_str("stationary: this is no minimum, beside it the objective is better"),
+            Self::Stationary => f.write_str("stationary: this is no minimum, beside it the objective is better"),
             Self::ViolatedBetween { constraints } => {
                 f.write_str("not a solution between the points")?;
                 list(f, constraints, |f, constraint| f.write_str(constraint))

@@ -69,7 +69,7 @@ impl Row {
     /// Whether it has a solution that is less than a solved one: acceptable, or one of the points alone.
     pub fn is_less_than_solved(&self) -> bool {
         let alone = |status: &str| Resolution::Unresolved.ending(status);
-        [ACCEPTABLE.to_owned(), SADDLE.to_owned(), alone(SOLVED), alone(ACCEPTABLE), alone(SADDLE)]
+        [ACCEPTABLE.to_owned(), STATIONARY.to_owned(), alone(SOLVED), alone(ACCEPTABLE), alone(STATIONARY)]
             .contains(&self.status)
     }
 
@@ -82,7 +82,7 @@ impl Row {
 /// The status of a row that was solved to 1e-6 only.
 const ACCEPTABLE: &str = "acceptable";
 /// The status of a row whose solution is stationary and no minimum.
-const SADDLE: &str = "stationary";
+const STATIONARY: &str = "stationary";
 /// The status of a row that was solved.
 pub const SOLVED: &str = "solved";
 

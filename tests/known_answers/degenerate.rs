@@ -173,7 +173,7 @@ fn terrain_after_an_acceptable_end() {
     close(report.objective, 409.179_599, 1e-6);
 }
 
-/// The first attempt runs to its limit by element; one with shifts of the diagonal finds the best known optimum.
+/// The first attempt runs to its limit; one with shifts of the diagonal finds the best known optimum.
 #[test]
 fn an_alpine_rider_with_shifts() {
     let report = Shipped::spec("gallery/alpine_rider").solve();
@@ -337,4 +337,20 @@ fn more_equations_than_unknowns_are_told_where_they_cannot_be_met() {
     let enough = report(40);
     assert_eq!(enough.status, Status::Solved, "{enough}");
     assert!(!enough.to_string().contains("unknowns"), "{enough}");
+}
+
+/// A column of the matrix without an entry would make it singular, and every step that of a convexified one.
+#[test]
+fn a_variable_that_nothing_depends_on_changes_nothing() {
+    for (name, head) in [
+        ("goddard", "problem Goddard {"),
+        ("hanging_chain", "problem HangingChain {"),
+        ("low_thrust_spiral", "problem LowThrustSpiral {"),
+    ] {
+        let name = format!("gallery/{name}");
+        let without = Shipped::spec(&name).solve();
+        let with = Shipped::edited(&name, &[(head, &format!("{head} variable nothing[2];"))]).solve();
+        close(with.objective, without.objective, 1e-12);
+        assert_eq!(with.iterations, without.iterations, "{name}");
+    }
 }

@@ -8,7 +8,6 @@ mod angles;
 mod car;
 mod constructs;
 mod corners;
-mod corrections;
 mod data;
 mod degenerate;
 mod durations;

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use ntg::prelude::*;
 use ntg::runtime::refine::{Refined, Refinement};
+use ntg::runtime::report::Resolution;
 
 use crate::support::{Shipped, close};
 
@@ -196,4 +197,34 @@ fn what_misses_its_equations_at_the_end_is_no_solution() {
     .solve()
     .expect("it can be set up");
     assert!(report.has_solution() == (report.violation.points <= 1e-6), "{report}");
+}
+
+/// A relay swings along parabolas with the period `4 sqrt 2`. Points of intervals that the relay does not switch between see
+/// another motion, and its own simulation tells.
+#[test]
+fn a_motion_that_its_own_simulation_does_not_follow_is_none() {
+    let relay = |end: f64| {
+        let text = format!(
+            "problem Relay {{
+                duration T = {end};
+                state x, v;
+                collocation gauss(points = 3, intervals = 30);
+                dynamics {{ der(x) == v;  der(v) == -sign(x); }}
+                initial {{ x == 1;  v == 0; }}
+            }}"
+        );
+        solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up")
+    };
+    let report = relay(12.0);
+    let v = report.solution.output("v").expect("v").at(12.0);
+    // Two periods later it falls as at first.
+    let known = 8.0 * 2.0_f64.sqrt() - 12.0;
+    assert!(
+        (v - known).abs() > 0.25 && report.has_solution(),
+        "{v} for {known}, on a mesh that is too coarse\n{report}"
+    );
+    assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{report}");
+    // Before it switches all is right.
+    let report = relay(1.0);
+    assert!(report.is_solved() && report.resolution() != Some(Resolution::Unresolved), "{report}");
 }

@@ -82,7 +82,7 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
         "[possible values: auto, sqp, interior-point, augmented-lagrangian]",
     ),
     (&["solve", "mission.ntg", "--restoration", "cubed"], "[possible values: absolute, squared]"),
-    (&["solve", "mission.ntg", "--inertia-correction", "none"], "[possible values: by-element, by-shift, in-turns]"),
+    (&["solve", "mission.ntg", "--inertia-correction", "none"], "[possible values: by-element, by-shift]"),
     (&["check", "misson.ntg"], "did you mean `mission.ntg`?"),
     (&["solve", "specs/mission.ntg"], "there is no folder `specs`"),
     (&["solve", "."], "`.` is a folder; name a file in it, such as `mission.ntg`"),

@@ -4,8 +4,6 @@
 //! by element:   K + t (K+ - K)  for each element, t a fraction near a solution   (11.5a)
 //! by a shift:   A + delta I, with the smallest delta that helps                  (11.5b)
 //! ```
-//!
-//! On demand the two take turns in a solve that needs many corrections (11.5c).
 
 use super::state::State;
 use super::step::LEAST_PROXIMAL;
@@ -31,10 +29,6 @@ const FIRST_FACTOR: f64 = 100.0;
 const SHIFT_FACTOR: f64 = 8.0;
 const SHIFT_FALL: f64 = 3.0;
 const LEAST_SHIFT: f64 = 1e-20;
-/// So many whole corrections are made by element before the first turn of shifts; each later turn has twice as many as the one
-/// before. The second number is a law: then no way costs more than four times what it costs alone. The first is a fit to the
-/// gallery and to 640 problems beside it: most that are solved by element need fewer.
-const TURN: usize = 40;
 /// The largest shift of either kind.
 const LARGEST_SHIFT: f64 = 1e20;
 
@@ -45,20 +39,11 @@ pub(super) struct Corrections {
     fraction: f64,
     /// The last shift in place of a convexifying term; none before the first.
     shift: Option<f64>,
-    /// How many matrices took all of the convexifying term, or a shift in its place.
-    whole: usize,
-}
-
-impl Corrections {
-    /// Whether it is the turn of shifts, (11.5c).
-    fn is_turn_of_shifts(&self) -> bool {
-        (self.whole / TURN + 1).ilog2() % 2 == 1
-    }
 }
 
 impl Default for Corrections {
     fn default() -> Self {
-        Self { fraction: FIRST_FRACTION, shift: None, whole: 0 }
+        Self { fraction: FIRST_FRACTION, shift: None }
     }
 }
 
@@ -80,12 +65,10 @@ impl<N: Nlp> State<'_, N> {
             }
             self.assemble_exact(proximal);
         }
-        let by_shift = match self.options.inertia_correction {
-            InertiaCorrection::InTurns => self.corrections.is_turn_of_shifts(),
-            InertiaCorrection::ByElement => false,
-            InertiaCorrection::ByShift => true,
-        };
-        if by_shift { self.factorise_shifted(proximity) } else { self.factorise_convexified(proximity) }
+        match self.options.inertia_correction {
+            InertiaCorrection::ByElement => self.factorise_convexified(proximity),
+            InertiaCorrection::ByShift => self.factorise_shifted(proximity),
+        }
     }
 
     /// Whether the solution that the guess leads to is settled.
@@ -109,7 +92,6 @@ impl<N: Nlp> State<'_, N> {
             }
             self.corrections.fraction = 1.0;
         }
-        self.corrections.whole += 1;
         let mut shift = 0.0;
         while shift <= LARGEST_SHIFT {
             if self.system.factorise(1.0, proximity + shift) {
@@ -123,7 +105,6 @@ impl<N: Nlp> State<'_, N> {
 
     /// With the smallest shift that helps, (11.5b).
     fn factorise_shifted(&mut self, proximity: f64) -> bool {
-        self.corrections.whole += 1;
         let (first, factor) = match self.corrections.shift {
             Some(last) => ((last / SHIFT_FALL).max(LEAST_SHIFT), SHIFT_FACTOR),
             None => (FIRST_SHIFT, FIRST_FACTOR),

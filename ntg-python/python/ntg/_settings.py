@@ -42,7 +42,7 @@ class Settings:
     """What the interior-point method makes small where it restores feasibility: the sum of violations, `absolute`, or of
     their squares, `squared`."""
     inertia_correction: str = "by-element"
-    """How the interior-point method corrects the inertia of its matrix: `by-element`, `by-shift` of the diagonal, or both `in-turns`."""
+    """How the interior-point method corrects the inertia of its matrix: `by-element`, or `by-shift` of the diagonal."""
     tolerance: float = 1e-8
     """Largest scaled residual of stationarity and complementarity of a solution."""
     constraint_tolerance: float = 1e-8

@@ -21,6 +21,23 @@ pub(super) fn between(sites: &[Site], values: &[f64], (lower, upper): Pair, foun
     if lower == upper {
         return;
     }
+    for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
+        if bound != 0.0 && bound.is_finite() && comes_near(values, (bound, sign)) {
+            beyond(sites, values, (bound, sign), found);
+        }
+    }
+}
+
+/// Whether values come so near to a bound that one more of their largest changes would lead beyond it.
+fn comes_near(values: &[f64], (bound, sign): (f64, f64)) -> bool {
+    // Loops without an exit, of which the compiler makes vector instructions.
+    let least = values.iter().fold(f64::INFINITY, |least: f64, value| least.min(sign * (value - bound)));
+    let change = values.windows(2).fold(0.0, |most: f64, pair| most.max((pair[1] - pair[0]).abs()));
+    least - change < -WORTH * bound.abs()
+}
+
+/// The places at which values that stay on one side of a bound may be beyond it.
+fn beyond(sites: &[Site], values: &[f64], (bound, sign): (f64, f64), found: &mut Vec<Site>) {
     // Breakpoints stand twice, once from either side.
     let is_new = |i: &usize| *i == 0 || sites[*i].point.tau != sites[*i - 1].point.tau;
     let distinct: Vec<usize> = (0..sites.len()).filter(is_new).collect();
@@ -33,21 +50,14 @@ pub(super) fn between(sites: &[Site], values: &[f64], (lower, upper): Pair, foun
         if !(step > 0.0 && is_even(first, before) && is_even(before, after) && is_even(after, last)) {
             continue;
         }
-        for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
-            if bound == 0.0 || !bound.is_finite() {
-                continue;
-            }
-            let above = [0, 1, 2, 3].map(|i| sign * (values[window[i]] - bound));
-            for at in dips(above, WORTH * bound.abs()).into_iter().flatten() {
-                let distances = (0..=HALVINGS).map(|k| 0.25 * 0.5_f64.powi(k)).flat_map(|d| [-d, d]);
-                let places = std::iter::once(0.0).chain(distances).map(|distance| at + distance);
-                let within = places.filter(|at| (0.0..=1.0).contains(at));
-                let site = |at: f64| Site {
-                    point: Point { tau: before.tau + at * step, ..before },
-                    ..sites[window[1]].clone()
-                };
-                found.extend(within.map(site));
-            }
+        let above = [0, 1, 2, 3].map(|i| sign * (values[window[i]] - bound));
+        for at in dips(above, WORTH * bound.abs()).into_iter().flatten() {
+            let distances = (0..=HALVINGS).map(|k| 0.25 * 0.5_f64.powi(k)).flat_map(|d| [-d, d]);
+            let places = std::iter::once(0.0).chain(distances).map(|distance| at + distance);
+            let within = places.filter(|at| (0.0..=1.0).contains(at));
+            let site =
+                |at: f64| Site { point: Point { tau: before.tau + at * step, ..before }, ..sites[window[1]].clone() };
+            found.extend(within.map(site));
         }
     }
 }

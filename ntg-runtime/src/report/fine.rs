@@ -131,8 +131,13 @@ impl Plan {
                 }
             };
             part.check(nlp, (&parts, wanted), &mut checked);
+            // Equations are measured by their mean and integral over the points alone.
             for dips in part.at_dips(nlp, &x)? {
-                dips.check(nlp, (&parts, wanted), &mut checked);
+                dips.check(nlp, (&parts, Wanted::Violated), &mut |found| {
+                    if found.bounds.0 < found.bounds.1 {
+                        checked(found);
+                    }
+                });
             }
         }
         Ok(terms)

@@ -33,7 +33,7 @@ pub(crate) fn of_outcome(nlp: &Transcription, outcome: &Outcome) -> Status {
 /// As [`of_outcome`], of the solver's status and of whether the end is a saddle.
 pub(super) fn of_end(nlp: &Transcription, status: ntg_nlp::Status, is_saddle: bool) -> Status {
     match in_words(nlp, status) {
-        Status::Solved if is_saddle => Status::Saddle,
+        Status::Solved if is_saddle => Status::Stationary,
         status => status,
     }
 }

@@ -2,7 +2,6 @@
 
 use super::{ConstraintReport, RefineStatus, Report, hints};
 use crate::digits::brief;
-use crate::status::Status;
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::member_words;
 use crate::transcribe::times::phase_words;
@@ -71,15 +70,6 @@ impl Report {
         });
         let independent = &self.solution.structure().independent;
         let between = self.violated_between().into_iter().map(|constraint| violated_between(constraint, independent));
-        let saddle = (self.status == Status::Saddle).then(|| Warning {
-            message:
-                "this is no minimum: beside it the objective is better, and the solve could not get away from it; \
-                      give a guess that does not lie in its symmetry, or try several starts"
-                    .to_owned(),
-            place: self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone()),
-            constraint: String::new(),
-            time: None,
-        });
         let unmet = self.refined.iter().filter(|refined| refined.status != RefineStatus::Met).map(|refined| Warning {
             message: format!("refinement to {:.0e}: {}", refined.tolerance, refined.status),
             place: Place::default(),
@@ -87,16 +77,7 @@ impl Report {
             time: None,
         });
         let cost = self.cost_is_off().into_iter().chain(self.equations_are_off());
-        singular
-            .chain(told)
-            .chain(poles)
-            .chain(saddle)
-            .chain(coarse)
-            .chain(left)
-            .chain(cost)
-            .chain(between)
-            .chain(unmet)
-            .collect()
+        singular.chain(told).chain(poles).chain(coarse).chain(left).chain(cost).chain(between).chain(unmet).collect()
     }
 
     /// Tells that the guess keeps all constraints and has a better objective than what was found.

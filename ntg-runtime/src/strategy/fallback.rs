@@ -67,7 +67,7 @@ fn other_ways(settings: Settings) -> Settings {
         Violations::Squared => Violations::Absolute,
     };
     let inertia_correction = match settings.inertia_correction {
-        InertiaCorrection::InTurns | InertiaCorrection::ByElement => InertiaCorrection::ByShift,
+        InertiaCorrection::ByElement => InertiaCorrection::ByShift,
         InertiaCorrection::ByShift => InertiaCorrection::ByElement,
     };
     Settings { restoration, inertia_correction, ..settings }

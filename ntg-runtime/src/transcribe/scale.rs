@@ -151,11 +151,8 @@ impl Transcription<'_> {
             *scale = size(variable, &Unit::default());
         }
         for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
-            let family = *first as usize..*first as usize + family_len(declared.family);
-            let most = guess[family.clone()].iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-            for variable in family {
-                let rounding = most > 0.0 && ROUNDING.contains(&(guess[variable].abs() / most));
-                scale[variable] = if rounding { usable(most, &declared.unit) } else { size(variable, &declared.unit) };
+            for variable in (*first as usize..).take(family_len(declared.family)) {
+                scale[variable] = size(variable, &declared.unit);
             }
         }
         let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
