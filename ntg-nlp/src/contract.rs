@@ -109,6 +109,9 @@ pub struct Limits {
     /// Variables with the same number share their typical size, such as the coefficients of one spline. Empty: each has
     /// its own.
     pub alike: Vec<u32>,
+    /// Whether the size of a variable is that of a start that says little about it: it is no more than a little beside 0, or
+    /// is there for want of a better one. Empty: none is.
+    pub doubtful: Vec<bool>,
     /// Rows with the same number are one function at several points, whose slopes are comparable. Empty: those of one place
     /// in the elements of a block are.
     pub relation: Vec<u32>,

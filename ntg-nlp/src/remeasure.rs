@@ -40,6 +40,10 @@ pub(crate) const UNSEEN: f64 = 0.5;
 /// Such a variable has outgrown its size where it becomes so many times as large. A fit to the gallery: 100 and 1000 solve
 /// as many problems, and with 1000 steps crawl for longer.
 pub(crate) const OUTGROWN: f64 = 100.0;
+/// What has a doubtful start (`Limits::doubtful`) has outgrown its size where it becomes so many times as large as that, and as
+/// the start. A choice: a size that is off by less does little harm. Where any start may be outgrown so, problem 57 of Hock and
+/// Schittkowski runs off along an exponential that has died out.
+pub(crate) const OUTGROWN_GUESS: f64 = 1e4;
 /// By how much the new size of what has outgrown its typical size exceeds what it is.
 const MARGIN: f64 = 10.0;
 /// Below so many typical sizes the rounding of an objective's terms, 2e-10 of what it varies by, is nothing beside a gap of

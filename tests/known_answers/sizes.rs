@@ -396,3 +396,92 @@ fn a_tank_may_be_full_to_one_unit() {
         }
     }
 }
+
+/// Guesses from 1 down to next to nothing, as people write who have been told not to begin at 0.
+fn small_guesses() -> impl Iterator<Item = String> {
+    ["1", "0.1", "1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-12"]
+        .into_iter()
+        .map(Into::into)
+}
+
+/// Solves a text with each small guess in place of `GUESS`: the optimum within some iterations.
+#[track_caller]
+fn from_small_guesses(text: &str, optimum: f64, iterations: usize) {
+    for guess in small_guesses() {
+        let report = Shipped::text(&text.replace("GUESS", &guess)).solve();
+        close(1.0 + report.objective, 1.0 + optimum, 1e-6);
+        assert!(report.iterations <= iterations, "{guess}: {} iterations", report.iterations);
+    }
+}
+
+/// Nothing but the objective tells the size of the state, which is at rest at the solution.
+#[test]
+fn a_guess_next_to_0_is_no_size_of_a_state() {
+    from_small_guesses(
+        "problem O { duration T = 2; state x; input u; collocation gauss(points = 3, intervals = 6);
+         minimize integral(sqrt(1 + (x - 1)^2) + u^2); dynamics { der(x) == u; } guess { x = GUESS; u = 0; } }",
+        2.0,
+        30,
+    );
+    from_small_guesses(
+        "problem Q { duration T = 3; state x, v; input f in -2 .. 2; collocation gauss(points = 3, intervals = 10);
+         minimize integral((x - 1)^2 + 0.1 * f^2); dynamics { der(x) == v; der(v) == x - x^3 + f; }
+         initial { v == 0; } guess { x = GUESS; v = GUESS; f = GUESS; } }",
+        0.0,
+        40,
+    );
+}
+
+/// Variables: a convex one, one whose objective is -1e-12 at the guess, and a fit of which nothing is known.
+#[test]
+fn a_guess_next_to_0_is_no_size_of_a_variable() {
+    let of = |cost: &str| {
+        format!(
+            "problem S {{ duration T = 1; output d: spline(order = 2, intervals = 1); variable b;
+             minimize {cost} + integral(der(d)^2); initial {{ d == 0; }} final {{ d == 0; }} guess {{ b = GUESS; }} }}"
+        )
+    };
+    from_small_guesses(&of("sqrt(1 + (b - 1)^2)"), 1.0, 30);
+    // Newton steps away from a maximum double the distance: forty doublings from 1e-12, and as many after each restart.
+    from_small_guesses(&of("b^4 - b^2"), -0.25, 160);
+    from_small_guesses(
+        "problem F { duration T = 5; state x; variable k, c; collocation gauss(points = 3, intervals = 10);
+         dynamics { der(x) == -k * x + c; }
+         measure { at(1, x) == 1.2 sigma 0.1; at(2, x) == 0.7 sigma 0.1; at(4, x) == 0.45 sigma 0.1;
+                   initial(x) == 2 sigma 0.1; }
+         guess { x = GUESS; k = GUESS; c = GUESS; } }",
+        0.182_484_744,
+        100,
+    );
+}
+
+/// Boundary values and limits tell sizes beside which the guess is nothing.
+#[test]
+fn a_guess_next_to_0_is_nothing_beside_what_equations_tell() {
+    from_small_guesses(
+        "problem Cart { duration T in 0.1 .. 20; state x, v, a, w; input f in -10 .. 10;
+         collocation gauss(points = 3, intervals = 15); minimize T + 0.01 * integral(f^2);
+         dynamics { der(x) == v; der(v) == f + 0.3 * sin(a); der(a) == w; der(w) == -9.81 * sin(a) - f * cos(a); }
+         initial { x == 0; v == 0; a == 0; w == 0; } final { x == 3; v == 0; a == 0; w == 0; }
+         guess { a = GUESS; w = GUESS; v = GUESS; } }",
+        2.395_272_485,
+        60,
+    );
+}
+
+/// Four charges on a sphere that begin next to a plane: the tetrahedron (Thomson's problem), `6 / sqrt(8 / 3)`; the square is
+/// a saddle. Members that are 6e-17 are rounding of 0.
+#[test]
+fn charges_beside_a_plane_leave_it() {
+    for height in ["0.1", "1e-2", "1e-3", "1e-4", "1e-5"] {
+        let report = Shipped::text(&format!(
+            "problem Charges {{ const n = 4; duration T = 1; output d: spline(order = 2, intervals = 1); variable p[n, 3];
+             minimize sum(i in 1 .. n, sum(j in i + 1 .. n, 1 / norm(p[i] - p[j]))) + integral(der(d)^2);
+             initial {{ d == 0; }} final {{ d == 0; }} temporal {{ for i in 1 .. n {{ norm(p[i]) == 1; }} }}
+             guess {{ for i in 1 .. n {{ p[i] = (cos(2 * pi * i / n), sin(2 * pi * i / n), {height} * i); }} }} }}"
+        ))
+        .solve();
+        close(report.objective, 6.0 / (8.0_f64 / 3.0).sqrt(), 1e-8);
+        assert!(report.iterations < 100, "{height}: {}", report.iterations);
+    }
+}

@@ -5,7 +5,8 @@ use crate::contract::Nlp;
 use crate::kkt::System;
 use crate::outcome::Outcome;
 use crate::remeasure::{
-    self, Measure, OUTGROWN, UNSEEN, is_little, is_near_scales, objective_at_end, outgrown, sizes_at_end,
+    self, Measure, OUTGROWN, OUTGROWN_GUESS, UNSEEN, is_little, is_near_scales, objective_at_end, outgrown,
+    sizes_at_end,
 };
 use crate::residuals::{self, ACCEPTABLE, ROUNDING, Residuals, slot_terms};
 use crate::scaling::Scales;
@@ -80,10 +81,15 @@ impl<'a, N: Nlp> State<'a, N> {
         }
     }
 
-    /// From here on the solve ends where variables outgrow typical sizes of which the start shows nothing.
+    /// From here on the solve ends where variables outgrow their typical sizes.
     pub(super) fn watch_sizes(&mut self) {
-        let limit = |multiple: f64| if multiple < UNSEEN { OUTGROWN } else { f64::INFINITY };
-        self.size_limits = multiples(self.nlp.limits(), self.variables()).into_iter().map(limit).collect();
+        let is_doubtful = |j: usize| self.nlp.limits().doubtful.get(j).is_some_and(|doubtful| *doubtful);
+        let limit = |(j, multiple): (usize, f64)| match multiple {
+            multiple if multiple < UNSEEN => OUTGROWN,
+            multiple if is_doubtful(j) => OUTGROWN_GUESS * multiple.max(1.0),
+            _ => f64::INFINITY,
+        };
+        self.size_limits = multiples(self.nlp.limits(), self.variables()).into_iter().enumerate().map(limit).collect();
     }
 
     /// Larger sizes of the variables that have outgrown theirs, if any have.

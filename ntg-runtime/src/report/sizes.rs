@@ -115,6 +115,7 @@ impl Sizes {
     /// zeros elsewhere.
     pub(super) fn at(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation)) -> Self {
         let relations = &nlp.elements.relations;
+        let scale = nlp.grown_sizes(&outcome.x);
         let mut terms = vec![Terms::default(); relations.count()];
         let groups = &nlp.model.structure.groups;
         let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
@@ -139,7 +140,7 @@ impl Sizes {
                 slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
                     let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
                     let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
-                    (value, typical.map_or(0.0, |(j, _)| nlp.limits.scale[*j as usize]))
+                    (value, typical.map_or(0.0, |(j, _)| scale[*j as usize]))
                 }));
                 for (row, rest) in rest.iter_mut().enumerate() {
                     let lane = row * block.elements + e;

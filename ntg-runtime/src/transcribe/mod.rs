@@ -333,6 +333,7 @@ fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f6
         upper: bounds.iter().map(|b| b.1).collect(),
         scale: vec![1.0; bounds.len()],
         alike: vec![],
+        doubtful: vec![],
         relation: elements.relations.of_row.clone(),
         row_lower,
         row_upper,

@@ -7,6 +7,7 @@ use super::error::SetupError;
 use super::instances::{family_len, family_members};
 use super::layout::Time;
 use super::rows::{RowInfo, RowKind, bound_size};
+use super::sizes::SMALL_GUESS;
 use super::slots::AffineMap;
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
@@ -14,7 +15,8 @@ use ntg_structure::{Family, Unit};
 use std::ops::Range;
 
 /// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
-/// by as much. A law: that of the acceptable end (1e-6) to the default tolerance.
+/// by as much; a size below this fraction of its variable is too small. A law: that of the acceptable end (1e-6) to the default
+/// tolerance.
 const TOO_LARGE: f64 = 1e-2;
 
 /// At a point that a solve has found, what is below this fraction of its size lies at a bound, which tells no size. A law:
@@ -32,8 +34,8 @@ const OTHER_KIND: f64 = 1e6;
 /// where a size of either kind serves.
 const OFFSET: Range<f64> = 1e-10..1e-3;
 
-/// An output in all phases of an agent.
-struct WholeOutput<'a> {
+/// What has a size of its own: an output in all phases of an agent, or a variable.
+struct Quantity<'a> {
     name: &'a str,
     family: Option<Family>,
     index: Option<i64>,
@@ -50,9 +52,10 @@ impl Transcription<'_> {
         let automatic = settings.scaling != Scaling::Off;
         let mut scale = vec![1.0; self.limits.lower.len()];
         self.origin.clear();
+        self.limits.doubtful = vec![];
         if automatic {
             self.origin = self.origins(guess);
-            self.automatic(guess, &mut scale);
+            self.limits.doubtful = self.automatic(guess, &mut scale);
         }
         let from_guess = scale.clone();
         for (name, size) in &settings.scales {
@@ -120,47 +123,64 @@ impl Transcription<'_> {
         origins
     }
 
-    /// Equation 5.5: the largest guessed coefficient or guess; else what balances constraints; else the unit.
-    fn automatic(&self, guess: &[f64], scale: &mut [f64]) {
+    /// Equation 5.5: the largest guessed coefficient or guess; else what balances constraints; else the unit. Gives the
+    /// variables whose guess says little about their size: it is small beside the unit, or is one unit for want of a guess.
+    fn automatic(&self, guess: &[f64], scale: &mut [f64]) -> Vec<bool> {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         let agents = layout.agents.iter();
-        let outputs: Vec<WholeOutput> = agents.flat_map(|agent| self.outputs_of(agent.phases.clone())).collect();
+        let outputs: Vec<Quantity> = agents.flat_map(|agent| self.outputs_of(agent.phases.clone())).collect();
+        let variables = structure.variables.iter().zip(&layout.variable_first).flat_map(|(declared, first)| {
+            family_members(declared.family).into_iter().zip(*first..).map(|(index, variable)| Quantity {
+                name: &declared.name,
+                family: declared.family,
+                index,
+                unit: &declared.unit,
+                coefficients: vec![variable],
+            })
+        });
+        let (count, mut quantities) = (outputs.len(), outputs);
+        quantities.extend(variables);
         let mut guess = guess.to_vec();
         let from_origin = |known: &[f64]| -> Vec<f64> {
             let origins = self.origin.iter().copied().chain(std::iter::repeat(0.0));
             known.iter().zip(origins).map(|(value, origin)| value - origin).collect()
         };
-        let largest = |output: &WholeOutput, of: &[f64]| {
-            output.coefficients.iter().map(|v| of[*v as usize].abs()).fold(0.0, f64::max)
+        let largest = |quantity: &Quantity, of: &[f64]| {
+            quantity.coefficients.iter().map(|v| of[*v as usize].abs()).fold(0.0, f64::max)
         };
-        let mut guessed: Vec<f64> = outputs.iter().map(|output| largest(output, &from_origin(&guess))).collect();
-        let most: Vec<f64> = outputs.iter().map(|output| of_kind(&outputs, &guessed, output, f64::max)).collect();
-        for ((output, guessed), most) in outputs.iter().zip(&mut guessed).zip(most) {
+        let mut guessed: Vec<f64> = quantities.iter().map(|one| largest(one, &from_origin(&guess))).collect();
+        let most: Vec<f64> = quantities.iter().map(|one| of_kind(&quantities, &guessed, one, f64::max)).collect();
+        for ((quantity, guessed), most) in quantities.iter().zip(&mut guessed).zip(most) {
             if most > 0.0 && ROUNDING.contains(&(*guessed / most)) {
                 *guessed = 0.0;
-                output.coefficients.iter().for_each(|v| guess[*v as usize] = 0.0);
+                quantity.coefficients.iter().for_each(|v| guess[*v as usize] = 0.0);
             }
+        }
+        let bound = |variable: usize| bound_size((self.limits.lower[variable], self.limits.upper[variable]));
+        let own = |variable: usize| if guess[variable] == 0.0 { bound(variable) } else { guess[variable].abs() };
+        for (variable, scale) in scale.iter_mut().enumerate().skip(layout.coefficients) {
+            *scale = usable(own(variable), &Unit::default());
+        }
+        let (outputs, variables) = quantities.split_at(count);
+        for (output, guessed) in outputs.iter().zip(&guessed) {
             let size = usable(*guessed, output.unit);
             output.coefficients.iter().for_each(|v| scale[*v as usize] = size);
         }
-        let size = |variable: usize, unit: &Unit| match guess[variable].abs() {
-            0.0 => usable(bound_size((self.limits.lower[variable], self.limits.upper[variable])), unit),
-            size => usable(size, unit),
-        };
-        for (variable, scale) in scale.iter_mut().enumerate().skip(layout.coefficients) {
-            *scale = size(variable, &Unit::default());
-        }
-        for (declared, first) in structure.variables.iter().zip(&layout.variable_first) {
-            for variable in (*first as usize..).take(family_len(declared.family)) {
-                scale[variable] = size(variable, &declared.unit);
-            }
+        for variable in variables {
+            let only = variable.coefficients[0] as usize;
+            scale[only] = usable(own(only), variable.unit);
         }
         let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
         // One unit everywhere is what nobody has guessed of an output above 0 (section 8.1), and no size of its own; where a
         // boundary condition says so, it is.
         let is_fixed = |v: &u32| self.linear.value(&AffineMap { terms: vec![(*v, 1.0)], offset: 0.0 }).is_some();
-        let is_unit = |o: &&WholeOutput| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor);
-        let mut known = guess.clone();
+        let is_unit = |o: &&Quantity| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor);
+        let (mut known, mut doubtful) = (guess.clone(), vec![false; guess.len()]);
+        let is_small = |(quantity, guessed): &(&Quantity, &f64)| **guessed < SMALL_GUESS * quantity.unit.factor;
+        let small = quantities.iter().zip(&guessed).filter(is_small).map(|(quantity, _)| quantity);
+        for quantity in small.chain(quantities.iter().filter(is_unit)) {
+            quantity.coefficients.iter().for_each(|v| doubtful[*v as usize] = true);
+        }
         for output in outputs.iter().filter(is_unit).filter(|o| !o.coefficients.iter().any(is_fixed)) {
             output.coefficients.iter().for_each(|v| known[*v as usize] = 0.0);
         }
@@ -169,15 +189,18 @@ impl Transcription<'_> {
         if !self.balance_sizes(&groups, (&known, &sizes), scale) {
             self.balance_sizes(&groups, (&guess, &sizes), scale);
         }
-        for (output, own) in outputs.iter().zip(&guessed) {
-            let least = of_kind(&outputs, &guessed, output, f64::min);
-            let most = of_kind(&outputs, &guessed, output, f64::max);
-            let size = largest(output, scale);
-            if size != *own && most > 0.0 && (size * OTHER_KIND < least || size > OTHER_KIND * most) {
+        for (quantity, own) in quantities.iter().zip(&guessed) {
+            let least = of_kind(&quantities, &guessed, quantity, f64::min);
+            let most = of_kind(&quantities, &guessed, quantity, f64::max);
+            let size = largest(quantity, scale);
+            // What has a guess, however small, is of the kind; what has none may differ by more.
+            let beyond = if *own > 0.0 { 1.0 } else { OTHER_KIND };
+            if size != *own && most > 0.0 && (size * OTHER_KIND < least || size > beyond * most) {
                 let size = size.clamp(least, most);
-                output.coefficients.iter().for_each(|v| scale[*v as usize] = size);
+                quantity.coefficients.iter().for_each(|v| scale[*v as usize] = size);
             }
         }
+        doubtful
     }
 
     /// Replaces sizes that a point shows to be too large, if it is a solution (docs/maths.md, section 11.12): what a solution
@@ -224,6 +247,20 @@ impl Transcription<'_> {
         differs.then(|| sizes.into_iter().zip(scale).map(|(smaller, size)| smaller.unwrap_or(*size)).collect())
     }
 
+    /// The size of each variable, or what the variables that share it are at a solution, where that is so many times as large
+    /// that the guess told too small a one: what rounding of the solution is judged by.
+    pub(crate) fn grown_sizes(&self, x: &[f64]) -> Vec<f64> {
+        let mut sizes = self.limits.scale.clone();
+        let mut grow = |group: &[u32]| {
+            let most = group.iter().map(|v| x[*v as usize].abs()).fold(0.0, f64::max);
+            let grown = group.iter().filter(|v| TOO_LARGE * most > self.limits.scale[**v as usize]);
+            grown.for_each(|v| sizes[*v as usize] = most);
+        };
+        self.output_groups().iter().for_each(|group| grow(group));
+        (self.model.layout.coefficients as u32..x.len() as u32).for_each(|variable| grow(&[variable]));
+        sizes
+    }
+
     /// The coefficients of each output.
     pub(super) fn output_groups(&self) -> Vec<Vec<u32>> {
         self.groups().into_iter().map(|(group, _)| group).collect()
@@ -261,15 +298,15 @@ impl Transcription<'_> {
     }
 
     /// Every output of some phases once, with the coefficients of all of them.
-    fn outputs_of(&self, phases: Range<usize>) -> Vec<WholeOutput<'_>> {
-        let mut found: Vec<WholeOutput> = vec![];
+    fn outputs_of(&self, phases: Range<usize>) -> Vec<Quantity<'_>> {
+        let mut found: Vec<Quantity> = vec![];
         for phase in phases {
             let member = &self.model.layout.phases[phase];
             for output in &member.outputs {
                 let declared = &self.model.structure.phases[member.phase].outputs[output.output];
                 match found.iter_mut().find(|f| f.name == declared.name && f.index == output.index) {
                     Some(known) => known.coefficients.extend(&output.coefficients),
-                    None => found.push(WholeOutput {
+                    None => found.push(Quantity {
                         name: &declared.name,
                         family: declared.family,
                         index: output.index,
@@ -339,16 +376,16 @@ impl Transcription<'_> {
     }
 }
 
-/// The least or largest guess that is not 0 of other outputs of the kind of one: members of one array, or outputs with one unit.
+/// The least or largest guess that is not 0 of other quantities of the kind of one: members of one array, or quantities with one unit.
 /// 0 where there is none.
-fn of_kind(outputs: &[WholeOutput], guessed: &[f64], kind: &WholeOutput, which: fn(f64, f64) -> f64) -> f64 {
-    let is_of_kind = |output: &WholeOutput| {
-        if output.coefficients == kind.coefficients {
+fn of_kind(quantities: &[Quantity], guessed: &[f64], kind: &Quantity, which: fn(f64, f64) -> f64) -> f64 {
+    let is_of_kind = |one: &Quantity| {
+        if one.coefficients == kind.coefficients {
             return false;
         }
-        output.name == kind.name || (!kind.unit.symbol.is_empty() && output.unit.symbol == kind.unit.symbol)
+        one.name == kind.name || (!kind.unit.symbol.is_empty() && one.unit.symbol == kind.unit.symbol)
     };
-    let own = outputs.iter().zip(guessed).filter(|(output, guessed)| **guessed > 0.0 && is_of_kind(output));
+    let own = quantities.iter().zip(guessed).filter(|(one, guessed)| **guessed > 0.0 && is_of_kind(one));
     own.map(|(_, guessed)| *guessed).reduce(which).unwrap_or(0.0)
 }
 

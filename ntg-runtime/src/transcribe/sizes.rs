@@ -22,6 +22,11 @@ const DOUBTFUL: f64 = 1e-6;
 /// A bound below this part of a size that other constraints tell is met anyway, and tells no size. A law: the tolerance.
 const MET: f64 = 1e-8;
 
+/// A guess below this part of the unit may be one of someone who means a little more than 0, `guess { x = 1e-6; }`, and below the
+/// second part of what other constraints tell it is. Choices: a size that is too small by less does little harm.
+pub(super) const SMALL_GUESS: f64 = 1e-2;
+const MUCH_SMALLER: f64 = 1e-3;
+
 /// A bound so many times as large as what other constraints tell is no size. A choice: bounds that mean something are within it.
 const FAR_BOUND: f64 = 1e4;
 
@@ -153,14 +158,15 @@ impl Transcription<'_> {
         units.iter().zip(&balance.group).for_each(|(own, group)| unit[*group] = *own);
         let mut trial = balance.clone();
         trial.nothing = unit.iter().map(|unit| DOUBTFUL * unit).collect();
-        let is_small = |size: Option<f64>, group: usize| size.is_some_and(|size| size < trial.nothing[group]);
-        let doubtful: Vec<usize> = (0..unit.len())
-            .filter(|&group| is_small(balance.size[group].or_else(|| balance.least_own_size(group)), group))
-            .collect();
+        let is_small = |group: &usize| match balance.size[*group] {
+            Some(guessed) => guessed < SMALL_GUESS * unit[*group],
+            None => balance.least_own_size(*group).is_some_and(|bound| bound < trial.nothing[*group]),
+        };
+        let doubtful: Vec<usize> = (0..unit.len()).filter(is_small).collect();
         if doubtful.is_empty() {
             return;
         }
-        doubtful.iter().for_each(|group| trial.size[*group] = None);
+        doubtful.iter().for_each(|group| trial.forget(*group));
         self.find_sizes((x, scale), at, &mut trial);
         let size = self.objective_size(at, balance).max(at.objective.abs());
         for group in doubtful {
@@ -168,9 +174,13 @@ impl Transcription<'_> {
             match trial.size[group] {
                 Some(told) => {
                     balance.nothing[group] = MET * told;
-                    balance.size[group] = own.filter(|own| *own >= MET * told);
+                    if own.is_some_and(|own| own < MUCH_SMALLER * told) {
+                        balance.forget(group);
+                    }
                 }
-                None if self.objective_size(at, &balance.alone(group)) < DOUBTFUL * size => {
+                None if own.is_none_or(|own| own < trial.nothing[group])
+                    && self.objective_size(at, &balance.alone(group)) < DOUBTFUL * size =>
+                {
                     balance.nothing[group] = trial.nothing[group];
                     balance.size[group] = None;
                 }
@@ -349,6 +359,14 @@ impl Balance {
             sizes.filter(|size| size.is_normal()).reduce(f64::min)
         })
         .collect()
+    }
+
+    /// Forgets what the guess says of a group: its size, and the values of constraints of the group alone.
+    fn forget(&mut self, group: usize) {
+        if self.size[group].take().is_some() {
+            let alone = self.constraints[group].iter().filter(|(constraint, _)| self.groups[*constraint].len() == 1);
+            alone.for_each(|(constraint, _)| self.value[*constraint] = 0.0);
+        }
     }
 
     /// The sizes of one group alone.
