@@ -18,14 +18,16 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
 use crate::syntax::ast::{self, Course, DeclaredName, ItemKind, Role};
 
+/// What is said of states under a rule that serves none.
+const NO_GAUSS: &str = "states need gauss points, and as many for equalities";
+
 impl<'a> Elaborator<'a> {
     /// What is told once for all names of a declaration; the spline itself follows for each name.
     pub(super) fn collocated_start(&mut self, phase: usize, (_, role): (&Course, Role), span: Span) -> Spline {
         let collocation = self.problem.phases[phase].collocation;
         let fits = matches!(collocation, Collocation::Gauss { points, equalities, .. } if points == equalities);
         if !fits && role == Role::State {
-            let message = "states need gauss points, and as many for equalities";
-            let finding = Diagnostic::new(Code::WrongPoints, span, message);
+            let finding = Diagnostic::new(Code::WrongPoints, span, NO_GAUSS);
             self.report(
                 finding.help("write `collocation gauss(points = 3, intervals = 20);`, or give the state a spline"),
             );
@@ -57,8 +59,8 @@ impl<'a> Elaborator<'a> {
         };
         let Some(breakpoints) = self.common_breakpoints(phase) else {
             let message = "states and inputs without a spline of their own need intervals";
-            // However many they are, that is one mistake.
-            if self.found.iter().all(|finding| finding.message != message) {
+            // However many they are, that is one mistake; so is `uniform`, which takes no intervals.
+            if self.found.iter().all(|finding| finding.message != message && finding.message != NO_GAUSS) {
                 let finding = Diagnostic::new(Code::WrongSpline, name.name.span, message);
                 self.report(
                     finding.help("write `collocation gauss(points = 3, intervals = 20);`, which serves all of them"),

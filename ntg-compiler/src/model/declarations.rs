@@ -220,6 +220,18 @@ impl<'a> Elaborator<'a> {
         let span = Span::new(item.span.start as usize, item.span.start as usize + word.len());
         let message = format!("`{word}` means nothing {place}");
         self.report(Diagnostic::new(Code::WrongLevel, span, message).help(help));
+        // Where such a name is used nothing is wrong but its place, which was told.
+        match &item.kind {
+            ItemKind::Param(param) => self.lost.push(&param.name.text),
+            ItemKind::Continuation(continuation) => self.lost.push(&continuation.name.text),
+            ItemKind::Table(table) => self.lost.push(&table.name.text),
+            ItemKind::Variable(variables) => {
+                self.lost.extend(variables.names.iter().map(|name| name.name.text.as_str()))
+            }
+            ItemKind::Output(outputs) => self.lost.extend(outputs.names.iter().map(|name| name.name.text.as_str())),
+            ItemKind::Let(definition) => self.lost.push(&definition.name.text),
+            _ => {}
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod format;
 mod helps;
 mod libraries;
 mod mistakes;
+mod mistakes_codes;
 mod mistakes_words;
 mod model_ambiguities;
 mod model_conditions;

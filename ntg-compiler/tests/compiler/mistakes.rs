@@ -5,6 +5,7 @@
 
 use std::fmt::Write as _;
 
+use crate::mistakes_codes::{MEANING, NOTES, Section};
 use crate::mistakes_words::WORDS;
 use crate::model_support::Files;
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
@@ -34,7 +35,7 @@ const GOOD: &str = "problem Flight {
 const EQUATIONS: &str = "dynamics { der(r) == v;  der(v) == u / m;  der(m) == -norm(u) / 3 [km/s]; }";
 
 /// What is written, where it stands in the problem (`EQUATIONS` or an item), and the code.
-const MISTAKES: &[(&str, &[(&str, &str)])] = &[
+const MISTAKES: &[Section] = &[
     (
         "Derivatives",
         &[
@@ -487,8 +488,8 @@ fn files() -> Files {
 }
 
 /// The sections of the page.
-fn sections() -> impl Iterator<Item = &'static (&'static str, &'static [(&'static str, &'static str)])> {
-    MISTAKES.iter().chain([&WORDS])
+pub(crate) fn sections() -> impl Iterator<Item = &'static Section> {
+    MISTAKES.iter().chain([&WORDS, &MEANING, &NOTES])
 }
 
 fn found(spec: &str) -> Vec<Diagnostic> {
@@ -498,18 +499,22 @@ fn found(spec: &str) -> Vec<Diagnostic> {
     }
 }
 
-/// The problem with a mistake in it.
+/// The problem with a mistake in it, or the whole problem that is one.
 fn with(written: &str) -> String {
     match written.split([' ', '{']).next() {
+        Some("problem") => written.to_owned(),
         Some("dynamics") => GOOD.replace(EQUATIONS, written).replace("HERE", ""),
         Some("use") => format!("{written}\n{}", GOOD.replace("HERE", "")),
         _ => GOOD.replace("HERE", written),
     }
 }
 
-/// The first error of a mistake.
-fn first(written: &str) -> Option<Diagnostic> {
-    found(&with(written)).into_iter().find(|finding| finding.severity == Severity::Error)
+/// The first error of a mistake, or the note that it is there for.
+fn first(written: &str, code: &str) -> Option<Diagnostic> {
+    let note = code.starts_with('N');
+    let meant =
+        |finding: &Diagnostic| if note { finding.code.text() == code } else { finding.severity == Severity::Error };
+    found(&with(written)).into_iter().find(meant)
 }
 
 fn page() -> String {
@@ -520,8 +525,8 @@ fn page() -> String {
     );
     for (title, mistakes) in sections() {
         let _ = write!(page, "\n## {title}\n\n| written | said | help |\n|---|---|---|\n");
-        for (written, _) in *mistakes {
-            let Some(finding) = first(written) else { continue };
+        for (written, code) in *mistakes {
+            let Some(finding) = first(written, code) else { continue };
             let cell = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
             let (code, message) = (finding.code.text(), cell(&finding.message));
             let help = finding.help.as_deref().map(cell).unwrap_or_default();
@@ -543,7 +548,7 @@ fn every_mistake_has_the_code_of_the_table_and_a_place() {
     let mistakes: Vec<&(&str, &str)> = sections().flat_map(|(_, mistakes)| *mistakes).collect();
     assert!(mistakes.len() >= 150);
     for (written, code) in mistakes {
-        let Some(finding) = first(written) else {
+        let Some(finding) = first(written, code) else {
             let _ = writeln!(wrong, "{written}: nothing is said");
             continue;
         };
@@ -563,10 +568,10 @@ const SEVERAL: &[&str] = &["let a = dx/dt;", "let a = d/dt(x);"];
 #[test]
 fn one_mistake_is_told_once() {
     let mut several = String::new();
-    for (written, _) in sections().flat_map(|(_, mistakes)| *mistakes) {
+    for (written, code) in sections().flat_map(|(_, mistakes)| *mistakes) {
         let found = found(&with(written));
         let errors: Vec<&Diagnostic> = found.iter().filter(|finding| finding.severity == Severity::Error).collect();
-        if (errors.len() > 1) != SEVERAL.contains(written) {
+        if (errors.len() > 1) != SEVERAL.contains(written) || (code.starts_with('N') && !errors.is_empty()) {
             let messages: Vec<&str> = errors.iter().map(|finding| finding.message.as_str()).collect();
             let _ = writeln!(several, "{written}: {messages:?}");
         }
