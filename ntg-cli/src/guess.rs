@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ntg_interp::Interpreted;
-use ntg_report::run::{FORMAT, VERSION, layout};
+use ntg_report::run::{FORMAT, elements, layout, unknown_version};
 use ntg_runtime::guess::Guess;
 use ntg_runtime::problem::Problem;
 use ntg_runtime::structure::{Structure, Unit};
@@ -27,17 +27,21 @@ pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, b
     Ok((of(&saved, path, problem)?, is_same, multipliers))
 }
 
-/// The text of a saved solution of this version.
+/// A saved solution of a version that can be read, with an entry for each element of its arrays.
 fn saved(path: &Path) -> Result<Value, String> {
     let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
-    let saved: Value =
+    let mut saved: Value =
         serde_json::from_str(&text).map_err(|e| format!("`{}` is not JSON: {e}; {SAVED}", path.display()))?;
     if saved["format"] != FORMAT {
         return Err(format!("`{}` is no saved solution (its \"format\" is not \"{FORMAT}\"); {SAVED}", path.display()));
     }
-    if saved["version"] != VERSION {
-        let version = &saved["version"];
-        return Err(format!("`{}` has version {version}; this program reads version {VERSION}", path.display()));
+    if let Some(error) = unknown_version(&saved["version"]) {
+        return Err(format!("`{}` {error}", path.display()));
+    }
+    for key in ["outputs", "variables"] {
+        if let Some(entries) = saved.get_mut(key).and_then(Value::as_object_mut) {
+            *entries = elements(std::mem::take(entries));
+        }
     }
     Ok(saved)
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 /// Rows of vectors and a matrix of variables.
@@ -13,6 +13,9 @@ const MATRIX: &str = "problem Matrix {
     duration T = 5 [s];
     output p[0 .. 1, 1 .. 3] [m]: spline(order = 5, intervals = 3);
     variable k[2, 2] in 0 .. 5;
+    param M[2, 3] = ((1, 2, 3), (4, 5, 6));
+    let trace = k[1, 1] + k[2, 2];
+    let both = (k[1, 1], k[2, 2]);
     minimize integral(sum(i in 0 .. 1, dot(der(p[i], 2), der(p[i], 2)))) + 1 [m^2/s^3] * (k[1, 2] - 1)^2;
     initial { for i in 0 .. 1 { p[i] == ((i, 2 * i, 1) * 1 [m]);  der(p[i]) == 0; } }
     final { for i in 0 .. 1 { p[i] == (0, 0, 0) [m]; } }
@@ -74,17 +77,64 @@ fn elements_of_a_matrix_keep_both_of_their_indices() {
     assert!(csv.starts_with("t [s],\"p[0, 1] [m]\",\"p[0, 2] [m]\""), "{csv}");
     let json = solve(&["--format", "json"]);
     let found: Value = serde_json::from_slice(&json.stdout).expect("a document");
-    let of = |name: &str| found["outputs"][name]["value"][0].as_f64();
-    assert!((of("p[1, 2]").expect("an element") - 2.0).abs() < 1e-9, "{:?}", found["outputs"]);
-    assert!((found["variables"]["k[1, 2]"]["value"].as_f64().expect("a number") - 1.0).abs() < 1e-6);
+    // In documents and files a matrix is one entry, its rows one for each time.
+    let saved = fs::read_to_string(folder.path().join("run.json")).expect("a saved run");
+    let saved: Value = serde_json::from_str(&saved).expect("a document");
+    for found in [&found, &saved] {
+        let p = &found["outputs"]["p"];
+        assert_eq!(
+            (&p["first"], p["value"].as_array().map(Vec::len)),
+            (&json!([0, 1]), p["t"].as_array().map(Vec::len))
+        );
+        let start = &p["value"][0];
+        assert_eq!((start.as_array().map(Vec::len), start[0].as_array().map(Vec::len)), (Some(2), Some(3)), "{p}");
+        assert!((start[1][1].as_f64().expect("an element") - 2.0).abs() < 1e-9, "{p}");
+        assert!((found["variables"]["k"]["value"][0][1].as_f64().expect("a number") - 1.0).abs() < 1e-6);
+        assert!(found["outputs"].get("p[0, 1]").is_none() && found["variables"].get("k[1, 2]").is_none());
+        assert_eq!(found["parameters"]["M"]["value"], json!([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]));
+        assert!(found["lets"]["trace"]["value"].is_f64(), "{}", found["lets"]);
+        assert_eq!(found["lets"]["both"]["value"].as_array().map(Vec::len), Some(2), "{}", found["lets"]);
+    }
+    // Of a file without a layout only the named quantities are taken.
+    let mut named = saved.clone();
+    for key in ["layout", "unknowns"] {
+        named.as_object_mut().expect("an object").remove(key);
+    }
+    fs::write(folder.path().join("named.json"), named.to_string()).expect("a file is written");
+    fs::write(folder.path().join("first.json"), in_the_first_form(saved).to_string()).expect("a file is written");
     // The same names are understood: in routes, as guesses from saved runs, in plots.
-    for arguments in [&["--route", "p[1, 1], p[1, 2]: 1, 2; 0, 0 [m]"][..], &["--guess", "run.json"]] {
+    let route = &["--route", "p[1, 1], p[1, 2]: 1, 2; 0, 0 [m]"][..];
+    for arguments in [route, &["--guess", "run.json"], &["--guess", "first.json"], &["--guess", "named.json"]] {
         let again = solve(arguments);
         assert_eq!(again.status.code(), Some(0), "{}", said(&again));
     }
-    let plot = ["plot", "run.json", "--xy", "p[1, 1],p[1, 2]", "--show", "p[0, 3]", "-o", "p.svg"];
-    let plot = ntg(folder.path(), &plot);
-    assert_eq!(plot.status.code(), Some(0), "{}", said(&plot));
+    let drawn = ["run.json", "first.json"].map(|run| {
+        let plot = ["plot", run, "--xy", "p[1, 1],p[1, 2]", "--show", "p[0, 3]", "-o", "p.svg", "--force"];
+        let plot = ntg(folder.path(), &plot);
+        assert_eq!(plot.status.code(), Some(0), "{}", said(&plot));
+        fs::read_to_string(folder.path().join("p.svg")).expect("a picture")
+    });
+    assert!(drawn[0] == drawn[1], "files of the first version are read as those of the second");
+}
+
+/// A saved run as the first version wrote it: elements had entries of their own, single numbers were lists of one.
+fn in_the_first_form(mut run: Value) -> Value {
+    run["version"] = json!(1);
+    for key in ["outputs", "lets", "variables"] {
+        let entries = run[key].as_object_mut().expect("entries");
+        *entries = ntg_report::run::elements(std::mem::take(entries));
+    }
+    let lets = run["lets"].as_object_mut().expect("entries").values_mut();
+    lets.filter(|one| one["value"].is_f64()).for_each(|one| one["value"] = json!([one["value"]]));
+    let members = |value: &Value| match value.as_array() {
+        Some(rows) => {
+            rows.iter().flat_map(|row| row.as_array().cloned().unwrap_or_else(|| vec![row.clone()])).collect()
+        }
+        None => vec![value.clone()],
+    };
+    let parameters = run["parameters"].as_object_mut().expect("entries").values_mut();
+    parameters.for_each(|one| one["value"] = members(&one["value"]).into());
+    run
 }
 
 #[test]

@@ -187,24 +187,31 @@ impl Found {
         self.report.phases().into_iter().map(|phase| (phase.name, phase.start, phase.end)).collect()
     }
 
-    /// The flat outputs.
+    /// The flat outputs, element by element, and as the vectors and matrices that they are.
     #[getter]
-    fn outputs(&self) -> Vec<CurveData> {
-        curves::outputs(&self.report.solution)
+    fn outputs(&self) -> (Vec<CurveData>, Vec<CurveData>) {
+        let elements = curves::outputs(&self.report.solution);
+        (elements.clone(), curves::gathered(elements))
     }
 
-    /// The named expressions that are functions of time, and those that are numbers.
+    /// The named expressions that are functions of time, likewise, and those that are numbers.
     #[getter]
-    fn expressions(&self) -> (Vec<CurveData>, Vec<NumberData>) {
-        let (mut curves, mut numbers) = (vec![], vec![]);
-        for signal in self.report.solution.signals(&*self.problem) {
-            let (name, unit) = (signal.name().to_owned(), signal.unit().symbol.clone());
-            match signal.span() {
-                Some((start, end)) => curves.push((name, unit, signal.doc().to_owned(), start, end)),
-                None => numbers.push((name, signal.at(0.0), unit)),
-            }
-        }
-        (curves, numbers)
+    fn expressions(&self) -> (Vec<CurveData>, Vec<CurveData>, Vec<NumberData>) {
+        let elements = curves::signals(&self.report.solution, &self.problem);
+        let signals = self.report.solution.signals(&*self.problem).into_iter();
+        let numbers = signals.filter(|signal| signal.span().is_none());
+        let numbers = numbers.map(|signal| (signal.name().to_owned(), signal.at(0.0), signal.unit().symbol.clone()));
+        (elements.clone(), curves::gathered(elements), numbers.collect())
+    }
+
+    /// Which of these names are elements of vectors and matrices: the name, how many elements there are by each index, and
+    /// where the first one stands among the names. A name that is of none has no index.
+    #[staticmethod]
+    #[expect(clippy::needless_pass_by_value, reason = "what Python gives is owned")]
+    fn arrays(names: Vec<String>) -> Vec<(String, Vec<usize>, usize)> {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let found = ntg_report::run::arrays(&names).into_iter();
+        found.map(|array| (array.name, array.shape, array.elements.start)).collect()
     }
 
     /// The function of time of any name, also in one phase alone: unit, documentation, start and end.

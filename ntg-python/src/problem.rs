@@ -15,7 +15,7 @@ use ntg_runtime::solve_from;
 use ntg_runtime::structure::Structure;
 use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyString};
 
 use crate::errors;
 use crate::found::Found;
@@ -123,6 +123,9 @@ pub(crate) fn start(py: Python<'_>, problem: &Interpreted, found: &Found) -> PyR
     Ok(Guess::from(&found.report.solution))
 }
 
+/// Name, documentation, unit, values in that unit, and how many there are by each index.
+type ParameterData = (String, String, String, Vec<f64>, Vec<usize>);
+
 /// Sets parameters: numbers and sequences in declared units, or text with a unit.
 pub(crate) fn assign(problem: &mut Interpreted, parameters: &Bound<'_, PyDict>) -> PyResult<()> {
     let py = parameters.py();
@@ -144,7 +147,7 @@ fn set(problem: &mut Interpreted, name: &str, value: &Bound<'_, PyAny>) -> Resul
     let numbers = match number(value)? {
         Some(number) => vec![number],
         None => {
-            let parts: Vec<Bound<'_, PyAny>> = value.extract().map_err(|_| wrong(value))?;
+            let parts = elements(problem, name, value.extract().map_err(|_| wrong(value))?)?;
             let of = |(index, part): (usize, &Bound<'_, PyAny>)| {
                 let found = number(part).and_then(|found| found.ok_or_else(|| wrong(part)));
                 found.map_err(|words| format!("member {index}: {words}"))
@@ -173,15 +176,37 @@ fn set(problem: &mut Interpreted, name: &str, value: &Bound<'_, PyAny>) -> Resul
     }
 }
 
+/// The members of an array that is given whole: of a matrix those of its rows, one after the other.
+fn elements<'py>(
+    problem: &Interpreted,
+    name: &str,
+    parts: Vec<Bound<'py, PyAny>>,
+) -> Result<Vec<Bound<'py, PyAny>>, String> {
+    let shape = problem.structure().parameters.iter().find(|parameter| parameter.name == name).map(|p| p.shape());
+    let row = |part: &Bound<'py, PyAny>| -> Option<Vec<Bound<'py, PyAny>>> {
+        if part.is_instance_of::<PyString>() || part.is_instance_of::<PyBytes>() { None } else { part.extract().ok() }
+    };
+    let (Some([rows, columns]), Some(given)) =
+        (shape.as_deref(), parts.iter().map(row).collect::<Option<Vec<_>>>().filter(|rows| !rows.is_empty()))
+    else {
+        return Ok(parts);
+    };
+    match given.len() == *rows && given.iter().all(|row| row.len() == *columns) {
+        true => Ok(given.into_iter().flatten().collect()),
+        false => Err(format!("it is a matrix of {rows} x {columns}, and other rows are given")),
+    }
+}
+
 /// Members of an array as text, each with its own unit.
 fn members(problem: &mut Interpreted, name: &str, parts: &[String]) -> Result<(), String> {
     let structure = problem.structure();
     let held = structure.parameters.iter().find(|parameter| parameter.name == name);
-    let held = held.map_or(parts.len(), |parameter| parameter.value.len());
-    if held != parts.len() {
-        return Err(format!("it holds {held} values, but {} are given", parts.len()));
+    let count = held.map_or(parts.len(), |parameter| parameter.value.len());
+    if count != parts.len() {
+        return Err(format!("it holds {count} values, but {} are given", parts.len()));
     }
-    (1..).zip(parts).try_for_each(|(index, part)| problem.assign(&format!("{name}[{index}]"), part))
+    let element = |member: usize| held.map_or_else(|| format!("{name}[{}]", member + 1), |held| held.element(member));
+    (0..).zip(parts).try_for_each(|(member, part)| problem.assign(&element(member), part))
 }
 
 /// A number; none for what is something else.
@@ -243,13 +268,13 @@ impl Compiled {
         errors::findings(py, self.spec.notes.iter(), &self.spec.source)
     }
 
-    /// Name, documentation, unit, values in that unit, and whether it is an array, of every parameter.
+    /// What every parameter is.
     #[getter]
-    fn parameters(&self) -> Vec<(String, String, String, Vec<f64>, bool)> {
+    fn parameters(&self) -> Vec<ParameterData> {
         let parameters = self.problem.structure().parameters;
         let plain = parameters.into_iter().map(|p| {
-            let values = p.value.iter().map(|value| value / p.unit.factor).collect();
-            (p.name, p.doc, p.unit.symbol, values, p.array)
+            let (values, shape) = (p.value.iter().map(|value| value / p.unit.factor).collect(), p.shape());
+            (p.name, p.doc, p.unit.symbol, values, shape)
         });
         plain.collect()
     }

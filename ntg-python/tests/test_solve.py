@@ -372,3 +372,67 @@ def test_constants_are_set_where_a_spec_is_loaded(tmp_path):
         ntg.load(path, n=None)
     with pytest.raises(ntg.SpecError, match="E0"):
         ntg.load(path, pull="8 kg")
+
+
+VECTORS = """
+problem Vectors {
+    duration T = 2 [s];
+    param goal[3] = (1, 2, 3) [m];
+    param M[2, 3] = ((1, 2, 3), (4, 5, 6));
+    output r[3] [m]: spline(order = 4, intervals = 1);
+    output p[0 .. 1, 1 .. 2] [m]: spline(order = 4, intervals = 1);
+    variable k[2] in 0 .. 5;
+    let v [m/s] = der(r);
+    let both = (k[1], 2 * k[2]);
+    minimize integral(dot(der(r, 2), der(r, 2)) + sum(i in 0 .. 1, dot(der(p[i], 2), der(p[i], 2)))) + dot(k - (1, 2), k - (1, 2)) * 1 [m^2/s^3];
+    initial { r == 0;  der(r) == 0;  p == 0;  der(p) == 0; }
+    final { r == goal;  der(r) == 0;  for i in 0 .. 1 { p[i] == (goal[1], goal[2]);  der(p[i]) == 0; } }
+}
+"""
+
+
+def test_vectors_and_matrices_have_the_shape_of_the_times_and_their_own(tmp_path):
+    solution = ntg.loads(VECTORS).solve()
+    r, p, v = (solution[name] for name in ("r", "p", "v"))
+    assert (r.shape, p.shape, v.shape, r.unit) == ((3,), (2, 2), (3,), "m")
+    assert r.elements == ("r[1]", "r[2]", "r[3]") and p.elements[:2] == ("p[0, 1]", "p[0, 2]")
+    t = np.array([[0.0, 0.5], [1.0, 2.0]])
+    assert r(1.0).shape == (3,) and r(t).shape == (2, 2, 3) and p(t).shape == (2, 2, 2, 2) and r([]).shape == (0, 3)
+    # The cubic from rest to rest, of each element.
+    shape = (3 - t) * t**2 / 4
+    np.testing.assert_allclose(r(t), shape[..., None] * [1, 2, 3], atol=1e-6)
+    np.testing.assert_allclose(p(t)[..., 1, :], shape[..., None] * [1, 2], atol=1e-6)
+    np.testing.assert_allclose(v(t), r.derivative(t), atol=1e-9)
+    assert [one(1.0) for one in map(solution.__getitem__, r.elements)] == r(1.0).tolist()
+    # Numbers likewise; an element is asked for by its own name.
+    np.testing.assert_allclose(solution["k"], [1, 2], atol=1e-6)
+    np.testing.assert_allclose(solution["both"], [1, 4], atol=1e-6)
+    assert solution["k[2]"] == solution.variables["k"][1] and solution["both[2]"] == solution.expressions["both"][1]
+    assert {"r", "p", "k", "v", "both"} < set(solution) and "r[1]" in solution and "r[4]" not in solution
+    assert list(solution.outputs) == ["r", "p"]
+    # Tables have a column for each element.
+    assert list(solution.sample(3))[:4] == ["t", "r[1]", "r[2]", "r[3]"] and solution.units["p[1, 2]"] == "m"
+    with pytest.raises(ValueError, match="name one of its elements, `r\\[1\\]`"):
+        solution.plot_track("r", "r[2]")
+    assert [len(axes.lines) for axes in np.ravel(solution.plot("r", "r[1]"))] == [3, 1]
+    # The saved form has the same arrays.
+    solution.save(tmp_path / "run.json")
+    saved = json.loads((tmp_path / "run.json").read_text())
+    written = saved["outputs"]["r"]
+    np.testing.assert_allclose(written["value"], r(np.array(written["t"])), atol=1e-12)
+    assert np.shape(saved["outputs"]["p"]["value"]) == (401, 2, 2) and saved["outputs"]["p"]["first"] == [0, 1]
+    assert np.shape(saved["variables"]["k"]["value"]) == (2,) and saved["lets"]["both"]["value"] == solution["both"].tolist()
+    # What is differentiated or predicted is a vector, too, as far as it is a function of time.
+    nearby = solution.sensitivity("goal[1]").predict({"goal[1]": 1.1})
+    np.testing.assert_allclose(nearby["r"](2.0), [1.1, 2, 3], atol=1e-6)
+
+
+def test_matrices_are_set_as_they_are_read():
+    problem = ntg.loads(VECTORS)
+    assert problem.parameters["M"].value == [[1, 2, 3], [4, 5, 6]] and problem.parameters["goal"].value == [1, 2, 3]
+    other = np.arange(6.0).reshape(2, 3)
+    for given in (other, other.tolist(), other.reshape(-1), [["0", "1", "2"], [3, 4, "5"]]):
+        assert problem.with_parameters(M=given).parameters["M"].value == other.tolist()
+    for wrong, words in [(other.T, "a matrix of 2 x 3"), ([[1, 2, 3], [4, 5]], "2 x 3"), ([[1, 2, None], [3, 4, 5]], "NoneType")]:
+        with pytest.raises(ntg.ParameterError, match=words):
+            problem.with_parameters(M=wrong)

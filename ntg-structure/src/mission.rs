@@ -27,6 +27,16 @@ impl Parameter {
         self.array.then(|| Family { grid: self.grid, ..Family::of(1, last) })
     }
 
+    /// How many members there are by each index: none for a number, rows and columns of a matrix.
+    pub fn shape(&self) -> Vec<usize> {
+        let columns = self.grid.and_then(|grid| usize::try_from(grid.columns).ok()).filter(|columns| *columns > 0);
+        match (self.array, columns) {
+            (false, _) => vec![],
+            (true, None) => vec![self.value.len()],
+            (true, Some(columns)) => vec![self.value.len() / columns, columns],
+        }
+    }
+
     /// What one of its numbers, counted from 0, is called: `v_max`, `start[2]`, of a matrix `A[2, 1]`.
     pub fn element(&self, member: usize) -> String {
         let index =

@@ -1,5 +1,6 @@
 //! The solution for programs. Numbers that are not finite are null.
 
+use ntg_report::run::{gathered, members};
 use ntg_runtime::problem::Problem;
 use ntg_runtime::report::{ConstraintReport, Report, Resolution, Worst};
 use ntg_runtime::structure::{Independent, Parameter};
@@ -31,12 +32,12 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         "violation": { "points": report.violation.points, "between": report.violation.between },
         "times": solution.event_times().into_iter().map(|(name, t)| (name, json!(shown(t)))).collect::<Map<_, _>>(),
         "phases": solution.phases().into_iter().map(|p| json!({ "name": p.name, "start": shown(p.start), "end": shown(p.end) })).collect::<Vec<_>>(),
-        "variables": solution.variables().into_iter().map(|v| {
+        "variables": gathered(solution.variables().into_iter().map(|v| {
             (v.name, json!({ "unit": v.unit.symbol, "value": v.value }))
-        }).collect::<Map<_, _>>(),
+        }).collect()),
         "parameters": solution.structure().parameters.iter().map(parameter).collect::<Map<_, _>>(),
-        "outputs": outputs(solved),
-        "lets": lets(solved),
+        "outputs": gathered(outputs(solved)),
+        "lets": gathered(lets(solved)),
         "constraints": report.constraints.iter().map(|c| constraint(c, independent)).collect::<Vec<_>>(),
         "warnings": report.warnings().iter().map(|w| json!({
             "message": w.message, "expression": w.place.text, "line": w.place.line, "column": w.place.column,
@@ -78,9 +79,8 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
 }
 
 fn parameter(parameter: &Parameter) -> (String, Value) {
-    let shown: Vec<f64> = parameter.value.iter().map(|v| v / parameter.unit.factor).collect();
-    let value = if parameter.array { json!(shown) } else { json!(shown.first()) };
-    (parameter.name.clone(), json!({ "unit": parameter.unit.symbol, "value": value }))
+    let shown = parameter.value.iter().map(|v| json!(v / parameter.unit.factor)).collect();
+    (parameter.name.clone(), json!({ "unit": parameter.unit.symbol, "value": members(shown, &parameter.shape()) }))
 }
 
 fn outputs(solved: &Solved<'_>) -> Map<String, Value> {

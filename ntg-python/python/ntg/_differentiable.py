@@ -49,9 +49,13 @@ class Function:
                 found = solution.objective if one == "objective" else solution[one]
                 if isinstance(found, Curve):
                     raise TypeError(f'`{one}` is a function of time: name times too, as in ("{one}", [0, 60])')
+                if isinstance(found, np.ndarray):
+                    raise TypeError(f"`{one}` has elements: name these, as in `{one}[1]`")
                 rows.append([found])
             else:
                 curve: Any = solution[one[0]]
+                if isinstance(curve, Curve) and curve.shape:
+                    raise TypeError(f"`{curve.name}` has elements: name these, as in `{curve.elements[0]}`")
                 rows.append(curve(one[1]).reshape(-1))
         return np.concatenate(rows)
 

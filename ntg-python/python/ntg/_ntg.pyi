@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 __version__: str
 
-_Curve = tuple[str, str, str, float, float]
+_Curve = tuple[str, str, str, float, float, list[int], list[str]]
 _Number = tuple[str, float, str]
 _Callback = Optional[Callable[..., Any]]
 
@@ -35,7 +35,7 @@ class Compiled:
     constants: dict[str, str]
     objective_unit: str
     notes: list[dict[str, Any]]
-    parameters: list[tuple[str, str, str, list[float], bool]]
+    parameters: list[tuple[str, str, str, list[float], list[int]]]
     state: list[tuple[str, list[float]]]
     def with_parameters(self, parameters: dict[str, Any]) -> Compiled: ...
     def with_state(self, state: list[tuple[str, list[float]]]) -> Compiled: ...
@@ -67,8 +67,10 @@ class Found:
     times: list[tuple[str, float]]
     variables: list[_Number]
     phases: list[tuple[str, float, float]]
-    outputs: list[_Curve]
-    expressions: tuple[list[_Curve], list[_Number]]
+    outputs: tuple[list[_Curve], list[_Curve]]
+    expressions: tuple[list[_Curve], list[_Curve], list[_Number]]
+    @staticmethod
+    def arrays(names: list[str]) -> list[tuple[str, list[int], int]]: ...
     constraints: list[dict[str, Any]]
     def curve(self, name: str) -> Optional[_Curve]: ...
     def values(self, name: str, times: NDArray[np.float64], order: int) -> NDArray[np.float64]: ...

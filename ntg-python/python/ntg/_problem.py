@@ -17,8 +17,9 @@ from ._solver import Solver
 if TYPE_CHECKING:
     from ._settings import ProgressArgument
 
-    Value = Union[float, str, Sequence[Union[float, str]]]
-    """A number in the declared unit, a text with a unit ("240 m/s"), or a sequence of these for an array."""
+    Value = Union[float, str, Sequence[Union[float, str]], Sequence[Sequence[Union[float, str]]]]
+    """A number in the declared unit, a text with a unit ("240 m/s"), or a sequence of these for an array, of its rows for a
+    matrix."""
 
 
 class Parameter(NamedTuple):
@@ -26,8 +27,8 @@ class Parameter(NamedTuple):
 
     name: str
     """Its name."""
-    value: "float | list[float]"
-    """Its value in `unit`; a list for an array."""
+    value: "float | list[float] | list[list[float]]"
+    """Its value in `unit`; a list for an array, of a matrix a list of its rows."""
     unit: str
     """The declared unit; empty for a pure number."""
     doc: str
@@ -74,8 +75,8 @@ class Problem:
     def parameters(self) -> dict[str, Parameter]:
         """The parameters by name, with their present values."""
         return {
-            name: Parameter(name, values if array else values[0], unit, doc)
-            for name, doc, unit, values, array in self._core.parameters
+            name: Parameter(name, _shaped(values, shape), unit, doc)
+            for name, doc, unit, values, shape in self._core.parameters
         }
 
     def with_parameters(self, parameters: "Mapping[str, Value] | None" = None, /, **named: "Value") -> "Problem":
@@ -249,6 +250,13 @@ def _constant(name: str, value: "Value") -> str:
     if not math.isfinite(number):
         raise ParameterError(f"constant `{name}`: {number} is no finite number")
     return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
+
+
+def _shaped(values: "list[float]", shape: "list[int]") -> Any:
+    """A number, a list, or a list of rows."""
+    if len(shape) == 2:
+        return [values[first : first + shape[1]] for first in range(0, len(values), shape[1])]
+    return values if shape else values[0]
 
 
 def merged(parameters: "Mapping[str, Value] | None", named: "Mapping[str, Value]") -> dict[str, Any]:

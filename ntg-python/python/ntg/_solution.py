@@ -261,15 +261,31 @@ class Solution:
 
     @property
     def outputs(self) -> dict[str, Curve]:
-        """The flat outputs by path."""
-        return {data[0]: Curve(self._core, data) for data in self._core.outputs}
+        """The flat outputs by path; vectors and matrices as a whole, `outputs["r"]`."""
+        return {data[0]: Curve(self._core, data) for data in self._core.outputs[1]}
 
     @property
-    def expressions(self) -> dict[str, Union[Curve, float]]:
-        """The named expressions by path: functions of time, and numbers in their units."""
-        curves, numbers = self._core.expressions
-        found: dict[str, Union[Curve, float]] = {data[0]: Curve(self._core, data) for data in curves}
-        found.update({name: value for name, value, _ in numbers})
+    def expressions(self) -> "dict[str, Union[Curve, float, NDArray[np.float64]]]":
+        """The named expressions by path: functions of time, and numbers in their units; vectors as a whole."""
+        _, curves, numbers = self._core.expressions
+        found: "dict[str, Union[Curve, float, NDArray[np.float64]]]" = {}
+        found.update({data[0]: Curve(self._core, data) for data in curves})
+        found.update(self._gathered({name: value for name, value, _ in numbers}))
+        return found
+
+    def _curves(self) -> list[Curve]:
+        """Outputs and named expressions that are functions of time, element by element."""
+        return [Curve(self._core, data) for data in [*self._core.outputs[0], *self._core.expressions[0]]]
+
+    def _gathered(self, numbers: dict[str, float]) -> "dict[str, Union[float, NDArray[np.float64]]]":
+        """Numbers by name, those of a vector or a matrix as one array."""
+        import numpy as np
+
+        names, values = list(numbers), np.array(list(numbers.values()))
+        found: "dict[str, Union[float, NDArray[np.float64]]]" = {}
+        for name, shape, first in self._core.arrays(names):
+            count = int(np.prod(shape))
+            found[name] = values[first : first + count].reshape(shape) if shape else float(values[first])
         return found
 
     @property
@@ -278,36 +294,40 @@ class Solution:
         return dict(self._core.times)
 
     @property
-    def variables(self) -> dict[str, float]:
-        """The declared variables by name, in their units."""
-        return {name: value for name, value, _ in self._core.variables}
+    def variables(self) -> "dict[str, Union[float, NDArray[np.float64]]]":
+        """The declared variables by name, in their units: numbers, and arrays for vectors and matrices."""
+        return self._gathered({name: value for name, value, _ in self._core.variables})
 
-    def __getitem__(self, name: str) -> Union[Curve, float]:
+    def __getitem__(self, name: str) -> "Union[Curve, float, NDArray[np.float64]]":
+        """What has this name: a function of time, a number, or an array of numbers. `solution["r"]` is a vector, and
+        `solution["r[1]"]` its first element."""
         if not isinstance(name, str):
             raise TypeError(f"a solution is read by name, not by {_given.kind(name)}; `solution.keys()` are the names")
         data = self._core.curve(name)
         if data is not None:
             return Curve(self._core, data)
-        numbers = {**self.times, **self.variables}
+        numbers = self._numbers()
         if name in numbers:
             return numbers[name]
-        known = self.expressions
-        if name in known:
-            return known[name]
+        arrays = self._gathered(numbers)
+        if name in arrays:
+            return arrays[name]
         names = ", ".join(f"`{one}`" for one in self)
         raise KeyError(f"there is no `{name}`; there are: {names}")
 
+    def _numbers(self) -> dict[str, float]:
+        """Times, variables and named numbers, element by element."""
+        own = [*self._core.variables, *self._core.expressions[2]]
+        return {**self.times, **{name: value for name, value, _ in own}}
+
     def __contains__(self, name: object) -> bool:
-        return name in set(self)
+        return name in set(self) or name in {curve.name for curve in self._curves()} or name in self._numbers()
 
     def __iter__(self) -> Iterator[str]:
-        curves, numbers = self._core.expressions
-        names = [data[0] for data in self._core.outputs] + [data[0] for data in curves]
-        names += [*self.times, *self.variables, *(number[0] for number in numbers)]
-        return iter(dict.fromkeys(names))
+        return iter(dict.fromkeys([*self.outputs, *self.expressions, *self.times, *self.variables]))
 
     def keys(self) -> list[str]:
-        """All names that `solution[name]` takes."""
+        """The names that `solution[name]` takes; of a vector it takes those of the elements too, `r[1]`."""
         return list(self)
 
     # Derivatives.
@@ -325,7 +345,7 @@ class Solution:
     def sample(self, times: "int | ArrayLike" = POINTS) -> "dict[str, NDArray[np.float64]]":
         """Outputs and named expressions at times in SI units, or at so many equally spaced ones; the times are `t`.
 
-        Where the spec has another `domain`, their column has its name and unit.
+        A vector has a column for each of its elements. Where the spec has another `domain`, the times have its name and unit.
         Outside the span of an agent its columns are NaN.
         """
         import numpy as np
@@ -338,8 +358,7 @@ class Solution:
             raise ValueError("times are a number of them, or an array of one dimension")
         name, _, factor = self._core.independent
         table = {name: t / factor}
-        curves = [*self.outputs.values(), *(one for one in self.expressions.values() if isinstance(one, Curve))]
-        for curve in curves:
+        for curve in self._curves():
             near = 1e-12 * max(abs(curve.start), abs(curve.end), 1.0)
             inside = (t >= curve.start - near) & (t <= curve.end + near)
             table[curve.name] = np.where(inside, curve(t), np.nan)
@@ -348,9 +367,8 @@ class Solution:
     @property
     def units(self) -> dict[str, str]:
         """The units of the columns of `sample` and of the tables; empty for pure numbers."""
-        curves = [*self._core.outputs, *self._core.expressions[0]]
         name, unit, _ = self._core.independent
-        return {name: unit, **{data[0]: data[1] for data in curves}}
+        return {name: unit, **{curve.name: curve.unit for curve in self._curves()}}
 
     def to_pandas(self, times: "int | ArrayLike" = POINTS) -> Any:
         """`sample` as a pandas DataFrame; the units are in its `attrs["units"]`."""
@@ -421,7 +439,10 @@ class Solution:
         name, unit, factor = self._core.independent
         for curve, place in zip(curves, places):
             t = np.linspace(curve.start, curve.end, times) if isinstance(times, int) else np.asarray(times, float)
-            place.plot(t / factor, curve(t))
+            values = curve(t).reshape(len(t), -1)
+            lines = place.plot(t / factor, values)
+            if curve.shape:
+                place.legend(lines, curve.elements)
             place.set_ylabel(f"{curve.name} [{curve.unit}]" if curve.unit else curve.name)
             place.margins(x=0)
             place.grid(alpha=0.3)
@@ -434,6 +455,9 @@ class Solution:
         import numpy as np
 
         across, up = self._curve(x), self._curve(y)
+        for curve in (across, up):
+            if curve.shape:
+                raise ValueError(f"`{curve.name}` is a vector: name one of its elements, `{curve.elements[0]}`")
         place = axes if axes is not None else plt.subplots(layout="constrained")[1]
         t = np.linspace(across.start, across.end, times)
         (line,) = place.plot(across(t), up(t))

@@ -14,12 +14,14 @@ mod record;
 mod scene;
 pub(crate) mod sides;
 mod study;
+mod vectors;
 
 pub use estimate::{Deviation, Estimate, Measurement, Residual};
 pub use layout::layout;
 pub use record::Recording;
 pub use scene::{Ball, Coordinate, Level, Moving, Outline, Place, Scene, Surface};
 pub use study::{Explanation, Minimum, Part, Refinement, Round, Starts};
+pub use vectors::{NamedArray, arrays, elements, gathered, members};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -27,8 +29,14 @@ use serde_json::Value;
 
 /// What the file says it is.
 pub const FORMAT: &str = "ntg-solution";
-/// The version that this program writes and reads.
-pub const VERSION: u64 = 1;
+/// The version that this program writes. It reads the earlier one too, in which elements of arrays had entries of their own.
+pub const VERSION: u64 = 2;
+
+/// What is wrong with the version of a file; none where it can be read.
+pub fn unknown_version(version: &Value) -> Option<String> {
+    let is_known = version.as_u64().is_some_and(|version| (1..=VERSION).contains(&version));
+    (!is_known).then(|| format!("has version {version}; this program reads versions 1 to {VERSION}"))
+}
 
 /// One solve.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -96,14 +104,17 @@ pub struct Run {
     #[serde(with = "numbers::many", default)]
     pub row_multipliers: Vec<f64>,
     /// Outputs by path.
+    #[serde(with = "vectors::by_array")]
     pub outputs: IndexMap<String, Series>,
     /// Named expressions by path.
+    #[serde(with = "vectors::by_array")]
     pub lets: IndexMap<String, Series>,
     /// Durations and event times by name.
     pub times: IndexMap<String, f64>,
     /// Phases in order.
     pub phases: Vec<Phase>,
     /// Declared variables.
+    #[serde(with = "vectors::by_array")]
     pub variables: IndexMap<String, Quantity>,
     /// Parameters as they were for this run.
     pub parameters: IndexMap<String, Values>,
@@ -168,7 +179,7 @@ pub struct Series {
     #[serde(with = "numbers::many", skip_serializing_if = "Vec::is_empty")]
     pub t: Vec<f64>,
     /// Values in the unit.
-    #[serde(with = "numbers::many")]
+    #[serde(serialize_with = "numbers::many::serialize", deserialize_with = "numbers::one_or_many")]
     pub value: Vec<f64>,
     /// Proved bounds, stretch by stretch: from, to, no value below, none above. Empty where nobody asked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -236,13 +247,14 @@ pub struct Quantity {
 
 /// The values of a parameter.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(try_from = "numbers::Written", into = "numbers::Written")]
 pub struct Values {
     /// The unit's symbol.
     pub unit: String,
-    /// In the unit; several for an array.
-    #[serde(with = "numbers::many")]
+    /// In the unit; several for an array, of a matrix row by row.
     pub value: Vec<f64>,
+    /// How many there are by each index; empty for a number.
+    pub shape: Vec<usize>,
 }
 
 /// One constraint of the spec.
@@ -507,9 +519,10 @@ impl Run {
         if value["format"] != FORMAT {
             return Err(format!("is no saved solution (its \"format\" is not \"{FORMAT}\")"));
         }
-        if value["version"] != VERSION {
-            return Err(format!("has version {}; this program reads version {VERSION}", value["version"]));
+        if let Some(error) = unknown_version(&value["version"]) {
+            return Err(error);
         }
+        let value = vectors::in_present_form(value);
         let mut run: Self = serde_json::from_value(value).map_err(|e| format!("is damaged: {e}"))?;
         if run.scene.is_empty() {
             // A file of an earlier version knows no vectors, but names.

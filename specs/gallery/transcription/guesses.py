@@ -128,21 +128,30 @@ class Guesses:
     def start_from(self, saved):
         """Takes the point that `ntg solve --save` wrote, by its samples: is it a minimum of the program as read here?"""
         o = json.load(open(saved))
+
+        def entry(quantities, key):
+            """A saved quantity, or one element of a vector: its entry with its own values."""
+            one = quantities.get(key[0])
+            if one is None or key[1] is None:
+                return one
+            at = key[1] - one.get("first", 1)
+            value = [v[at] for v in one["value"]] if "t" in one else one["value"][at]
+            return {**one, "value": value}
+
         for p, q in zip(self.phases, o["phases"]):
             begin, length = q["start"], q["end"] - q["start"]
             if "dvar" in p:
                 self.w0[p["dvar"]] = np.array([length])
             for key, sp in p["spline"].items():
-                a = o["outputs"][key[0] if key[1] is None else "%s[%d]" % key]
-                a = a if "values" in a else a
-                t, v = np.array(a["t"]), np.array(a["value"] if "value" in a else a["values"], float) * a["factor"]
+                a = entry(o["outputs"], key)
+                t, v = np.array(a["t"]), np.array(a["value"], float) * a["factor"]
                 x = np.concatenate([np.linspace(lo + 1e-6 * (hi - lo), hi - 1e-6 * (hi - lo), 9) for lo, hi in zip(sp.knots[:-1], sp.knots[1:])])
                 y = np.interp(begin + length * x, t, v)
                 A = np.array(ca.DM(sp.matrix(x, np.ones(len(x)), 0)))
                 self.w0[p["coef"][key][0]] = np.linalg.lstsq(A, y, rcond=None)[0] / p["coef"][key][2]
         for (name, i), sym in self.vars.items():
             for n, w in enumerate(self.w):
-                v = o["variables"].get(name if i is None else "%s[%d]" % (name, i))
+                v = entry(o["variables"], (name, i))
                 if w is sym and v is not None:
                     self.w0[n] = np.array([v["value"] * v.get("factor", 1) if isinstance(v, dict) else v], float)
         self.attempts = 1
