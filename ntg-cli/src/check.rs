@@ -1,6 +1,6 @@
 //! `ntg check`: what is wrong with specs.
 
-mod json;
+pub(crate) mod json;
 
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
 use ntg_compiler::model::Given;

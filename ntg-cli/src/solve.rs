@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 
 use ntg_certify::guarantee::{Guaranteed, Task};
 use ntg_certify::summary::Summary;
+use ntg_compiler::diagnostic::Diagnostic;
+use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_report::run::Recording;
 use ntg_runtime::explain::Explanation;
@@ -32,6 +34,9 @@ pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
 /// What is printed beside the report.
 struct Solved<'a> {
     problem: &'a dyn Problem,
+    /// The spec, and what the compiler noted in it.
+    source: &'a Source,
+    notes: &'a [Diagnostic],
     report: &'a Report,
     starts: Option<&'a MultiReport>,
     explanation: Option<&'a Explanation>,
@@ -109,13 +114,26 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let problem: &dyn Problem = mended.as_ref().map_or(&problem as &dyn Problem, |mended| &mended.problem);
     let sensitivity = sensitivity.as_ref();
     let width = terminal::width();
-    let solved = Solved { problem, report, starts, explanation, proved, sensitivity, samples, compile_seconds, width };
+    let (source, notes) = (&source, &compiled.notes[..]);
+    let solved = Solved {
+        problem,
+        source,
+        notes,
+        report,
+        starts,
+        explanation,
+        proved,
+        sensitivity,
+        samples,
+        compile_seconds,
+        width,
+    };
     match arguments.format {
         Format::Text => files::print(&text::document(&solved)),
         Format::Json => files::print(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
-        let (source, notes, iterations) = (&source, &compiled.notes, &iterations[..]);
+        let iterations = &iterations[..];
         let mut run = Recording { problem, report, explanation, starts, source, notes, iterations }.run();
         if let Some(summary) = &summary {
             certify::into_run(summary, &mut run);

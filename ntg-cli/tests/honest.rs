@@ -212,3 +212,30 @@ fn a_solution_of_the_points_alone_is_less_than_was_asked_for() {
     assert_eq!(found.status.code(), Some(3));
     assert!(fs::read_to_string(page).expect("a page").contains("solved at the points, and not between them"));
 }
+
+#[test]
+fn documents_of_a_solve_have_the_notes_of_the_spec_as_those_of_check_do() {
+    let folder = with(
+        "problem Noted {
+    duration T = 2;
+    state v;
+    input u, w in -1 .. 1;
+    collocation gauss(points = 3, intervals = 4);
+    minimize integral(u^2 + w^2);
+    dynamics { der(v) == u - w; }
+    initial { v == 1; }
+    final { v == 0; }
+}
+",
+    );
+    let document = |command: &str| -> Value {
+        let found = ntg(folder.path(), &[command, "spec.ntg", "--format", "json"]);
+        serde_json::from_slice(&found.stdout).expect("a document")
+    };
+    let found = document("solve");
+    assert_eq!(found["findings"], document("check")["findings"]);
+    assert_eq!(
+        (&found["findings"][0]["code"], &found["findings"][0]["range"]["start"]["line"]),
+        (&json!("N007"), &json!(4))
+    );
+}

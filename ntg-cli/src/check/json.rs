@@ -32,7 +32,8 @@ pub(super) fn document(checked: &[Checked]) -> Value {
     })
 }
 
-fn finding(source: &Source, finding: &Diagnostic) -> Value {
+/// A finding, and where it is.
+pub(crate) fn finding(source: &Source, finding: &Diagnostic) -> Value {
     let labels = finding.labels.iter().map(|(span, text)| json!({ "message": text, "range": range(source, *span) }));
     let libraries = finding.libraries.iter().map(|library| {
         let source = &*library.source;

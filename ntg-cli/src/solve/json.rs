@@ -43,6 +43,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
             "message": w.message, "expression": w.place.text, "line": w.place.line, "column": w.place.column,
             "constraint": w.constraint, "t": w.time.map(shown),
         })).collect::<Vec<_>>(),
+        "findings": solved.notes.iter().map(|note| crate::check::json::finding(solved.source, note)).collect::<Vec<_>>(),
         "history": history(report),
     });
     if let Some(estimate) = &report.estimate {
