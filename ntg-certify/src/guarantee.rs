@@ -137,17 +137,17 @@ pub fn guarantee<'p>(
     settings: &Settings,
     wanted: &Guarantee,
 ) -> Result<Guaranteed<'p>, Error> {
-    let before = processor::spent();
+    let (before, began) = (processor::spent(), Instant::now());
     let report = solve_from(task.problem, guess, settings)?;
     let solve = processor::since(before);
-    let mut found = proved_from(task, report, settings, wanted)?;
+    let mut found = proved_from(task, report, &settings.after(began.elapsed()), wanted)?;
     if let Some(first) = found.rounds.first_mut() {
         first.processor.0 = solve;
     }
     Ok(found)
 }
 
-/// As [`guarantee`], from a report of the untightened problem.
+/// As [`guarantee`], from a report of the untightened problem; `Settings::time_limit` is for what is solved from now on.
 ///
 /// # Errors
 /// [`Error`] if the problem cannot be set up.
@@ -158,7 +158,7 @@ pub fn proved_from<'p>(
     wanted: &Guarantee,
 ) -> Result<Guaranteed<'p>, Error> {
     let mut changes: BTreeMap<usize, Change> = BTreeMap::new();
-    let mut before = processor::spent();
+    let (mut before, began) = (processor::spent(), Instant::now());
     let (mut rounds, mut certificate) = (vec![], of(task, &mut report, wanted)?);
     let mut spent = (None, processor::since(before));
     let quick = without_samples(settings);
@@ -184,14 +184,14 @@ pub fn proved_from<'p>(
         }
         let longest = rounds.iter().map(|round| round.iterations).max().unwrap_or(0);
         let is_near = rounds.last().is_some_and(|last| last.missed <= FAR);
-        let mut next = again(task, (&report, longest, is_near), &more, &quick);
+        let mut next = again(task, (&report, longest, is_near), &more, &quick.after(began.elapsed()));
         if next.is_err() && foresees {
             // Where there is little room, points alone may be had.
             foresees = false;
             let tried = std::mem::replace(&mut more, changes.clone());
             change(&certificate, &mut more, &wanted, (least, foresees));
             if more != tried {
-                next = again(task, (&report, longest, is_near), &more, &quick);
+                next = again(task, (&report, longest, is_near), &more, &quick.after(began.elapsed()));
             }
         }
         if next.is_err() && least == 0.0 {
@@ -204,7 +204,7 @@ pub fn proved_from<'p>(
             if !change(&certificate, &mut more, &wanted, (least, foresees)) {
                 break unchanged(&rounds, &wanted);
             }
-            next = again(task, (&report, longest, is_near), &more, &quick);
+            next = again(task, (&report, longest, is_near), &more, &quick.after(began.elapsed()));
         }
         let mut next = match next {
             Ok(next) => next,
@@ -223,14 +223,14 @@ pub fn proved_from<'p>(
         last.processor.1 = last.processor.1.zip(processor::since(before)).map(|(a, b)| a + b);
     }
     if rounds.len() > 1 {
-        let began = Instant::now();
+        let measuring = Instant::now();
         report.measure_between(task.problem, settings.samples)?;
         if let Some(last) = rounds.last_mut() {
-            last.solve += began.elapsed().as_secs_f64();
+            last.solve += measuring.elapsed().as_secs_f64();
         }
     }
     let problem = Tightened::new(task.problem, &changes, true);
-    let mut report = report.confirmed(&problem, settings)?;
+    let mut report = report.confirmed_from_now(&problem, &settings.after(began.elapsed()))?;
     own_bounds(&mut report, &certificate, &changes);
     Ok(Guaranteed { problem, report, certificate, changes, rounds, ending })
 }
@@ -312,6 +312,7 @@ fn again(
     changes: &BTreeMap<usize, Change>,
     settings: &Settings,
 ) -> Result<Report, String> {
+    let began = Instant::now();
     let most = settings.max_iterations.min(longest.max(LEAST_ITERATIONS));
     let brief = Settings { max_iterations: most, ..settings.clone() };
     let mut warm = Solver::new(Tightened::new(task.problem, changes, true), &brief);
@@ -328,7 +329,7 @@ fn again(
             return Err(next.status.to_string());
         }
     }
-    let mut cold = Solver::new(Tightened::new(task.problem, changes, false), settings);
+    let mut cold = Solver::new(Tightened::new(task.problem, changes, false), &settings.after(began.elapsed()));
     let next = cold.solve_from(&Guess::default()).map_err(|error| error.to_string())?;
     if next.is_solved() { Ok(next) } else { Err(next.status.to_string()) }
 }

@@ -72,7 +72,7 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let guess = first_guess(arguments, &problem)?;
     let compile_seconds = began.elapsed().as_secs_f64();
 
-    let interrupt = Interrupt::install();
+    let (interrupt, solving) = (Interrupt::install(), Instant::now());
     let guess = guess.unwrap_or_default();
     let mut iterations = vec![];
     let found = match crate::starts::solve(&problem, &guess, (&arguments.starts, &interrupt), &settings) {
@@ -88,20 +88,26 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let found = found.map_err(|error| setup::words(&error, &source))?;
     let (report, starts) = match &found {
         Found::One(report) => (&**report, None),
-        Found::Many(starts) => (starts.best().ok_or_else(|| starts.to_string())?, Some(starts)),
+        Found::Many(starts) => match starts.best() {
+            Some(report) => (report, Some(starts)),
+            None if starts.tried() == 0 => return Ok(crate::starts::none_tried(&starts.problem, &interrupt)),
+            None => return Err(starts.to_string()),
+        },
     };
     let mended = match arguments.guarantee && report.is_solved() {
         true => {
             let task = Task { program: &compiled.program, problem: &problem, spec: &source.text };
             interrupt.over(&mut settings);
-            let mended = certify::mend(task, report.clone(), &settings);
+            let mended = certify::mend(task, report.clone(), &settings.after(solving.elapsed()));
             Some(mended.map_err(|error| setup::words(&error, &source))?)
         }
         false => None,
     };
     let report = mended.as_ref().map_or(report, |mended| &mended.report);
     let summary = mended.as_ref().map(|mended| mended.certificate.summary(&compiled.program.structure));
-    let explanation = explained(report, &problem, &settings, &interrupt);
+    // The report counts its own seconds; other starts and a guarantee have taken theirs.
+    let others = solving.elapsed().saturating_sub(Duration::try_from_secs_f64(report.seconds).unwrap_or_default());
+    let explanation = explained(report, &problem, &settings.after(others), &interrupt);
 
     let sensitivity = sensitivity::differentiated(arguments.sensitivity.as_deref(), report, &problem);
     if let Some(Err(error @ SensitivityError::UnknownParameter(..))) = &sensitivity {

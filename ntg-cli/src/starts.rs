@@ -10,8 +10,8 @@ use ntg_runtime::guess::Guess;
 use ntg_runtime::multistart::{MultiReport, StartKind, StartProgress, Starts, multistart_from};
 use ntg_runtime::settings::{Control, Settings};
 
-use crate::arguments;
 use crate::watch::{Interrupt, REDRAW};
+use crate::{Exit, arguments};
 
 /// Solves from as many starts as were asked for, with a line of progress on a terminal; Ctrl-C stops them.
 /// None where nobody has asked.
@@ -43,6 +43,15 @@ pub(crate) fn solve(
         tell!("stopped by Ctrl-C after {} of {count} starts", found.tried());
     }
     Some(found)
+}
+
+/// Says why not a single start was tried: nothing is wrong with the problem.
+pub(crate) fn none_tried(problem: &str, interrupt: &Interrupt) -> Exit {
+    if interrupt.is_pressed() {
+        return Exit::Interrupted;
+    }
+    tell!("{problem}: the time limit was reached before a start began; allow more time (`--time-limit`)");
+    Exit::NotSolved
 }
 
 /// A line that goes to standard error if that is a terminal, and moves while starts are solved.

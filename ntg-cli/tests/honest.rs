@@ -239,3 +239,11 @@ fn documents_of_a_solve_have_the_notes_of_the_spec_as_those_of_check_do() {
         (&json!("N007"), &json!(4))
     );
 }
+
+#[test]
+fn starts_for_which_there_is_no_time_are_no_mistake_of_the_spec() {
+    let folder = with(FIT);
+    let found = ntg(folder.path(), &["solve", "spec.ntg", "--starts", "3", "--time-limit", "1e-9"]);
+    assert_eq!(found.status.code(), Some(1), "{}", said(&found));
+    assert!(said(&found).contains("the time limit was reached before a start began"), "{}", said(&found));
+}

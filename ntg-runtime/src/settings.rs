@@ -199,7 +199,8 @@ impl Settings {
     }
 
     /// The same with what is left of the time limit after some time.
-    pub(crate) fn after(&self, elapsed: Duration) -> Self {
+    #[must_use]
+    pub fn after(&self, elapsed: Duration) -> Self {
         let time_limit = self.time_limit.map(|limit| limit.saturating_sub(elapsed).max(Duration::from_nanos(1)));
         Self { time_limit, ..self.clone() }
     }

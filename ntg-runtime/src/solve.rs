@@ -56,7 +56,7 @@ pub fn solve_from(problem: &dyn Problem, guess: &Guess, settings: &Settings) -> 
 pub(crate) fn solve_and_refine(session: &mut Session, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
     settings.validate()?;
     let settings = &settings.remembering();
-    let report = session.solve(task, settings)?;
+    let report = session.solve(task, settings)?.advised_of_time(settings);
     refined(task.problem, report, settings)
 }
 

@@ -237,8 +237,10 @@ impl MultiReport {
     /// those that the settings refuse.
     fn finish(&mut self, problem: &dyn Problem, settings: &Settings, positions: &[String]) -> Result<(), Error> {
         if settings.refine.is_none() && settings.between == Between::Report {
+            let began = Instant::now();
             let confirm = |minimum: &mut super::Minimum| {
-                minimum.report = minimum.report.clone().confirmed(problem, settings)?;
+                minimum.report =
+                    minimum.report.clone().confirmed_from_now(problem, &settings.after(began.elapsed()))?;
                 Ok(())
             };
             return self.minima.par_iter_mut().try_for_each(confirm);

@@ -28,7 +28,16 @@ impl Report {
     ///
     /// # Errors
     /// [`Error`] where the problem, which has to be that of the report, cannot be set up on shorter intervals.
-    pub fn confirmed(mut self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
+    pub fn confirmed(self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
+        let settings = settings.after(spent(self.seconds));
+        self.confirmed_from_now(problem, &settings)
+    }
+
+    /// As [`Report::confirmed`], where `Settings::time_limit` is what is left of it: more has been done than this solve.
+    ///
+    /// # Errors
+    /// As [`Report::confirmed`].
+    pub fn confirmed_from_now(mut self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
         if !self.is_open(settings) {
             return Ok(self);
         }
@@ -52,7 +61,7 @@ impl Report {
             seconds: 0.0,
         };
         let most = (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations);
-        let until = settings.time_limit.map(|limit| began + limit.saturating_sub(spent(self.seconds)));
+        let until = settings.time_limit.map(|limit| began + limit);
         let mut last = None;
         while found.halvings < HALVINGS && found.falls() && found.defects.last() > Some(&settings.between_tolerance) {
             let marks = halved(&nlp);

@@ -2,6 +2,8 @@
 
 use super::cost::cost_apart;
 use super::{Confirmation, Report};
+use crate::settings::Settings;
+use crate::status::Status;
 
 /// How far a solution of the transcription is one of the problem itself: what the check on the finer grid found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -153,6 +155,16 @@ impl Report {
         if self.resolution() == Some(Resolution::Unresolved) && self.advice.is_empty() {
             "Use more points or intervals, let the mesh be refined (`refine`, `between`), or look for another minimum \
              (`starts`): what was found solves the equations at the points only, it is not a solution of the problem."
+                .clone_into(&mut self.advice);
+        }
+        self
+    }
+
+    /// The report with advice where nothing but the time limit has kept its solution from the tolerances.
+    pub(crate) fn advised_of_time(mut self, settings: &Settings) -> Self {
+        let is_late = settings.time_limit.is_some_and(|limit| self.seconds >= limit.as_secs_f64());
+        if is_late && self.status == Status::Acceptable {
+            "The time limit was reached: allow more (`time_limit`) for a solution to the tolerances."
                 .clone_into(&mut self.advice);
         }
         self
