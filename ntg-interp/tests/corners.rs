@@ -174,7 +174,9 @@ fn other_corners_stay_and_are_named() {
     assert_eq!(corners("minimize integral(x * abs(u));"), ["abs(u)"]);
     assert_eq!(corners("minimize integral(u^2); trajectory { abs(u) <= 2; }"), Vec::<String>::new());
     assert_eq!(corners("minimize integral(u^2); trajectory { abs(u) >= 2; }"), ["abs(u)"]);
-    assert_eq!(corners("minimize integral(abs(u)); trajectory { u * abs(u) <= 2; }"), ["abs(u)"]);
+    assert_eq!(corners("minimize integral(abs(u)); trajectory { x * abs(u) <= 2; }"), ["abs(u)"]);
+    // Where a factor vanishes with it, it is none.
+    assert_eq!(corners("minimize integral(abs(u)); trajectory { u * abs(u) <= 2; }"), Vec::<String>::new());
     assert_eq!(corners("minimize integral((1 + x^2) * abs(u) + exp(-t) * max(x, v, 0));"), Vec::<String>::new());
 
     let text = format!(

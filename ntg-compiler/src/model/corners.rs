@@ -3,6 +3,7 @@
 //! Takes the terms of the objective, and constraints. Where a corner enters with a weight that is not negative, and the
 //! objective pushes it against its corner, a helper stands for it (`epigraph.rs`) and the gradient jumps no more: this is
 //! exact, at the points. The term keeps what was written, for reports. Those of constraints are in `sides.rs`.
+//! A corner that a factor smooths, `abs(v) * v`, is none (`smoothed.rs`).
 //! Afterwards: notes of corners that are gone are gone; `Problem::corners` holds the places of all others.
 
 use ntg_structure::Block;
@@ -12,6 +13,7 @@ use super::monotone::Push;
 use super::problem::{Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt, Problem};
 use super::ranges::Ranges;
 use super::signs::Signs;
+use super::smoothed;
 use super::unknowns::{is_affine, is_given};
 use super::widths::Widths;
 use crate::diagnostic::Code;
@@ -89,8 +91,8 @@ impl Elaborator<'_> {
             }
         }
         self.weights_held(&pass);
-        let left = self.corners_left(&pass);
-        self.unnoted(&pass, &left);
+        let (left, smoothed) = self.corners_left(&pass);
+        self.unnoted((&pass, &smoothed), &left);
         let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();
         spans.sort_by_key(|span| (span.start, span.end));
         spans.dedup();
@@ -260,15 +262,27 @@ impl Elaborator<'_> {
         }
     }
 
-    /// The corners in what is solved.
-    fn corners_left(&mut self, pass: &Corners) -> Vec<NodeId> {
+    /// The corners in what is solved, and those that are none because a factor vanishes where they are; of what is only shown
+    /// there are these too.
+    fn corners_left(&mut self, pass: &Corners) -> (Vec<NodeId>, Set<NodeId>) {
         let bodies = self.problem.constraints.iter().map(|constraint| constraint.body);
         let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();
         let all = self.below(&bodies);
         let kinks: Set<NodeId> = expr::kinks(&self.problem.dag, &all).into_iter().collect();
-        all.into_iter()
-            .filter(|node| kinks.contains(node) && !pass.tips.contains(node) && self.may_jump(*node))
-            .collect()
+        let mut left: Vec<NodeId> = all.iter().copied().filter(|node| kinks.contains(node)).collect();
+        left.retain(|node| !pass.tips.contains(node) && self.may_jump(*node));
+        let mut smoothed = smoothed::among(&mut self.kinds, (&self.problem, &all), &bodies, &left);
+        left.retain(|node| !smoothed.contains(node));
+        let solved: Set<NodeId> = all.into_iter().collect();
+        let noted = self.kinks.iter().map(|(node, _)| *node);
+        let mut others: Vec<NodeId> = noted.filter(|node| !solved.contains(node)).collect();
+        if !others.is_empty() {
+            let shown: Vec<NodeId> = self.problem.named.iter().map(|named| named.body).collect();
+            let all = self.below(&shown);
+            others.retain(|node| all.binary_search(node).is_ok());
+            smoothed.extend(smoothed::among(&mut self.kinds, (&self.problem, &all), &shown, &others));
+        }
+        (left, smoothed)
     }
 
     /// Whether what is solved for decides on which side of a kink its gradient is taken.
@@ -281,12 +295,13 @@ impl Elaborator<'_> {
     }
 
     /// Takes back the notes of corners that are gone.
-    fn unnoted(&mut self, pass: &Corners, left: &[NodeId]) {
+    fn unnoted(&mut self, (pass, smoothed): (&Corners, &Set<NodeId>), left: &[NodeId]) {
         let left: Set<NodeId> = left.iter().copied().collect();
         let kinks = &self.kinks;
         self.found.retain(|finding| {
             let own = || kinks.iter().filter(|(_, span)| *span == finding.span).map(|(node, _)| node);
-            let is_gone = own().any(|node| pass.treated.contains(node)) && !own().any(|node| left.contains(node));
+            let is_none = |node: &NodeId| pass.treated.contains(node) || smoothed.contains(node);
+            let is_gone = own().any(is_none) && !own().any(|node| left.contains(node));
             finding.code != Code::GradientJumps || !is_gone
         });
     }

@@ -288,6 +288,7 @@ impl<'a> Elaborator<'a> {
             Rule::Sign => {
                 self.kink(call, &[first.node]);
                 let node = self.problem.dag.sign(first.node);
+                self.kinks.push((node, call.span));
                 first.map(node, Some(Dimension::NONE), span)
             }
             _ => self.applied_to_many(builtin, call, arguments),

@@ -83,6 +83,7 @@ mod shown_unit;
 mod sides;
 mod signs;
 mod size;
+mod smoothed;
 mod soft;
 mod steps;
 mod suggest;

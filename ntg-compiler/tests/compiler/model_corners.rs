@@ -35,7 +35,7 @@ fn a_corner_that_is_gone_is_not_noted() {
     assert_eq!(said("input u; minimize integral(u^2); temporal { integral(abs(u)) <= 1; }"), [""; 0]);
     assert_eq!(said("input u; minimize integral(abs(u - sin(3 * t)));"), [""; 0]);
     assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) >= 1; }"), [NOTE]);
-    assert_eq!(said("input u; minimize integral(u^2); trajectory { u * abs(u) <= 1; }"), [NOTE]);
+    assert_eq!(said("input u; minimize integral(u^2); trajectory { (1 + u) * abs(u) <= 1; }"), [NOTE]);
     assert_eq!(said("input u in -1 .. 1; maximize integral(abs(u));"), [NOTE]);
 }
 
@@ -74,4 +74,56 @@ fn a_size_that_is_read_as_a_unit() {
     let found = findings(text);
     assert!(found.contains("error[E026]") && !found.contains("error[E044]"), "{found}");
     assert!(found.contains("help: `y[N]` is read as a quantity in N; as a size write `y[1 .. N]`"), "{found}");
+}
+
+#[test]
+fn a_corner_where_a_factor_vanishes_is_none() {
+    let with = |drag: &str| {
+        said(&format!("param k = 0.1; input u; minimize integral(u^2); trajectory {{ {drag} + u in -9 .. 9; }}"))
+    };
+    for smooth in [
+        "abs(v) * v",
+        "0.1 * abs(v) * v",
+        "k * v * abs(v) / 2",
+        "abs(k * v) * v^3",
+        "abs(v - x) * (x - v)",
+        "abs(v)^3",
+        "abs(v)^1.5",
+        "max(0, v - x)^2",
+        "max(v, 0) * v * (1 + x)",
+        "max(v, x) * sin(v - x)",
+        "abs(v) * max(v, 0)",
+        "sign(v) * v^2",
+        "v * exp(-abs(v))",
+        "v / (1 + abs(v))",
+        "(k + abs(v)) * tanh(v)",
+        "(if x <= 0 smooth 0.1 { abs(v) } else { 2 * abs(v) }) * v",
+    ] {
+        assert_eq!(with(smooth), [""; 0], "{smooth}");
+    }
+    for corner in [
+        "abs(v)",
+        "abs(v) * x",
+        "abs(v) * (1 + v)",
+        "v / abs(v)",
+        "abs(v) / v",
+        "abs(v)^0.5 * x",
+        "max(v, x) * v",
+        "max(v, x)^2",
+        "max(1, v)^2",
+        "sign(v) * v",
+        "sqrt(abs(v)) * v",
+        "abs(v) * v + abs(v)",
+        "abs(abs(v) - 1) * v",
+        "1 / (1 + abs(v)) + abs(v) * v",
+    ] {
+        assert!(!with(corner).is_empty(), "{corner}");
+    }
+    // What is only shown is judged by itself, what is used where it is used.
+    assert_eq!(said("input u; let a = abs(v); minimize integral(u^2); trajectory { a * v + u <= 9; }"), [""; 0]);
+    assert_eq!(said("input u; let a = abs(v) * v; minimize integral(u^2);"), [""; 0]);
+    assert_eq!(said("input u; let a = abs(v); minimize integral(u^2);").len(), 1);
+    // Its derivative by time is none of its kind.
+    let rate = said("input u; minimize integral(u^2); trajectory { der(abs(v) * v) + u <= 9; }");
+    assert!(rate.iter().any(|note| note.starts_with("N001")), "{rate:?}");
 }
