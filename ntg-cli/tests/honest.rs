@@ -51,6 +51,17 @@ const FIT: &str = "problem Fit {
 }
 ";
 
+/// A low flight over terrain with a mast 4 m wide and 300 m high, which no point of any mesh sees.
+const MAST: &str = "problem Mast {
+    domain x [km];
+    duration X = 10 [km];
+    output h [m]: spline(order = 5, intervals = 8);
+    table ground(x [km]) [m] = linear { 0: 50; 3: 120; 4.313: 90; 4.315: 390; 4.317: 90; 7: 150; 10: 50; }
+    minimize integral((h / 100 [m] - 1)^2) / 1 [km];
+    trajectory { clear: h >= WHERE + 20 [m]; }
+}
+";
+
 fn ntg(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_ntg")).current_dir(folder).args(arguments).output().expect("the command starts")
 }
@@ -246,4 +257,32 @@ fn starts_for_which_there_is_no_time_are_no_mistake_of_the_spec() {
     let found = ntg(folder.path(), &["solve", "spec.ntg", "--starts", "3", "--time-limit", "1e-9"]);
     assert_eq!(found.status.code(), Some(1), "{}", said(&found));
     assert!(said(&found).contains("the time limit was reached before a start began"), "{}", said(&found));
+}
+
+#[test]
+fn a_limit_is_looked_at_where_the_argument_of_its_table_passes_a_node() {
+    // By its own argument, by one that the line between two points does not know, as one of several limits, and in a table of
+    // two arguments.
+    let two = "table ground(x [km], y) [m] = linear { 0, 1; 0: 50, 50; 4.313: 90, 90; 4.315: 390, 390; 4.317: 90, 90; 10: 50, 50; }";
+    let flat = "table ground(x [km]) [m] = linear { 0: 50; 3: 120; 4.313: 90; 4.315: 390; 4.317: 90; 7: 150; 10: 50; }";
+    for spec in [
+        MAST.replace("WHERE", "ground(x)"),
+        MAST.replace("WHERE", "ground(x * (1 + 0.2 * sin(x / 1 [km])))"),
+        MAST.replace("WHERE", "max(0 [m], ground(x))"),
+        MAST.replace(flat, two)
+            .replace("WHERE", "ground(x, 0.3 + 0.01 * h / 1 [m])")
+            .replace("}\n}", "h <= 5 [km]; }\n}"),
+    ] {
+        let folder = with(&spec);
+        let found = ntg(folder.path(), &["solve", "spec.ntg", "--format", "json"]);
+        let document: Value = serde_json::from_slice(&found.stdout).expect("a document");
+        let clear = document["constraints"].as_array().into_iter().flatten().find(|c| c["name"] == "clear");
+        let missed = clear.expect("the limit")["between"]["violation"].as_f64().expect("a number");
+        assert!(missed > 250.0, "{missed} in {spec}");
+        assert_eq!((found.status.code(), document["resolution"].as_str()), (Some(3), Some("unresolved")), "{spec}");
+    }
+    // A path that clears the mast by itself is told of nothing.
+    let folder = with(&MAST.replace("WHERE", "ground(x)").replace("h / 100 [m] - 1", "h / 600 [m] - 1"));
+    let found = ntg(folder.path(), &["solve", "spec.ntg"]);
+    assert_eq!(found.status.code(), Some(0), "{}", said(&found));
 }

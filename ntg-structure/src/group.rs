@@ -75,6 +75,19 @@ pub struct Group {
     pub bounds: Option<Call>,
 }
 
+/// What tables of the limits of a group are evaluated at; its loops and its domain are those of the group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arguments {
+    /// The group, counted among `Structure::groups`, or among `Structure::shown`.
+    pub group: usize,
+    /// Among which of both.
+    pub shown: bool,
+    /// Computes the arguments, one in each row.
+    pub call: Call,
+    /// The table and its axis that each row is an argument of.
+    pub axes: Vec<(usize, usize)>,
+}
+
 /// In which block of the spec a constraint stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Block {

@@ -23,7 +23,7 @@ mod part;
 mod quantity;
 
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
-pub use group::{Angle, Block, Constraint, Domain, Group, Integral, Measurement, Named, Row, Term};
+pub use group::{Angle, Arguments, Block, Constraint, Domain, Group, Integral, Measurement, Named, Row, Term};
 pub use guess::{Continuation, Guess, GuessKind, GuessScope};
 pub use index::{Affine, Family, Grid, Loop};
 pub use kernel::{Degree, Kernel};
@@ -69,6 +69,9 @@ pub struct Structure {
     pub groups: Vec<Group>,
     /// Costs and constraints as the spec writes them, for reports, where helpers stand for corners in `groups`.
     pub shown: Vec<Group>,
+    /// Where tables of limits are evaluated, for reports: between the points, limits are looked at where the arguments pass
+    /// nodes.
+    pub arguments: Vec<Arguments>,
     /// Where a gradient may jump in what is solved.
     pub corners: Vec<Place>,
     /// Terms of the objective, for reports.

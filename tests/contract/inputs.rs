@@ -89,7 +89,7 @@ fn find(structure: &Structure, kernel: usize) -> Option<&Call> {
     }
     use ntg::runtime::structure::{Duration, GuessKind, Start};
     let groups = structure.groups.iter().chain(&structure.shown).flat_map(|g| g.bounds.iter().chain([&g.call]));
-    let named = structure.named.iter().map(|n| &n.call);
+    let named = structure.named.iter().map(|n| &n.call).chain(structure.arguments.iter().map(|own| &own.call));
     let durations = structure.phases.iter().filter_map(|p| match &p.duration {
         Duration::Fixed(call) => Some(call),
         Duration::Free(bounds) => bounds.call.as_ref(),

@@ -12,10 +12,10 @@
 //! bit for bit.
 
 use ntg_structure::{
-    Affine, Agent, Angle, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration, Family,
-    Grid, Group, Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement, Named,
-    Output, Parameter, Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot, Spline,
-    Start, Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
+    Affine, Agent, Angle, Arguments, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration,
+    Family, Grid, Group, Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement,
+    Named, Output, Parameter, Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Row, Shared, Slot,
+    Spline, Start, Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -102,6 +102,7 @@ macro_rules! enums {
 }
 
 structs! {
+    Arguments { group, shown, call, axes }
     Agent { name, family, start, duration_name, place }
     Constraint { name, place, block, unit, sides }
     Continuation { parameter, steps }

@@ -25,6 +25,7 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
         ("kernels", quote! { Kernel }, entries(&structure.kernels)),
         ("groups", quote! { Group }, entries(&structure.groups)),
         ("shown", quote! { Group }, entries(&structure.shown)),
+        ("arguments", quote! { Arguments }, entries(&structure.arguments)),
         ("corners", quote! { Place }, entries(&structure.corners)),
         ("terms", quote! { Term }, entries(&structure.terms)),
         ("measurements", quote! { Measurement }, entries(&structure.measurements)),

@@ -8,7 +8,7 @@
 
 use std::collections::HashMap;
 
-use ntg_structure::{Affine, Call, Domain, Group, Integral, Kernel, Place, Points, Row, Structure};
+use ntg_structure::{Affine, Arguments, Call, Domain, Group, Integral, Kernel, Place, Points, Row, Structure};
 
 use super::environment::{Environment, identity, loops as positions};
 use super::kernel::{Mode, Root, call};
@@ -17,7 +17,7 @@ use super::names::Names;
 use super::pieces::{Piece, Role, part_of, split};
 use super::points::point_sets;
 use super::{KernelBody, Program};
-use crate::expr::NodeId;
+use crate::expr::{Dag, Map, Node, NodeId};
 use crate::model::problem::{self as model, Constraint, Loop, Problem};
 use crate::source::{Source, Span};
 
@@ -32,6 +32,7 @@ pub fn lower(problem: Problem, source: &Source) -> Program {
         integrals: Vec::new(),
         integral_ids: HashMap::new(),
         pending: Vec::new(),
+        arguments: Vec::new(),
     };
     let mut structure = mission::structure(&mut lowering);
     structure.named = mission::named(&mut lowering);
@@ -39,11 +40,12 @@ pub fn lower(problem: Problem, source: &Source) -> Program {
     let pieces = lowering.pieces();
     lowering.gather(pieces, &mut structure);
     let written = lowering.written();
-    structure.shown = lowering.groups(written, &mut structure);
+    structure.shown = lowering.groups(written, &mut structure, true);
     while !lowering.pending.is_empty() {
         let pieces = std::mem::take(&mut lowering.pending);
         lowering.gather(pieces, &mut structure);
     }
+    structure.arguments = lowering.arguments;
     structure.integrals = lowering.integrals;
     structure.kernels = lowering.kernels;
     Program { structure, kernels: lowering.bodies }
@@ -60,6 +62,8 @@ pub(super) struct Lowering<'a> {
     integral_ids: HashMap<(NodeId, Vec<Loop>), usize>, // Looked up, never iterated.
     /// Integrands of integrals that turned out to be variables.
     pending: Vec<Piece>,
+    /// What tables of limits are evaluated at.
+    arguments: Vec<Arguments>,
 }
 
 /// Functions that are evaluated together.
@@ -107,11 +111,11 @@ impl Lowering<'_> {
 
     /// Puts pieces that are evaluated at the same place under the same loops into one group.
     fn gather(&mut self, pieces: Vec<Piece>, structure: &mut Structure) {
-        let groups = self.groups(pieces, structure);
+        let groups = self.groups(pieces, structure, false);
         structure.groups.extend(groups);
     }
 
-    fn groups(&mut self, pieces: Vec<Piece>, structure: &mut Structure) -> Vec<Group> {
+    fn groups(&mut self, pieces: Vec<Piece>, structure: &mut Structure, shown: bool) -> Vec<Group> {
         let mut gathered: Vec<Gathered> = Vec::new();
         for piece in pieces {
             let loops = positions(&piece.loops);
@@ -129,7 +133,41 @@ impl Lowering<'_> {
                 }
             }
         }
+        let first = if shown { 0 } else { structure.groups.len() };
+        for (number, group) in gathered.iter().enumerate() {
+            let made = self.arguments(group, (first + number, shown));
+            self.arguments.extend(made);
+        }
         gathered.into_iter().map(|group| self.group(group)).collect()
+    }
+
+    /// What tables of the limits along a phase are evaluated at; none of equations, and none inside of sums.
+    fn arguments(&mut self, gathered: &Gathered, (group, shown): (usize, bool)) -> Option<Arguments> {
+        if !matches!(gathered.domain, Domain::Path { .. }) || self.problem.tables.is_empty() {
+            return None;
+        }
+        let mut found: Vec<((usize, usize), NodeId, &Piece)> = vec![];
+        for piece in &gathered.pieces {
+            let Role::Constraint { bounds, .. } = &piece.role else { continue };
+            if bounds.lower == bounds.upper {
+                continue;
+            }
+            for (axis, argument) in arguments_of_tables(&self.problem.dag, piece.body) {
+                let is_known = |known: &((usize, usize), NodeId, &Piece)| {
+                    (known.0, known.1) == (axis, argument) && known.2.loops == piece.loops
+                };
+                if !found.iter().any(is_known) {
+                    found.push((axis, argument, piece));
+                }
+            }
+        }
+        let label = |piece: &Piece| self.source.snippet(piece.span);
+        let roots: Vec<Root<'_>> = found
+            .iter()
+            .map(|(_, body, piece)| Root { body: *body, loops: &piece.loops, label: label(piece) })
+            .collect();
+        let axes: Vec<(usize, usize)> = found.iter().map(|(axis, ..)| *axis).collect();
+        (!axes.is_empty()).then(|| Arguments { group, shown, call: call(self, "arguments", Mode::Show, &roots), axes })
     }
 
     /// Costs and constraints as the spec writes them, where helpers stand for corners; not those that would need integrals
@@ -313,4 +351,20 @@ impl Lowering<'_> {
         let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         Place { line: number(at.line), column: number(at.column), text: self.source.snippet(span) }
     }
+}
+
+/// The arguments of the tables in an expression, each with its table and axis; constants and what stands in sums are left out.
+fn arguments_of_tables(dag: &Dag, body: NodeId) -> Vec<((usize, usize), NodeId)> {
+    let (mut open, mut known, mut found) = (vec![body], Map::default(), vec![]);
+    while let Some(node) = open.pop() {
+        if known.insert(node, ()).is_some() || matches!(dag.node(node), Node::Reduce { .. }) {
+            continue;
+        }
+        if let Node::Table { table, args, .. } = dag.node(node) {
+            let own = args.iter().enumerate().filter(|(_, argument)| dag.is_constant(**argument).is_none());
+            found.extend(own.map(|(axis, argument)| ((*table as usize, axis), *argument)));
+        }
+        dag.node(node).for_each_operand(|operand| open.push(operand));
+    }
+    found
 }

@@ -94,7 +94,8 @@ impl Promotion<'_> {
             bounds: Bounds::default(),
             place: Place::default(),
         });
-        (out.guesses, out.continuations, out.measurements, out.shown) = (vec![], vec![], vec![], vec![]);
+        (out.guesses, out.continuations, out.measurements) = (vec![], vec![], vec![]);
+        (out.shown, out.arguments) = (vec![], vec![]);
         out
     }
 

@@ -6,6 +6,7 @@
 //! variables are first replaced by their finer values.
 
 use super::dips;
+use super::nodes::Passing;
 use crate::transcribe::batch::{Batch, BatchWork, batches};
 use crate::transcribe::elements::sites;
 use crate::transcribe::node::Site;
@@ -53,6 +54,8 @@ struct Part {
     work: BatchWork,
     /// The bounds of the rows from an element on, where the indices change there.
     bounds: Vec<(usize, Vec<Pair>)>,
+    /// What tables of its limits are evaluated at, where there are any.
+    passing: Option<Passing>,
 }
 
 /// Constraint and member of a row that has parts elsewhere.
@@ -71,7 +74,8 @@ impl Plan {
             let sites = sites(&frame, group, |points, breakpoints, phase| finer(points, breakpoints, phase, samples))?;
             for batch in batches(&frame, &group.call, sites)? {
                 let work = batch.work();
-                plan.parts.push(Part { group: index, adds, checks, batch, work, bounds: vec![] });
+                let passing = if checks { Passing::of(nlp, index, &batch.sites)? } else { None };
+                plan.parts.push(Part { group: index, adds, checks, batch, work, bounds: vec![], passing });
             }
         }
         plan.set_bounds(nlp)?;
@@ -84,6 +88,9 @@ impl Plan {
         for part in &mut self.parts {
             let call = &nlp.model.structure.group(part.group).call;
             part.batch.take_data_into(&frame, call, &mut part.work)?;
+            if let Some(passing) = &mut part.passing {
+                passing.take_data(nlp)?;
+            }
         }
         self.set_bounds(nlp)
     }
@@ -124,16 +131,17 @@ impl Plan {
                 Row::Constraint { .. } | Row::Integral { .. } => {}
             });
         }
-        for part in self.parts.iter().filter(|part| part.checks) {
+        for part in self.parts.iter_mut().filter(|part| part.checks) {
+            let group = part.group;
             let mut checked = |checked: &Checked<'_>| {
-                if counts(&constraints_shown, checked.constraint, part.group) {
+                if counts(&constraints_shown, checked.constraint, group) {
                     visit(checked);
                 }
             };
             part.check(nlp, (&parts, wanted), &mut checked);
             // Equations are measured by their mean and integral over the points alone.
-            for dips in part.at_dips(nlp, &x)? {
-                dips.check(nlp, (&parts, Wanted::Violated), &mut |found| {
+            for between in part.between(nlp, &x)? {
+                between.check(nlp, (&parts, Wanted::Violated), &mut |found| {
                     if found.bounds.0 < found.bounds.1 {
                         checked(found);
                     }
@@ -184,29 +192,34 @@ impl Part {
         Ok(())
     }
 
-    /// The same group, with values, where limits may be crossed between the points. Before: [`Part::values`].
-    fn at_dips(&self, nlp: &Transcription, x: &[f64]) -> Result<Vec<Self>, SetupError> {
+    /// The same group, with values, where limits may be crossed between the points: where they fall and rise again, and where
+    /// arguments of tables pass nodes. Before: [`Part::values`].
+    fn between(&mut self, nlp: &Transcription, x: &[f64]) -> Result<Vec<Self>, SetupError> {
         let group = nlp.model.structure.group(self.group);
         let sites = &self.batch.sites;
-        let mut dips = vec![];
+        let mut places = vec![];
         let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
         for ((first, bounds), end) in self.bounds.iter().zip(ends) {
             for row in (0..group.rows.len()).filter(|row| matches!(group.rows[*row], Row::Constraint { .. })) {
                 let values = &self.work.node.values[row * sites.len()..][*first..end];
-                dips::between(&sites[*first..end], values, bounds[row], &mut dips);
+                dips::between(&sites[*first..end], values, bounds[row], &mut places);
             }
         }
-        if dips.is_empty() {
+        if let Some(passing) = &mut self.passing {
+            passing.nodes(nlp, x, &mut places)?;
+        }
+        if places.is_empty() {
             return Ok(vec![]);
         }
         let at = |batch: Batch| {
             let work = batch.work();
-            let mut part = Self { group: self.group, adds: false, checks: true, batch, work, bounds: vec![] };
+            let mut part =
+                Self { group: self.group, adds: false, checks: true, batch, work, bounds: vec![], passing: None };
             part.set_bounds(nlp)?;
             part.values(nlp, x);
             Ok(part)
         };
-        batches(&nlp.frame(), &group.call, dips)?.into_iter().map(at).collect()
+        batches(&nlp.frame(), &group.call, places)?.into_iter().map(at).collect()
     }
 
     /// Evaluates all rows.

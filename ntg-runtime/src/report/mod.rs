@@ -16,6 +16,7 @@ mod foreseen;
 mod hints;
 mod means;
 mod multipliers;
+mod nodes;
 mod refined;
 mod sizes;
 pub(crate) mod status;
