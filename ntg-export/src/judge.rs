@@ -78,7 +78,7 @@ pub fn judge<N: Nlp>(nlp: &N, point: Point<'_>) -> Result<Judgement, NotFinite> 
     let (n, m) = (nlp.variables(), nlp.rows());
     let (mut work, mut at) = nlp.workspace();
     nlp.derivatives(point.x, 1.0, &vec![0.0; m], &mut work, &mut at)?;
-    let mut assembly = Assembly::new(n, m, nlp.blocks());
+    let mut assembly = Assembly::of_slopes(n, m, nlp.blocks());
     assembly.first(nlp.blocks(), &at);
     let mut sizes = vec![0.0_f64; m];
     each(&assembly, |i, j, slope| sizes[i] = sizes[i].max((slope * nlp.limits().scale[j]).abs()));
@@ -99,7 +99,7 @@ fn objective_size<N: Nlp>(nlp: &N, x: &[f64]) -> Option<f64> {
     let beside: Vec<f64> = x.iter().zip(sizes).enumerate().map(|(j, (x, size))| x + BESIDE * size * part(j)).collect();
     let (mut work, mut at) = nlp.workspace();
     nlp.derivatives(&beside, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
-    let mut assembly = Assembly::new(x.len(), nlp.rows(), nlp.blocks());
+    let mut assembly = Assembly::of_slopes(x.len(), nlp.rows(), nlp.blocks());
     assembly.first(nlp.blocks(), &at);
     Some(largest_term(&assembly.gradient, sizes))
 }

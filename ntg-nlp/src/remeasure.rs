@@ -462,7 +462,7 @@ fn residual_by<N: Nlp>(
 ) -> Option<Residual> {
     let (mut work, mut at) = nlp.workspace();
     nlp.derivatives(&end.x, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
-    let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
+    let mut assembly = Assembly::of_slopes(nlp.variables(), nlp.rows(), nlp.blocks());
     assembly.first(nlp.blocks(), &at);
     let mut resized = Resized::new(nlp);
     resized.resize(sizes.to_vec());
@@ -519,7 +519,7 @@ pub(crate) fn measure_at_end<N: Nlp>(nlp: &N, outcome: &Outcome, options: &Optio
     if !outcome.status.has_solution() || nlp.derivatives(&outcome.x, 1.0, &weights, &mut work, &mut at).is_err() {
         return Measure::Holds;
     }
-    let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
+    let mut assembly = Assembly::of_slopes(nlp.variables(), nlp.rows(), nlp.blocks());
     assembly.first(nlp.blocks(), &at);
     let mut slopes = Slopes::of(nlp, &at, &assembly.jacobian, &Scales::sizes(nlp.limits())).rows;
     if !rows_hold(nlp, &at.rows, &mut slopes, options) {

@@ -263,7 +263,7 @@ pub fn is_by_bounds<N: Nlp>(nlp: &N, x: &[f64]) -> bool {
 /// The largest slopes and amplification of each row at a point and at one [`beside`] it.
 fn steepest_near<N: Nlp>(nlp: &N, x: &[f64]) -> Slopes {
     let (limits, sizes) = (nlp.limits(), Scales::sizes(nlp.limits()));
-    let mut assembly = Assembly::new(nlp.variables(), nlp.rows(), nlp.blocks());
+    let mut assembly = Assembly::of_slopes(nlp.variables(), nlp.rows(), nlp.blocks());
     let (mut work, mut at) = nlp.workspace();
     let weights = vec![0.0; nlp.rows()];
     let mut near = x.to_vec();

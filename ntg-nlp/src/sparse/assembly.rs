@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Takes [`Block`]s once, to find the patterns, and an [`Evaluation`] at each point.
-//! Afterwards: no call but [`Assembly::new`] allocates.
+//! Afterwards: no call but [`Assembly::new`] and [`Assembly::of_slopes`] allocates.
 
 use super::Csc;
 use crate::contract::{Block, Evaluation, Target};
@@ -48,8 +48,19 @@ pub struct Assembly {
 impl Assembly {
     /// Finds the patterns of a program with `n` variables and `m` rows.
     pub fn new(n: usize, m: usize, blocks: &[Block]) -> Self {
+        Self::with_orders(n, m, blocks, true)
+    }
+
+    /// As [`Assembly::new`], for gradient and Jacobian alone: the Hessian has no entries. Much less to find where elements of
+    /// many variables have second derivatives.
+    pub fn of_slopes(n: usize, m: usize, blocks: &[Block]) -> Self {
+        Self::with_orders(n, m, blocks, false)
+    }
+
+    fn with_orders(n: usize, m: usize, blocks: &[Block], second: bool) -> Self {
         let mut jacobian_places = Vec::new();
-        let mut hessian_places: Vec<(u32, u32)> = (0..n as u32).map(|j| (j, j)).collect();
+        let mut hessian_places: Vec<(u32, u32)> =
+            if second { (0..n as u32).map(|j| (j, j)).collect() } else { Vec::new() };
         for block in blocks {
             let rows = entries_by_row(block);
             let part = components(block);
@@ -60,12 +71,14 @@ impl Assembly {
                         jacobian_places.push((variables[local], i));
                     }
                 });
-                each_pair(block, &part, e, |a, b| hessian_places.push((variables[b], variables[a])));
+                if second {
+                    each_pair(block, &part, e, |a, b| hessian_places.push((variables[b], variables[a])));
+                }
             }
         }
         let jacobian = Csc::with_pattern(m, n, jacobian_places);
         let hessian = Csc::with_pattern(n, n, hessian_places);
-        let routes = blocks.iter().map(|block| routes(block, &jacobian, &hessian)).collect();
+        let routes = blocks.iter().map(|block| routes(block, &jacobian, second.then_some(&hessian))).collect();
         let slots = blocks.iter().map(|block| block.slots).max().unwrap_or(0);
         let widest = blocks.iter().flat_map(|b| (0..b.elements).map(|e| b.variables(e).len())).max().unwrap_or(0);
         Self {
@@ -207,7 +220,7 @@ fn each_pair(block: &Block, part: &[Option<usize>], e: usize, mut visit: impl Fn
 }
 
 /// The routes of one block, once the patterns are known.
-fn routes(block: &Block, jacobian: &Csc, hessian: &Csc) -> Routes {
+fn routes(block: &Block, jacobian: &Csc, hessian: Option<&Csc>) -> Routes {
     let rows = entries_by_row(block);
     let part = components(block);
     let mut routes = Routes {
@@ -233,9 +246,11 @@ fn routes(block: &Block, jacobian: &Csc, hessian: &Csc) -> Routes {
             routes.places.push((local as u32, position));
             routes.place_start[e * block.rows + row + 1] = routes.places.len();
         });
-        each_pair(block, &part, e, |a, b| {
-            routes.pairs.push((a as u32, b as u32, position(hessian, variables[a], variables[b])));
-        });
+        if let Some(hessian) = hessian {
+            each_pair(block, &part, e, |a, b| {
+                routes.pairs.push((a as u32, b as u32, position(hessian, variables[a], variables[b])));
+            });
+        }
         routes.pair_start.push(routes.pairs.len());
     }
     // A row without places starts where its predecessor ends.
