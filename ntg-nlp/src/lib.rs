@@ -72,5 +72,6 @@ pub use options::{Control, InertiaCorrection, Method, OnIteration, Options, Prog
 pub use outcome::{IterationRecord, Multipliers, Outcome, Start};
 pub use remeasure::is_solution_by;
 pub use scaling::Scales;
+pub use sizes::multiples;
 pub use sparse::{Assembly, Csc, Pattern};
 pub use status::Status;

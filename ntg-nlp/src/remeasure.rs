@@ -35,7 +35,7 @@ const SADDLES: usize = 3;
 const NEARER: usize = 2;
 const NEAR: f64 = 0.25;
 /// Where a variable is less than this part of its typical size at the start, the start says nothing about the size, which
-/// is made up from the equations there: a law, for a guess has its own size.
+/// is made up from the equations there.
 pub(crate) const UNSEEN: f64 = 0.5;
 /// Such a variable has outgrown its size where it becomes so many times as large. A fit to the gallery: 100 and 1000 solve
 /// as many problems, and with 1000 steps crawl for longer.

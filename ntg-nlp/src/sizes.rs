@@ -70,7 +70,7 @@ impl<N: Nlp> Nlp for Resized<'_, N> {
 
 /// The size that each variable has at a point, as a multiple of its typical size: the largest of all variables that are
 /// alike. `scaled` are the variables over their sizes.
-pub(crate) fn multiples(limits: &Limits, scaled: &[f64]) -> Vec<f64> {
+pub fn multiples(limits: &Limits, scaled: &[f64]) -> Vec<f64> {
     let own = scaled.iter().map(|x| x.abs());
     if limits.alike.len() != limits.lower.len() {
         return own.collect();

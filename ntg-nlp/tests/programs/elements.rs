@@ -105,6 +105,10 @@ fn assembled_derivatives_agree_with_differences() {
         let (_, mut out) = p.workspace();
         let gradient = lagrangian_gradient(&p, &mut assembly, &x, &weights, &mut out);
         assembly.hessian(p.blocks(), &out, |_, _, _| {});
+        let mut slopes = Assembly::of_slopes(n, m, p.blocks());
+        slopes.first(p.blocks(), &out);
+        assert_eq!((&slopes.gradient, &slopes.jacobian.value), (&assembly.gradient, &assembly.jacobian.value));
+        assert_eq!((&slopes.jacobian.row, slopes.hessian.value.len()), (&assembly.jacobian.row, 0));
         let h = 1e-5;
         for j in 0..n {
             let moved =

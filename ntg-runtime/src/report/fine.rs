@@ -54,7 +54,7 @@ struct Part {
     work: BatchWork,
     /// The bounds of the rows from an element on, where the indices change there.
     bounds: Vec<(usize, Vec<Pair>)>,
-    /// What tables of its limits are evaluated at, where there are any.
+    /// What tables of its limits are evaluated at, once there are limits.
     passing: Option<Passing>,
 }
 
@@ -74,8 +74,7 @@ impl Plan {
             let sites = sites(&frame, group, |points, breakpoints, phase| finer(points, breakpoints, phase, samples))?;
             for batch in batches(&frame, &group.call, sites)? {
                 let work = batch.work();
-                let passing = if checks { Passing::of(nlp, index, &batch.sites)? } else { None };
-                plan.parts.push(Part { group: index, adds, checks, batch, work, bounds: vec![], passing });
+                plan.parts.push(Part { group: index, adds, checks, batch, work, bounds: vec![], passing: None });
             }
         }
         plan.set_bounds(nlp)?;
@@ -197,15 +196,20 @@ impl Part {
     fn between(&mut self, nlp: &Transcription, x: &[f64]) -> Result<Vec<Self>, SetupError> {
         let group = nlp.model.structure.group(self.group);
         let sites = &self.batch.sites;
-        let mut places = vec![];
+        let (mut places, mut is_limited) = (vec![], false);
         let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
         for ((first, bounds), end) in self.bounds.iter().zip(ends) {
             for row in (0..group.rows.len()).filter(|row| matches!(group.rows[*row], Row::Constraint { .. })) {
                 let values = &self.work.node.values[row * sites.len()..][*first..end];
                 dips::between(&sites[*first..end], values, bounds[row], &mut places);
+                let (lower, upper) = bounds[row];
+                is_limited |= lower < upper && (lower.is_finite() || upper.is_finite());
             }
         }
-        if let Some(passing) = &mut self.passing {
+        if is_limited && self.passing.is_none() {
+            self.passing = Passing::of(nlp, self.group, sites)?;
+        }
+        if let Some(passing) = self.passing.as_mut().filter(|_| is_limited) {
             passing.nodes(nlp, x, &mut places)?;
         }
         if places.is_empty() {

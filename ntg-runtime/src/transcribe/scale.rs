@@ -11,7 +11,9 @@ use super::sizes::SMALL_GUESS;
 use super::slots::AffineMap;
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
+use ntg_nlp::multiples;
 use ntg_structure::{Family, Unit};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
@@ -149,9 +151,9 @@ impl Transcription<'_> {
             quantity.coefficients.iter().map(|v| of[*v as usize].abs()).fold(0.0, f64::max)
         };
         let mut guessed: Vec<f64> = quantities.iter().map(|one| largest(one, &from_origin(&guess))).collect();
-        let most: Vec<f64> = quantities.iter().map(|one| of_kind(&quantities, &guessed, one, f64::max)).collect();
-        for ((quantity, guessed), most) in quantities.iter().zip(&mut guessed).zip(most) {
-            if most > 0.0 && ROUNDING.contains(&(*guessed / most)) {
+        let kinds = Kinds::of(quantities.iter().zip(guessed.iter().copied()));
+        for (quantity, guessed) in quantities.iter().zip(&mut guessed) {
+            if kinds.range(quantity).is_some_and(|(_, most)| ROUNDING.contains(&(*guessed / most))) {
                 *guessed = 0.0;
                 quantity.coefficients.iter().for_each(|v| guess[*v as usize] = 0.0);
             }
@@ -189,13 +191,14 @@ impl Transcription<'_> {
         if !self.balance_sizes(&groups, (&known, &sizes), scale) {
             self.balance_sizes(&groups, (&guess, &sizes), scale);
         }
-        for (quantity, own) in quantities.iter().zip(&guessed) {
-            let least = of_kind(&quantities, &guessed, quantity, f64::min);
-            let most = of_kind(&quantities, &guessed, quantity, f64::max);
-            let size = largest(quantity, scale);
+        let sizes: Vec<f64> = quantities.iter().map(|quantity| largest(quantity, scale)).collect();
+        let own = guessed.iter().zip(&sizes).map(|(guessed, size)| if guessed == size { *size } else { 0.0 });
+        let kinds = Kinds::of(quantities.iter().zip(own));
+        for ((quantity, guessed), size) in quantities.iter().zip(&guessed).zip(sizes) {
+            let Some((least, most)) = kinds.range(quantity).filter(|_| *guessed != size) else { continue };
             // What has a guess, however small, is of the kind; what has none may differ by more.
-            let beyond = if *own > 0.0 { 1.0 } else { OTHER_KIND };
-            if size != *own && most > 0.0 && (size * OTHER_KIND < least || size > beyond * most) {
+            let beyond = if *guessed > 0.0 { 1.0 } else { OTHER_KIND };
+            if size * OTHER_KIND < least || size > beyond * most {
                 let size = size.clamp(least, most);
                 quantity.coefficients.iter().for_each(|v| scale[*v as usize] = size);
             }
@@ -250,15 +253,10 @@ impl Transcription<'_> {
     /// The size of each variable, or what the variables that share it are at a solution, where that is so many times as large
     /// that the guess told too small a one: what rounding of the solution is judged by.
     pub(crate) fn grown_sizes(&self, x: &[f64]) -> Vec<f64> {
-        let mut sizes = self.limits.scale.clone();
-        let mut grow = |group: &[u32]| {
-            let most = group.iter().map(|v| x[*v as usize].abs()).fold(0.0, f64::max);
-            let grown = group.iter().filter(|v| TOO_LARGE * most > self.limits.scale[**v as usize]);
-            grown.for_each(|v| sizes[*v as usize] = most);
-        };
-        self.output_groups().iter().for_each(|group| grow(group));
-        (self.model.layout.coefficients as u32..x.len() as u32).for_each(|variable| grow(&[variable]));
-        sizes
+        let scale = &self.limits.scale;
+        let scaled: Vec<f64> = x.iter().zip(scale).map(|(x, size)| x / size).collect();
+        let grown = |(multiple, size): (f64, &f64)| if TOO_LARGE * multiple > 1.0 { multiple * size } else { *size };
+        multiples(&self.limits, &scaled).into_iter().zip(scale).map(grown).collect()
     }
 
     /// The coefficients of each output.
@@ -376,17 +374,35 @@ impl Transcription<'_> {
     }
 }
 
-/// The least or largest guess that is not 0 of other quantities of the kind of one: members of one array, or quantities with one unit.
-/// 0 where there is none.
-fn of_kind(quantities: &[Quantity], guessed: &[f64], kind: &Quantity, which: fn(f64, f64) -> f64) -> f64 {
-    let is_of_kind = |one: &Quantity| {
-        if one.coefficients == kind.coefficients {
-            return false;
+/// The least and the largest sizes of what is of one kind: members of one array, or quantities with one unit.
+#[derive(Default)]
+struct Kinds<'a> {
+    by_name: BTreeMap<&'a str, (f64, f64)>,
+    by_unit: BTreeMap<&'a str, (f64, f64)>,
+}
+
+impl<'a> Kinds<'a> {
+    /// Of quantities whose sizes are known; 0 is none.
+    fn of(sizes: impl Iterator<Item = (&'a Quantity<'a>, f64)>) -> Self {
+        let mut kinds = Self::default();
+        for (quantity, size) in sizes.filter(|(_, size)| *size > 0.0) {
+            let add = |ranges: &mut BTreeMap<&'a str, (f64, f64)>, kind| {
+                let range = ranges.entry(kind).or_insert((size, size));
+                *range = (range.0.min(size), range.1.max(size));
+            };
+            add(&mut kinds.by_name, quantity.name);
+            if !quantity.unit.symbol.is_empty() {
+                add(&mut kinds.by_unit, &quantity.unit.symbol);
+            }
         }
-        one.name == kind.name || (!kind.unit.symbol.is_empty() && one.unit.symbol == kind.unit.symbol)
-    };
-    let own = quantities.iter().zip(guessed).filter(|(one, guessed)| **guessed > 0.0 && is_of_kind(one));
-    own.map(|(_, guessed)| *guessed).reduce(which).unwrap_or(0.0)
+        kinds
+    }
+
+    /// The range of sizes of the kind of a quantity; none where there are none.
+    fn range(&self, quantity: &Quantity) -> Option<(f64, f64)> {
+        let ranges = [self.by_name.get(quantity.name), self.by_unit.get(&quantity.unit.symbol[..])];
+        ranges.into_iter().flatten().copied().reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
+    }
 }
 
 /// A size that can be divided by: the given one if it is positive and finite, else the unit.

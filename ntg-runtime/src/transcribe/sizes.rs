@@ -151,7 +151,7 @@ impl Transcription<'_> {
         }
     }
 
-    /// Forgets what the guess and bounds say of groups where other constraints tell sizes beside which that is rounding; and
+    /// Forgets what the guess and bounds say of groups where other constraints tell sizes beside which that is next to nothing; and
     /// where none does, but the objective varies by rounding alone.
     fn forget_doubtful(&self, (x, scale, units): (&[f64], &[f64], &[f64]), at: &Evaluation, balance: &mut Balance) {
         let mut unit = vec![1.0; balance.size.len()];
