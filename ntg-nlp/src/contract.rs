@@ -122,6 +122,9 @@ pub struct Limits {
     /// The rows that are norms: roots of sums of squares, times or over smooth factors. Their squares are posed in their
     /// place (docs/maths.md, section 11.14). Empty where there are none.
     pub norms: Vec<bool>,
+    /// Rows that define variables by others; the interior-point method meets them at every trial point (docs/maths.md,
+    /// section 11.18).
+    pub definitions: Vec<Definition>,
     /// Equations over durations that may vanish, which are posed times a power of the duration (docs/maths.md, section 11.17).
     pub shrinking: Vec<Shrinking>,
     /// Variables that objective and rows know by their sines and cosines alone, with the change that is a radian: a step
@@ -137,6 +140,15 @@ pub struct Limits {
     /// What of the objective is nothing, as a ten thousandth of a standard deviation is in an estimate: an objective below it is
     /// not asked for an optimum relative to itself. 0: whatever is not 0 counts.
     pub negligible: f64,
+}
+
+/// A row `variable - sum = 0`, in which the sum does not hold the variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Definition {
+    /// The row, of bounds 0.
+    pub row: u32,
+    /// The variable, without bounds.
+    pub variable: u32,
 }
 
 /// A row that holds derivatives by a time whose scale is a variable: `c = 0` with terms over powers of it.

@@ -66,7 +66,7 @@ pub mod sqp;
 pub mod status;
 mod stopping;
 
-pub use contract::{Block, BlockValues, Entry, Evaluation, Limits, Nlp, NotFinite, Shrinking, Target};
+pub use contract::{Block, BlockValues, Definition, Entry, Evaluation, Limits, Nlp, NotFinite, Shrinking, Target};
 pub use method::{solve, solve_from};
 pub use options::{Control, InertiaCorrection, Method, OnIteration, Options, Progress, Scaling, Violations};
 pub use outcome::{IterationRecord, Multipliers, Outcome, Start};

@@ -26,6 +26,7 @@ mod out_of_reach;
 mod phases;
 mod places;
 mod poles;
+mod quotients;
 mod resolve;
 mod saddles;
 mod scenarios;

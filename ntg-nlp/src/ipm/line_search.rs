@@ -142,6 +142,9 @@ impl<N: Nlp> State<'_, N> {
     /// The speculative evaluation: evaluates the trial point with derivatives, which the next iteration needs if the
     /// trial point is accepted. False where the trial point has no value.
     fn try_step_with_derivatives(&mut self, alpha: f64) -> bool {
+        if !self.nlp.limits().definitions.is_empty() {
+            return self.try_step(alpha); // The point is known once its defined variables are.
+        }
         self.place_trial(alpha);
         let (dy, dz) = (
             Scaled { length: alpha, vector: &self.step.y },
@@ -178,7 +181,7 @@ impl<N: Nlp> State<'_, N> {
     pub(super) fn try_step(&mut self, alpha: f64) -> bool {
         self.place_trial(alpha);
         self.trial.has_derivatives = false;
-        match self.system.values(self.nlp, &self.trial.x, &mut self.trial.values) {
+        match self.defined_trial_values() {
             Ok(()) => {
                 self.note_trial_values(false);
                 true

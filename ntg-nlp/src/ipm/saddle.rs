@@ -212,7 +212,7 @@ impl<N: Nlp> State<'_, N> {
         for (to, (x, d)) in self.trial.x.iter_mut().zip(self.x.iter().zip(along)) {
             *to = x + distance * d;
         }
-        self.system.values(self.nlp, &self.trial.x, &mut self.trial.values).ok()?;
+        self.defined_trial_values().ok()?;
         self.lagrangian_of(&self.trial.values)
     }
 

@@ -14,6 +14,7 @@ mod sensitivity;
 // Tests of both methods.
 #[cfg(feature = "sqp")]
 mod angles;
+mod definitions;
 mod degenerate;
 #[cfg(feature = "sqp")]
 mod elements;

@@ -15,7 +15,7 @@ use super::range_maps::{identities, range_maps};
 use super::relations::Relations;
 use super::repeated::without_repetitions;
 use super::rows::{RowInfo, RowKind, group_bounds};
-use ntg_nlp::{Block, Target};
+use ntg_nlp::{Block, Definition, Limits, Target};
 use ntg_structure::{Affine, Degree, Domain, Group, PhaseRef, Points, Row};
 use std::collections::BTreeMap;
 
@@ -247,6 +247,17 @@ impl Elements {
     /// The row that defines each integral's member, in the order of their variables.
     pub(crate) fn integral_rows(&self) -> impl Iterator<Item = &u32> {
         self.integral_rows.iter()
+    }
+
+    /// The rows that define integrals, with their variables, but for those that boundary conditions decide.
+    pub(super) fn definitions(&self, layout: &Layout, limits: &Limits) -> Vec<Definition> {
+        let all = (first_integral(layout)..).zip(&self.integral_rows);
+        let is_open = |of: &Definition| {
+            let (row, variable) = (of.row as usize, of.variable as usize);
+            (limits.row_lower[row], limits.row_upper[row]) == (0.0, 0.0)
+                && (limits.lower[variable], limits.upper[variable]) == (f64::NEG_INFINITY, f64::INFINITY)
+        };
+        all.map(|(variable, &row)| Definition { row, variable }).filter(is_open).collect()
     }
 }
 

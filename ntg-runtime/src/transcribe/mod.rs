@@ -143,6 +143,7 @@ impl<'p> Transcription<'p> {
         let Decided { system: linear, met } = contradictions::decided(&frame, &elements, &bounds)?;
         let mut limits = limits(&model.structure, &elements, (&bounds, &met));
         limits.angles = angles(&model.structure, &model.layout);
+        limits.definitions = elements.definitions(&model.layout, &limits);
         let (model, origin, has_named_size, durations) = (Arc::new(model), vec![], vec![], vec![]);
         let mut transcription = Self { problem, model, elements, limits, origin, has_named_size, linear, durations };
         transcription.limits.alike = transcription.alike();
@@ -181,6 +182,7 @@ impl<'p> Transcription<'p> {
         let Limits { alike, angles, .. } = std::mem::take(&mut self.limits);
         self.limits =
             Limits { alike, angles, ..limits(&self.model.structure, &self.elements, (&bounds, &decided.met)) };
+        self.limits.definitions = self.elements.definitions(&self.model.layout, &self.limits);
         self.model = Arc::new(model);
         self.find_durations();
         self.limits.shrinking = self.shrinking();
@@ -338,6 +340,7 @@ fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f6
         row_lower,
         row_upper,
         norms: if structure.norms.is_empty() { vec![] } else { elements.rows.iter().map(is_norm).collect() },
+        definitions: vec![],
         shrinking: vec![],
         angles: vec![],
         row_scale: vec![1.0; elements.rows.len()],
