@@ -17,6 +17,7 @@ mod fleet;
 mod flight;
 mod flight_phases;
 mod integrals;
+mod jumped;
 mod limits;
 mod missile;
 mod norms;

@@ -3,6 +3,7 @@
 use super::ending::Missed;
 use super::fine::{Checked, Plan, Wanted};
 use super::foreseen::Foreseen;
+use super::jumped::Jumped;
 use super::sizes::Sizes;
 use super::{ConstraintReport, Worst, multipliers};
 use crate::transcribe::points::Point;
@@ -56,6 +57,7 @@ pub(super) fn constraints(
     }
     let mut means = Means::new(reports.len());
     let mut foreseen = Foreseen::new(nlp, outcome);
+    let (mut jumped, mut jumps) = (Jumped::new(nlp, (outcome, at)), BTreeMap::<usize, Option<Worst>>::new());
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
         means.add(nlp, checked, || all_sizes.between(nlp, checked.constraint, checked.indices));
@@ -63,9 +65,21 @@ pub(super) fn constraints(
         report.is_equation &= checked.bounds.0 == checked.bounds.1;
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         let indices = structure.constraints[checked.constraint].shown_indices(checked.indices);
-        keep(nlp, &outcome.x, &mut report.between, (checked.value, checked.bounds, sizes), (&checked.point, indices));
+        let (measured, unit) = (measure(checked.value, checked.bounds, sizes.0), sizes.1);
+        if measured.relative > LEAST_JUMP && jumped.is_jump(checked) {
+            let worst = jumps.entry(checked.constraint).or_default();
+            hold(nlp, &outcome.x, worst, (measured, unit), (&checked.point, indices));
+        }
+        hold(nlp, &outcome.x, &mut report.between, (measured, unit), (&checked.point, indices));
     })?;
     means.write(nlp, &mut reports);
+    // A limit that is jumped over is missed by all of it, unless it is known how large that is.
+    for (constraint, jump) in jumps {
+        let between = &mut reports[constraint].between;
+        if between.as_ref().is_some_and(|worst| !Missed::Limit(worst.relative).is_unresolved()) {
+            *between = jump.map(|jump| Worst { relative: 1.0, ..jump });
+        }
+    }
     let own = structure.constraints.iter().position(|constraint| constraint.block == Block::Corner);
     reports.truncate(own.unwrap_or(reports.len()));
     Ok((reports, all_sizes, Fine { terms, correction: foreseen.correction() }))
@@ -122,19 +136,44 @@ fn is_path(nlp: &Transcription, group: usize) -> bool {
     matches!(nlp.model.structure.group(group).domain, Domain::Path { .. })
 }
 
+/// What a limit that is missed by less is not said to be jumped over. A law: what rounding leaves of a path within the tolerance.
+const LEAST_JUMP: f64 = 1e-7;
+
+/// A value, and by how much it misses its bounds.
+#[derive(Clone, Copy)]
+struct Measured {
+    value: f64,
+    missed: f64,
+    /// Relative to the scale of the bounds.
+    relative: f64,
+}
+
+fn measure(value: f64, (lower, upper): (f64, f64), size: impl Fn() -> f64) -> Measured {
+    if lower <= value && value <= upper {
+        return Measured { value, missed: 0.0, relative: 0.0 }; // As nearly all are.
+    }
+    let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
+    Measured { value, missed, relative: missed / scale(lower, upper, size()) }
+}
+
 /// Replaces the worst place so far by this one, if this one is worse.
 pub(super) fn keep(
     nlp: &Transcription,
     x: &[f64],
     worst: &mut Option<Worst>,
-    (value, (lower, upper), (size, unit)): (f64, (f64, f64), (impl Fn() -> f64, f64)),
+    (value, bounds, (size, unit)): (f64, (f64, f64), (impl Fn() -> f64, f64)),
+    place: (&Point, &[i64]),
+) {
+    hold(nlp, x, worst, (measure(value, bounds, size), unit), place);
+}
+
+fn hold(
+    nlp: &Transcription,
+    x: &[f64],
+    worst: &mut Option<Worst>,
+    (Measured { value, missed, relative }, unit): (Measured, f64),
     (point, indices): (&Point, &[i64]),
 ) {
-    if worst.is_some() && lower <= value && value <= upper {
-        return; // As nearly all are.
-    }
-    let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
-    let relative = missed / scale(lower, upper, size());
     let worse = |held: &Worst| relative > held.relative || (relative.is_nan() && !held.relative.is_nan());
     if worst.as_ref().is_none_or(worse) {
         let layout = &nlp.model.layout;

@@ -14,6 +14,7 @@ mod estimate;
 pub(crate) mod fine;
 mod foreseen;
 mod hints;
+mod jumped;
 mod means;
 mod multipliers;
 mod nodes;

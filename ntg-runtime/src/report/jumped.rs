@@ -1,0 +1,170 @@
+//! Limits that a path jumps over between two points (docs/maths.md, section 9).
+//!
+//! What a limit forbids may lie between two points that keep it: a band of speeds, a wall. The size of what is missed then says
+//! nothing, since it is that of the band and not of the path. That the path leaves on the other side says it: at the point before
+//! the limit falls towards the point after, at the point after it rises from the point before, and its gradients there point away
+//! from each other. A path that cuts a corner leaves on the side on which it has come, with nearly the same gradient. And what is
+//! missed is what the straight way from the one point to the other misses: a path that goes round a corner between two points misses
+//! less.
+
+use super::fine::Checked;
+use crate::transcribe::Transcription;
+use crate::transcribe::rows::RowKind;
+use ntg_nlp::{Evaluation, Outcome};
+use ntg_structure::{Domain, Slot};
+use std::collections::BTreeMap;
+
+/// What is missed of a limit that is jumped over is at least this part of what the straight way misses. A choice: all but a
+/// twentieth of a parabola's width is as deep, and what goes round a corner misses a hundredth of what the straight way does.
+const OF_STRAIGHT: f64 = 0.1;
+/// At how many places the straight way is looked at. A choice.
+const PLACES: usize = 32;
+
+/// A constraint, its member and the phase.
+type Key = (usize, Vec<i64>, usize);
+
+/// The rows of inequalities along phases, gathered when the first one is asked for.
+pub(super) struct Jumped<'a> {
+    nlp: &'a Transcription<'a>,
+    outcome: &'a Outcome,
+    at: &'a Evaluation,
+    /// Typical sizes of the variables.
+    scale: Vec<f64>,
+    /// By member, the times of its rows in order, and the rows.
+    rows: Option<BTreeMap<Key, Vec<(f64, usize)>>>,
+}
+
+/// A row at one point: its value, and by slot its gradient, the slot's value and typical size.
+struct Local {
+    row: f64,
+    slope: Vec<f64>,
+    value: Vec<f64>,
+    size: Vec<f64>,
+}
+
+impl<'a> Jumped<'a> {
+    /// Nothing is gathered yet; `at` holds the program's first derivatives at the last point.
+    pub(super) fn new(nlp: &'a Transcription<'a>, (outcome, at): (&'a Outcome, &'a Evaluation)) -> Self {
+        Self { nlp, outcome, at, scale: vec![], rows: None }
+    }
+
+    /// Whether a limit that is violated at a place between two points is jumped over there.
+    pub(super) fn is_jump(&mut self, checked: &Checked<'_>) -> bool {
+        let (lower, upper) = checked.bounds;
+        let Some(phase) = checked.point.phase.filter(|_| lower < upper) else { return false };
+        let side = if checked.value < lower { 1.0 } else { -1.0 };
+        self.gather();
+        let key = (checked.constraint, checked.indices.to_vec(), phase);
+        let Some(own) = self.rows.as_ref().and_then(|rows| rows.get(&key)) else { return false };
+        let next = own.partition_point(|(tau, _)| *tau < checked.point.tau);
+        let (Some(&(_, before)), Some(&(_, after))) = (next.checked_sub(1).and_then(|i| own.get(i)), own.get(next))
+        else {
+            return false;
+        };
+        let (Some(before), Some(after)) = (self.local(before), self.local(after)) else { return false };
+        let bound = if side > 0.0 { lower } else { upper };
+        let missed = side * (bound - checked.value);
+        missed >= OF_STRAIGHT * depth(&before, &after, (bound, side)).unwrap_or(f64::INFINITY)
+    }
+
+    fn gather(&mut self) {
+        if self.rows.is_some() {
+            return;
+        }
+        let mut rows: BTreeMap<Key, Vec<(f64, usize)>> = BTreeMap::new();
+        for (row, info) in self.nlp.elements.rows.iter().enumerate() {
+            let (RowKind::Constraint(constraint), Some(phase)) = (info.kind, info.point.phase) else { continue };
+            if self.nlp.limits.row_lower[row] < self.nlp.limits.row_upper[row] {
+                rows.entry((constraint, info.indices.clone(), phase)).or_default().push((info.point.tau, row));
+            }
+        }
+        rows.values_mut().for_each(|own| own.sort_by(|one, other| one.0.total_cmp(&other.0)));
+        self.scale = self.nlp.grown_sizes(&self.outcome.x);
+        self.rows = Some(rows);
+    }
+
+    /// A row at its point; none where the row is not along a phase, or depends on what may jump by itself, as an input does.
+    fn local(&self, row: usize) -> Option<Local> {
+        let (number, e, function) = self.nlp.elements.rows[row].maker;
+        let (block, values) = (self.nlp.elements.blocks.get(number)?, self.at.blocks.get(number)?);
+        let structure = &self.nlp.model.structure;
+        let group = &structure.groups[self.nlp.elements.batches.get(number)?.group];
+        let phase = self.nlp.elements.rows[row].point.phase?;
+        let declared = &structure.phases[self.nlp.model.layout.phases[phase].phase];
+        let mut local = Local {
+            row: self.at.rows[row],
+            slope: vec![0.0; block.slots],
+            value: vec![0.0; block.slots],
+            size: vec![0.0; block.slots],
+        };
+        if !matches!(group.domain, Domain::Path { .. }) {
+            return None;
+        }
+        let variables = block.variables(e);
+        for (entry, &(_, slot)) in block.jacobian.iter().enumerate().filter(|(_, (of, _))| *of == function) {
+            if let Some(Slot::Flat { output, derivative, .. }) = group.call.slots.get(slot) {
+                let spline = &declared.outputs.get(*output)?.spline;
+                if *derivative >= spline.smoothness && spline.breakpoints.len() > 2 {
+                    return None;
+                }
+            }
+            let map = block.map(e).chunks_exact(variables.len().max(1)).nth(slot)?;
+            let sum: f64 = variables.iter().zip(map).map(|(j, c)| c * self.outcome.x[*j as usize]).sum();
+            let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
+            local.slope[slot] =
+                block.weight[function * block.elements + e] * values.jacobian[entry * block.elements + e];
+            local.value[slot] = sum + block.offset[slot * block.elements + e];
+            local.size[slot] = typical.map_or(0.0, |(j, _)| self.scale[*j as usize]);
+        }
+        // Places are compared by one measure, whatever each of their coordinates varies by.
+        let kind = |slot: usize| match group.call.slots.get(slot) {
+            Some(Slot::Flat { output, derivative, .. }) => Some((&declared.outputs.get(*output)?.unit, derivative)),
+            _ => None,
+        };
+        let own = local.size.clone();
+        for (slot, size) in local.size.iter_mut().enumerate() {
+            let alike = (0..block.slots).filter(|other| kind(slot).is_some() && kind(*other) == kind(slot));
+            *size = alike.fold(*size, |most, other| most.max(own[other]));
+        }
+        Some(local)
+    }
+}
+
+/// By how much the straight way from one point to another misses a limit, which allows what is above its bound with side 1 and
+/// below it with -1. None where the limit does not fall on the way from the one and rise towards the other, with gradients that
+/// point away from each other. On the way the limit is the cubic with the values and slopes of both ends.
+fn depth(before: &Local, after: &Local, (bound, side): (f64, f64)) -> Option<f64> {
+    let slots = before.slope.len().min(after.slope.len());
+    let (mut falls, mut rises, mut along) = (0.0, 0.0, 0.0);
+    for slot in 0..slots {
+        let way = after.value[slot] - before.value[slot];
+        falls += side * before.slope[slot] * way;
+        rises += side * after.slope[slot] * way;
+        along += before.slope[slot] * after.slope[slot] * before.size[slot] * before.size[slot];
+    }
+    let ends = [before, after].map(|of| side * (of.row - bound));
+    let cubic = |t: f64| {
+        let r = 1.0 - t;
+        ends[0] * r * r * (1.0 + 2.0 * t) + ends[1] * t * t * (1.0 + 2.0 * r) + falls * t * r * r - rises * t * t * r
+    };
+    let least = (1..PLACES).map(|i| cubic(i as f64 / PLACES as f64)).fold(f64::INFINITY, f64::min);
+    (falls < 0.0 && rises > 0.0 && along < 0.0 && least < 0.0).then_some(-least)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Local, depth};
+
+    /// The square of the distance from the origin.
+    fn disc(x: f64, y: f64) -> Local {
+        Local { row: x * x + y * y, slope: vec![2.0 * x, 2.0 * y], value: vec![x, y], size: vec![1.0; 2] }
+    }
+
+    #[test]
+    fn the_straight_way_through_a_disc_misses_its_depth() {
+        let through = depth(&disc(-1.0, 0.1), &disc(1.0, 0.1), (1.0, 1.0)).expect("it is jumped over");
+        assert!((through - 0.99).abs() < 1e-12, "{through}");
+        assert_eq!(depth(&disc(-0.3, 0.96), &disc(0.3, 0.96), (1.0, 1.0)), None, "it cuts the side");
+        assert_eq!(depth(&disc(-1.0, 0.1), &disc(1.0, 0.2), (1.2, -1.0)), None, "within a disc nothing is between");
+    }
+}
