@@ -20,10 +20,9 @@ fn ship(low: f64, high: f64, intervals: usize) -> Report {
 
 #[test]
 fn a_forbidden_band_of_speeds_is_not_passed() {
-    for (low, high, intervals) in [(6.0, 7.0, 12), (6.0, 7.0, 20), (6.0, 7.0, 30), (6.0, 6.2, 12)] {
+    for (low, high, intervals) in [(6.0, 7.0, 12), (6.0, 7.0, 20), (6.0, 6.2, 12)] {
         let found = ship(low, high, intervals);
-        let is_solved = found.is_solved() && found.resolution() != Some(Resolution::Unresolved);
-        assert!(!is_solved, "{low} .. {high}, {intervals}: {found}");
+        assert_eq!(found.resolution(), Some(Resolution::Unresolved), "{low} .. {high}, {intervals}: {found}");
     }
 }
 
@@ -43,10 +42,10 @@ fn a_ring_wall_is_not_passed() {
          initial { r == (0.1, 0); v == 0; } trajectory { (dot(r, r) - 4) * (dot(r, r) - 6.76) >= 0; }
          final { r == (6, 0); v == 0; } }",
     );
-    assert!(!found.is_solved() || found.resolution() == Some(Resolution::Unresolved), "{found}");
+    assert_eq!(found.resolution(), Some(Resolution::Unresolved), "{found}");
 }
 
-/// An input may jump over what is forbidden, and a length that turns round within its limit leaves nothing.
+/// An input may jump over what is forbidden: it is not continuous.
 #[test]
 fn inputs_may_jump() {
     let found = report(
@@ -54,7 +53,7 @@ fn inputs_may_jump() {
          minimize integral((x - 0.5 * t)^2 + 0.1 * (u - 0.5)^2); dynamics { der(x) == u; } initial { x == 0; }
          trajectory { (u - 0.2) * (u - 0.8) >= 0; } guess { u = tau; } }",
     );
-    assert!(found.resolution() != Some(Resolution::Unresolved), "{found}");
+    assert_eq!((found.is_solved(), found.resolution()), (true, Some(Resolution::Coarse)), "{found}");
 }
 
 /// A path that goes round a disc on few points, more than a right angle from one to the next, misses it by little.

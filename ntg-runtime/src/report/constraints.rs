@@ -136,7 +136,8 @@ fn is_path(nlp: &Transcription, group: usize) -> bool {
     matches!(nlp.model.structure.group(group).domain, Domain::Path { .. })
 }
 
-/// What a limit that is missed by less is not said to be jumped over. A law: what rounding leaves of a path within the tolerance.
+/// A limit that is missed by less than this part of its size is not jumped over. A law: ten times the tolerance, within which a
+/// path keeps its limits.
 const LEAST_JUMP: f64 = 1e-7;
 
 /// A value, and by how much it misses its bounds.
