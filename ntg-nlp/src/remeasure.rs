@@ -488,7 +488,8 @@ fn residual_by<N: Nlp>(
         largest_term,
         terms: &terms,
     };
-    Some(residuals::residuals(resized.limits(), &scales, &point).scaled)
+    let found = residuals::residuals(resized.limits(), &scales, &point).scaled;
+    Some(Residual { dual_is_rounding: end.residuals.scaled.dual_is_rounding, ..found })
 }
 
 /// The largest violation of a row times its factor that no slope can make too large: by slopes that are rounding beside

@@ -67,6 +67,10 @@ pub struct Residual {
     pub worth: f64,
     /// What rounding leaves of `dual` at the solution itself, equation (6.5a); 0 where nobody had to know.
     pub rounding: f64,
+    /// Whether Newton's step has shown that `dual` is rounding and no more, equation (6.5c).
+    pub dual_is_rounding: bool,
+    /// Whether `worth` is of residuals that are rounding, equation (6.5d); false where nobody had to know.
+    pub worth_is_rounding: bool,
 }
 
 /// How far a point is from a solution, by scale and in the program's own units
@@ -234,8 +238,9 @@ pub fn violation(value: f64, lower: f64, upper: f64) -> f64 {
     (lower - value).max(value - upper).max(0.0)
 }
 
-/// Bounds closer together than this are one equality (scaled). A law: rounding of bounds that are meant to be equal.
-const SAME: f64 = 1e-12;
+/// Bounds closer together than this are one equality (scaled), and a residual below it is rounding. A law: rounding of bounds
+/// that are meant to be equal.
+pub(crate) const SAME: f64 = 1e-12;
 
 /// Whether scaled bounds leave no room between them.
 pub(crate) fn is_equality(lower: f64, upper: f64) -> bool {
@@ -334,20 +339,18 @@ impl Residual {
     /// terms have the size 1. Multipliers of 1e14 on rows that all but vanish make any violation worth something,
     /// however small it is beside the row. The sum of products is such an error, whatever the multipliers are, and stays.
     pub fn relative_to(self, s_d: f64) -> Self {
-        let Self { primal, dual, complementarity, gap, worth, rounding } = self;
         Self {
-            primal,
-            dual: dual / s_d,
-            complementarity: complementarity / s_d,
-            gap,
-            worth: worth / s_d,
-            rounding: rounding / s_d,
+            dual: self.dual / s_d,
+            complementarity: self.complementarity / s_d,
+            worth: self.worth / s_d,
+            rounding: self.rounding / s_d,
+            ..self
         }
     }
 
     /// Whether a solve ends as solved: the violations within one tolerance, all else within another.
     pub fn is_solved(&self, constraint_tolerance: f64, tolerance: f64) -> bool {
-        self.is_acceptable(constraint_tolerance, tolerance) && self.worth <= tolerance
+        self.is_acceptable(constraint_tolerance, tolerance) && (self.worth <= tolerance || self.worth_is_rounding)
     }
 
     /// Whether the violations are within one tolerance, the dual residual and complementarity within another.
@@ -355,8 +358,9 @@ impl Residual {
     /// What residuals of equalities are worth does not count: where equations contradict each other by a little, their
     /// multipliers grow without a limit.
     pub fn is_acceptable(&self, constraint_tolerance: f64, tolerance: f64) -> bool {
+        let most = if self.dual_is_rounding { f64::INFINITY } else { ACCEPTABLE };
         self.primal <= constraint_tolerance
-            && self.dual <= tolerance.max(self.rounding.min(ACCEPTABLE))
+            && self.dual <= tolerance.max(self.rounding.min(most))
             && self.complementarity <= tolerance
             && self.gap <= GAP * tolerance
     }
@@ -365,7 +369,7 @@ impl Residual {
     /// dual residual and of complementarity.
     pub(crate) fn is_better_than(&self, other: &Self) -> bool {
         let [own, others] = [self.primal, other.primal].map(|primal| primal.max(ACCEPTABLE));
-        let rest = |of: &Self| of.dual.max(of.complementarity);
+        let rest = |of: &Self| of.complementarity.max(if of.dual_is_rounding { 0.0 } else { of.dual });
         own < others || (own == others && rest(self) < rest(other))
     }
 

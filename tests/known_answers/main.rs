@@ -12,6 +12,7 @@ mod data;
 mod degenerate;
 mod durations;
 mod estimates;
+mod fine_meshes;
 mod flat_limits;
 mod fleet;
 mod flight;

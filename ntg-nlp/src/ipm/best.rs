@@ -64,6 +64,9 @@ impl<N: Nlp> State<'_, N> {
         let point = std::mem::take(&mut self.nearest);
         if point.is_held {
             self.restore(&point);
+            let known = point.record.residuals.scaled;
+            let found = &mut self.record.residuals.scaled;
+            (found.rounding, found.dual_is_rounding) = (found.rounding.max(known.rounding), known.dual_is_rounding);
         }
         self.nearest = point;
     }

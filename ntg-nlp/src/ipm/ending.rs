@@ -161,7 +161,8 @@ impl<'a, N: Nlp> State<'a, N> {
         let bound_multipliers: Vec<f64> =
             (0..n).map(|j| self.multipliers[first + j] / self.system.scales.variables[j] / objective).collect();
         let x = self.system.unscaled(self.nlp, &self.x).to_vec();
-        let residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
+        let mut residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
+        residuals.scaled.dual_is_rounding = self.record.residuals.scaled.dual_is_rounding;
         let row_factors = self.system.scales.rows.clone();
         self.analysis.system = Some(self.system);
         self.analysis.is_unchanged = true;

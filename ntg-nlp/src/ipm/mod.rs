@@ -178,10 +178,18 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
             return state.end(status); // 6
         }
         let searched = state.step_and_search(); // 7 to 9
+        if searched == SearchOutcome::Solved {
+            return state.outcome(Status::Solved); // 4
+        }
+        let searched = match searched {
+            // What such a step still moves is rounding, (6.5c).
+            SearchOutcome::Accepted if state.record.residuals.scaled.dual_is_rounding => SearchOutcome::Tiny,
+            searched => searched,
+        };
         tiny_steps = match searched {
             SearchOutcome::Tiny if state.mu == mu => tiny_steps + 1,
             SearchOutcome::Tiny => 1,
-            SearchOutcome::Stuck | SearchOutcome::Accepted => 0,
+            _ => 0,
         };
         mu = state.mu;
         let ended = match searched {
@@ -211,7 +219,7 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
                 }
                 None
             }
-            SearchOutcome::Tiny | SearchOutcome::Accepted => None,
+            _ => None,
         };
         if let Some(status) = ended {
             return state.end(status); // 10
@@ -232,7 +240,11 @@ impl<N: Nlp> State<'_, N> {
             self.minimise_over_slacks();
             return if self.compute_step() { self.penalty_search() } else { SearchOutcome::Stuck };
         }
-        if self.compute_step() && self.lower_barrier_along_step() {
+        if !self.compute_step() {
+            SearchOutcome::Stuck
+        } else if self.is_solved_but_for_rounding() {
+            SearchOutcome::Solved
+        } else if self.lower_barrier_along_step() {
             self.watched_search()
         } else {
             SearchOutcome::Stuck

@@ -7,7 +7,7 @@
 
 use crate::contract::Limits;
 use crate::reductions::{largest, sum};
-use crate::residuals::is_equality;
+use crate::residuals::{ACCEPTABLE, SAME, is_equality};
 
 /// How far a multiplier may leave the central path: kappa_Sigma of WB, equation (16).
 const KAPPA_SIGMA: f64 = 1e10;
@@ -136,7 +136,12 @@ impl Slacks {
 
     /// The kappa_Sigma safeguard of WB, equation (16): brings multipliers near to the central path `s z = mu`.
     pub(super) fn safeguard_multipliers(&mut self, mu: f64) {
-        let (most, least) = (KAPPA_SIGMA * mu, mu / KAPPA_SIGMA);
+        self.centre_multipliers(mu, KAPPA_SIGMA);
+    }
+
+    /// Brings multipliers to within a factor of the central path `s z = mu`; does nothing where all are.
+    pub(super) fn centre_multipliers(&mut self, mu: f64, factor: f64) {
+        let (most, least) = (factor * mu, mu / factor);
         let pairs: [&[f64]; 2] = [&self.s, &self.z];
         if largest(pairs, |[s, z]| s * z) <= most && largest(pairs, |[s, z]| least - s * z) == 0.0 {
             return;
@@ -218,6 +223,18 @@ impl Slacks {
     /// The largest product of an equality's multiplier and its residual.
     pub(super) fn worth(&self, values: &[f64]) -> f64 {
         self.equality_residuals(values).zip(&self.y).map(|(c, y)| c * y.abs()).fold(0.0, f64::max)
+    }
+
+    /// Whether what residuals of equalities that are rounding are worth is little together, and no other one is worth more
+    /// than `most`, equation (6.5d).
+    pub(super) fn worth_is_rounding(&self, values: &[f64], most: f64) -> bool {
+        let residuals = self.equality_residuals(values).zip(&self.equalities).zip(&self.y);
+        let worth = residuals.map(|((c, of), y)| match c * y.abs() {
+            worth if c <= SAME * of.value.abs().max(1.0) => worth,
+            worth if worth <= most => 0.0,
+            _ => f64::INFINITY,
+        });
+        worth.sum::<f64>() <= ACCEPTABLE
     }
 
     /// The largest deviation `|s z - mu|` from the central path.

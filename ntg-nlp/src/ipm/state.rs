@@ -220,8 +220,10 @@ impl<N: Nlp> State<'_, N> {
             complementarity: self.slacks.complementarity(),
             gap: self.slacks.gap() / gap_unit(self.values[self.system.objective()]),
             worth: self.slacks.worth(&self.values),
-            rounding: 0.0,
+            ..Residual::default()
         };
+        let worthless = self.options.tolerance * self.s_d;
+        scaled.worth_is_rounding = scaled.worth > worthless && self.slacks.worth_is_rounding(&self.values, worthless);
         if self.is_dual_alone(&scaled.relative_to(self.s_d), f64::INFINITY) {
             scaled.dual = self.dual_by_terms();
             if self.is_dual_alone(&scaled.relative_to(self.s_d), ACCEPTABLE) {
@@ -246,6 +248,26 @@ impl<N: Nlp> State<'_, N> {
             && found.dual <= most
             && but_for_dual.is_solved(constraint_tolerance, tolerance)
             && self.mode.has_own_multipliers()
+    }
+
+    /// Whether the present point is a solution but for rounding of the dual residual, equation (6.5c): Newton's step, which
+    /// is at hand, promises no decrease of the Lagrangian beyond the tolerance, and (6.5a) is as large. Where what equalities
+    /// are worth keeps it from being one, the record says what the dual residual is.
+    pub(super) fn is_solved_but_for_rounding(&mut self) -> bool {
+        let Options { constraint_tolerance, tolerance, .. } = *self.options;
+        let found = self.record.residuals.scaled;
+        let but_for_worth = Residual { worth: 0.0, ..found };
+        if !self.is_dual_alone(&but_for_worth, f64::INFINITY) || self.record.is_corrected() {
+            return false;
+        }
+        let decrement: f64 = sum([&self.step.x, &self.negative_gradient], |[x, g]| (x * g).abs());
+        let rounding = self.rounding() / self.s_d;
+        if !(decrement <= tolerance && found.dual <= rounding) {
+            return false;
+        }
+        self.record.residuals.scaled = Residual { rounding, dual_is_rounding: true, ..found };
+        self.keep_nearest();
+        self.record.residuals.scaled.is_solved(constraint_tolerance, tolerance)
     }
 
     /// The largest entry of the Lagrangian's gradient; infinite where an entry is not finite.
