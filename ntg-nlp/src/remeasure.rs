@@ -121,6 +121,7 @@ fn rounds<N: Nlp>(
     let mut resized = Resized::new(nlp);
     let mut start: Option<Vec<f64>> = None;
     let (mut iterations, mut rounds, mut restarts, mut saddles) = (0, 0, 0, 0);
+    let mut is_again = false;
     let mut left_saddle: Option<Outcome> = None;
     let mut beside: Option<Beside> = None;
     let mut undamped: Option<Outcome> = None;
@@ -140,12 +141,17 @@ fn rounds<N: Nlp>(
         let most = if large.is_some() { left.min(MAGNIFIED) } else { left };
         let options = Options { max_iterations: most, tolerance, ..options.after(began.elapsed()) };
         let (mut outcome, measure) = solve(&resized, round, &options);
+        // By its earlier sizes the start was no solution: that larger ones make it one says nothing.
+        let is_start_again = std::mem::take(&mut is_again) && outcome.iterations == 0 && outcome.status.has_solution();
         iterations += outcome.iterations;
         (outcome.iterations, outcome.seconds) = (iterations, began.elapsed().as_secs_f64());
         if let Some((wide, _)) = wide {
             let end =
                 if is_worse(&outcome, &wide) { Outcome { status: Status::StepTooSmall, ..outcome } } else { outcome };
             return unless_worse(left_saddle, narrower(wide, end));
+        }
+        if is_start_again {
+            return unless_worse(left_saddle, Outcome { status: Status::StepTooSmall, ..outcome });
         }
         let measure = match large.take() {
             Some(before) if is_zero(&outcome, nothing) => {
@@ -216,7 +222,7 @@ fn rounds<N: Nlp>(
                 continue;
             }
             Measure::Outgrown(sizes) => {
-                restarts += 1;
+                (restarts, is_again) = (restarts + 1, true);
                 resized.resize(sizes);
                 continue;
             }

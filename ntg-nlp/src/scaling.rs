@@ -86,7 +86,7 @@ impl Scales {
             Slopes::of(nlp, trial, &assembly.jacobian, &sizes)
         });
         assembly.first(nlp.blocks(), at);
-        Self::from_slopes(nlp.limits(), scaling, &at_start.beside(probe, nlp, at))
+        Self::from_slopes(nlp.limits(), scaling, &at_start.beside(probe, nlp, (at, start)))
     }
 
     /// Scaled bounds; they have no sizes of their own.
@@ -169,10 +169,18 @@ impl Slopes {
         }
     }
 
-    /// The slopes that scale a program, from those at the start, whose values are given, and at a point beside it (none
-    /// where the program has no derivatives there).
-    pub fn beside<N: Nlp>(self, beside: Option<Self>, nlp: &N, at: &Evaluation) -> Self {
+    /// The slopes that scale a program, from those at the start, where the program is evaluated without multipliers of its
+    /// rows, and at a point beside it (none where the program has no derivatives there).
+    pub fn beside<N: Nlp>(self, beside: Option<Self>, nlp: &N, (at, start): (&Evaluation, &[f64])) -> Self {
         let (blocks, limits) = (nlp.blocks(), nlp.limits());
+        let beside = beside.map(|mut beside| {
+            // A power of 20 is 1e17 times as steep beside the start, which says nothing of a solution.
+            if LEAST_AT_START * beside.variation > self.variation {
+                let most = self.variation + bent_variation((blocks, at), start, limits);
+                beside.variation = beside.variation.min(most / LEAST_AT_START);
+            }
+            beside
+        });
         self.or_beside(beside, limits)
             .within_relations(blocks, limits)
             .within_reach(&at.rows, limits)
@@ -377,6 +385,32 @@ fn bending(blocks: &[Block], at: &Evaluation, sizes: &[f64]) -> f64 {
         for (&(i, j), entries) in block.hessian.iter().zip(values.hessian.chunks(block.elements.max(1))) {
             let curvature: f64 = entries.iter().map(|entry| entry.abs()).sum();
             sum += curvature * slot_size(block, 0, i, sizes) * slot_size(block, 0, j, sizes);
+        }
+    }
+    sum
+}
+
+/// By how much the variation over sizes of an objective that is quadratic grows at most from the start to the point
+/// [`beside`] it: the sum over elements and pairs of slots of the size of the second derivative times the size of one slot
+/// and the change of the other.
+fn bent_variation((blocks, at): (&[Block], &Evaluation), start: &[f64], limits: &Limits) -> f64 {
+    let sizes = Scales::sizes(limits);
+    let mut near = start.to_vec();
+    beside(start, limits, &sizes, &mut near);
+    let change = |block: &Block, e: usize, slot: usize| {
+        let variables = block.variables(e);
+        let terms = variables.iter().zip(&block.map(e)[slot * variables.len()..]);
+        terms.map(|(&j, c)| c * (near[j as usize] - start[j as usize])).sum::<f64>().abs()
+    };
+    let mut sum = 0.0;
+    for (block, values) in blocks.iter().zip(&at.blocks) {
+        for (entry, &(i, j)) in block.hessian.iter().enumerate() {
+            for e in 0..block.elements {
+                let curvature = values.hessian[entry * block.elements + e].abs();
+                let one = slot_size(block, e, i, &sizes) * change(block, e, j);
+                let other = if i == j { 0.0 } else { slot_size(block, e, j, &sizes) * change(block, e, i) };
+                sum += curvature * (one + other);
+            }
         }
     }
     sum

@@ -169,7 +169,7 @@ impl<W> System<W> {
         let plain = Scales { rows: vec![1.0; self.weights.len()], objective: 1.0, ..self.scales.clone() };
         self.set_scales(nlp, plain);
         let slopes = self.slopes_beside(nlp);
-        let slopes = self.slopes(nlp).beside(slopes, nlp, &self.latest);
+        let slopes = self.slopes(nlp).beside(slopes, nlp, (&self.latest, &self.x));
         self.set_scales(nlp, Scales::from_slopes(nlp.limits(), scaling, &slopes));
         let (row_sizes, row_weights) = (rows.clone(), weights.clone());
         self.scaled_by = Some(ScaledBy { point: scaled.to_vec(), rule: scaling, row_sizes, row_weights });

@@ -34,6 +34,9 @@ const FAR_BOUND: f64 = 1e4;
 /// less than the second, it is stationary at the point but for rounding. Those of the objective (5.3).
 const LEAST_AT_POINT: f64 = 1e-2;
 const STATIONARY: f64 = 1e-6;
+/// The part of the way to the point beside on which slope and curvature of an integral are taken. A choice: powers of 20
+/// change by a tenth.
+const NEARBY: f64 = 1e-3;
 
 /// What shares a size (an output in all phases of an agent, a variable, a duration), and all constraints in which it
 /// stands. Every member of a constraint counts as one of its own: members may differ in size by any factor.
@@ -216,8 +219,9 @@ impl Transcription<'_> {
     }
 
     /// Sizes of integrals, as the objective has its own (5.3): the value at the point, unless it is stationary there, as a
-    /// sum of squares is at 0, by the value beside the point. `scale` has the sizes of what has none yet. Where the
-    /// integrals have no values beside the point, they stay without a size.
+    /// sum of squares is at 0, by the value beside the point. That is no larger than slope and curvature at the point tell: a
+    /// power of 20 has a value of 1e17 times its own there, which says nothing of a solution. `scale` has the sizes of what
+    /// has none yet. Where the integrals have no values beside the point, they stay without a size.
     fn size_integrals(&self, x: &[f64], scale: &[f64], balance: &mut Balance) {
         let size = |j: usize| balance.size[balance.group[j]].unwrap_or(scale[j]);
         let sizes: Vec<f64> = (0..x.len()).map(size).collect();
@@ -226,13 +230,27 @@ impl Transcription<'_> {
         // Integrals stay where they are: each row is then its integral less the sum that defines it.
         let first = self.model.layout.integral_first.first().map_or(x.len(), |first| *first as usize);
         near[first..].copy_from_slice(&x[first..]);
-        let (mut workspace, mut at) = self.workspace();
-        if first == x.len() || self.values(&near, &mut workspace, &mut at).is_err() {
+        if first == x.len() {
             balance.is_integral.fill(false);
             return;
         }
-        for (variable, &row) in (first..).zip(self.elements.integral_rows()) {
-            let (here, there) = (x[variable].abs(), (x[variable] - at.rows[row as usize]).abs());
+        let (mut workspace, mut at) = self.workspace();
+        let mut integrals = |part: f64| -> Option<Vec<f64>> {
+            let point: Vec<f64> = x.iter().zip(&near).map(|(x, near)| x + part * (near - x)).collect();
+            self.values(&point, &mut workspace, &mut at).ok()?;
+            let rows = self.elements.integral_rows();
+            Some((first..).zip(rows).map(|(variable, &row)| x[variable] - at.rows[row as usize]).collect())
+        };
+        let [there, before, after] = [1.0, -NEARBY, NEARBY].map(&mut integrals);
+        let nearby = before.zip(after);
+        for (k, variable) in (first..x.len()).enumerate() {
+            let here = x[variable].abs();
+            let quadratic = nearby.as_ref().map(|(before, after)| {
+                let (slope, curvature) = (after[k] - before[k], after[k] + before[k] - 2.0 * x[variable]);
+                here + (slope / (2.0 * NEARBY)).abs() + 0.5 * curvature.abs() / (NEARBY * NEARBY)
+            });
+            let known = [there.as_ref().map(|there| there[k].abs()), quadratic].into_iter().flatten();
+            let there = known.filter(|there| there.is_finite()).fold(f64::INFINITY, f64::min);
             let size = if here > STATIONARY * there { here.max(LEAST_AT_POINT * there) } else { there };
             if size.is_normal() {
                 balance.size[balance.group[variable]] = Some(size);
