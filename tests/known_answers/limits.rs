@@ -114,6 +114,38 @@ fn a_hill_is_as_high_as_it_is_and_not_as_the_flight() {
     }
 }
 
+/// A hill that the formula has from time itself, which outputs do not enter: a hut and a mast on the way of a descent, along
+/// distance and along time, as a formula and as a table.
+#[test]
+fn a_hill_along_time_is_as_high_as_it_is() {
+    let hut = "let ground [m] = 8 [m] * exp(-((x - 9790 [m]) / 6 [m])^2);";
+    let mast = "table ground(x [m]) [m] = monotone { 0: 0; 9780: 0; 9790: 20; 9800: 0; 10000: 0; }";
+    for (way, ground, form) in [
+        ("domain x [m]; duration D = 10 [km];", hut, "z - ground >= 0"),
+        ("domain x [m]; duration D = 10 [km];", hut, "ground <= z"),
+        ("domain x [m]; duration D = 10 [km];", mast, "z >= ground(x)"),
+        ("duration D = 100 [s]; let x [m] = t * 100 [m/s];", hut, "z >= ground"),
+    ] {
+        let rate = if way.contains("domain") { "-0.4" } else { "-40 [m/s]" };
+        let text = |height: &str| {
+            format!(
+                "problem Descent {{
+                    {way} output z [m]: spline(order = 5, intervals = 10); {}
+                    minimize integral(der(z, 2)^2);
+                    initial {{ z == 2 [km]; der(z) == {rate}; }} trajectory {{ clear: {form}; }} final {{ z == 0; der(z) == 0; }}
+                }}",
+                ground.replace("8 [m] *", height).replace("9790: 20", if height.starts_with('0') { "9790: 0.01" } else { "9790: 20" })
+            )
+        };
+        let report = solved(&text("8 [m] *"));
+        assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{form}\n{report}");
+        assert!(report.violated_between().iter().any(|own| own.name == "clear"), "{form}\n{report}");
+        // A centimetre under a descent of two kilometres is none.
+        let report = solved(&text("0.01 [m] *"));
+        assert_eq!(report.resolution(), Some(Resolution::Fine), "{form}\n{report}");
+    }
+}
+
 /// A corridor that a disc blocks: nothing but a swing of hundreds of corridors between two points passes.
 #[test]
 fn a_path_that_swings_through_an_obstacle_between_two_points_is_told_of() {

@@ -4,7 +4,8 @@ use super::ending::Missed;
 use super::fine::{Checked, Plan, Wanted};
 use super::foreseen::Foreseen;
 use super::jumped::Jumped;
-use super::sizes::Sizes;
+use super::sides::Sides;
+use super::sizes::{Sizes, with_side};
 use super::{ConstraintReport, Worst, multipliers};
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
@@ -58,6 +59,7 @@ pub(super) fn constraints(
     let mut means = Means::new(reports.len());
     let mut foreseen = Foreseen::new(nlp, outcome);
     let (mut jumped, mut jumps) = (Jumped::new(nlp, (outcome, at)), BTreeMap::<usize, Option<Worst>>::new());
+    let mut sides = Sides::default();
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
         means.add(nlp, checked, || all_sizes.between(nlp, checked.constraint, checked.indices));
@@ -65,7 +67,10 @@ pub(super) fn constraints(
         report.is_equation &= checked.bounds.0 == checked.bounds.1;
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         let indices = structure.constraints[checked.constraint].shown_indices(checked.indices);
-        let (measured, unit) = (measure(checked.value, checked.bounds, sizes.0), sizes.1);
+        let (measured, unit) = (measure(checked.value, checked.bounds, &sizes.0), sizes.1);
+        if measured.relative > LEAST_JUMP {
+            sides.add(checked, sizes.0());
+        }
         if measured.relative > LEAST_JUMP && jumped.is_jump(checked) {
             let worst = jumps.entry(checked.constraint).or_default();
             hold(nlp, &outcome.x, worst, (measured, unit), (&checked.point, indices));
@@ -73,6 +78,14 @@ pub(super) fn constraints(
         hold(nlp, &outcome.x, &mut report.between, (measured, unit), (&checked.point, indices));
     })?;
     means.write(nlp, &mut reports);
+    sides.visit(nlp, (fine, &outcome.x), |place, side| {
+        let (constraint, indices, _) = &place.key;
+        let size = || with_side(all_sizes.between(nlp, *constraint, indices), side);
+        let report = &mut reports[*constraint];
+        let shown = structure.constraints[*constraint].shown_indices(indices);
+        let measured = measure(place.value, place.bounds, size);
+        hold(nlp, &outcome.x, &mut report.between, (measured, report.unit.factor), (&place.point, shown));
+    })?;
     // A limit that is jumped over is missed by all of it, unless it is known how large that is.
     for (constraint, jump) in jumps {
         let between = &mut reports[constraint].between;
@@ -202,8 +215,12 @@ pub(super) fn have_zero_bounds(nlp: &Transcription) -> bool {
 /// `-1e-6 [m]` of a height of a kilometre. A law: the tolerance, within which terms are known.
 const NEXT_TO_ZERO: f64 = 1e-8;
 
+/// Whether bounds are no others than 0 beside terms of a size.
+pub(super) fn bounds_are_next_to_zero(bounds: (f64, f64), size: f64) -> bool {
+    bound_size(bounds) <= NEXT_TO_ZERO * size
+}
+
 /// The larger finite bound, or the size of the terms where both are zero or missing (equation 9.3).
 pub(super) fn scale(lower: f64, upper: f64, size: f64) -> f64 {
-    let largest = bound_size((lower, upper));
-    if largest > NEXT_TO_ZERO * size { largest } else { size }
+    if bounds_are_next_to_zero((lower, upper), size) { size } else { bound_size((lower, upper)) }
 }

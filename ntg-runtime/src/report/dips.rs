@@ -3,7 +3,7 @@
 //! A path that is fast beside what it passes may have an obstacle between two points, however fine they are. A distance that falls
 //! and rises again is convex: between two points it is above the lines through the two points before and the two after. Where
 //! these meet beyond the limit, the limit is evaluated around the place where they meet and around the vertices of the
-//! parabolas through three of the four points.
+//! parabolas through three of the four points. Where the points are too coarse for lines, they are divided first.
 
 use crate::transcribe::node::Site;
 use crate::transcribe::points::Point;
@@ -28,6 +28,47 @@ pub(super) fn between(sites: &[Site], values: &[f64], (lower, upper): Pair, foun
     }
 }
 
+/// Into so many parts a step is divided that values do not follow. A choice: a cubic that turns round within a step is all but
+/// straight in an eighth of it.
+const PARTS: usize = 8;
+
+/// Even parts of those steps between which values stay within their bounds, but not on the lines through their neighbours: what
+/// lies between is not known from the points. Where a line misses a value by more than that is from its bound, the bound may be
+/// crossed twice.
+pub(super) fn unknown(sites: &[Site], values: &[f64], (lower, upper): Pair, found: &mut Vec<Site>) {
+    if lower == upper {
+        return;
+    }
+    for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
+        if !(bound != 0.0 && bound.is_finite() && comes_near(values, (bound, sign))) {
+            continue;
+        }
+        let distinct = distinct(sites);
+        for (i, pair) in distinct.windows(2).enumerate() {
+            let (before, after) = (sites[pair[0]].point, sites[pair[1]].point);
+            let above = |of: usize| sign * (values[of] - bound);
+            let distance = above(pair[0]).min(above(pair[1]));
+            let missed = |far: Option<&usize>, near: usize, next: usize| {
+                far.map_or(0.0, |far| (above(next) - (2.0 * above(near) - above(*far))).abs())
+            };
+            let by_first = missed(i.checked_sub(1).and_then(|i| distinct.get(i)), pair[0], pair[1]);
+            let by_last = missed(distinct.get(i + 2), pair[1], pair[0]);
+            let is_unknown = distance >= 0.0 && by_first.max(by_last) > distance + WORTH * bound.abs();
+            if before.phase == after.phase && is_unknown {
+                let tau = |part: usize| before.tau + (after.tau - before.tau) * part as f64 / PARTS as f64;
+                let site = |part: usize| Site { point: Point { tau: tau(part), ..before }, ..sites[pair[0]].clone() };
+                found.extend((0..=PARTS).map(site));
+            }
+        }
+    }
+}
+
+/// The sites but for those that stand twice: breakpoints, once from either side.
+fn distinct(sites: &[Site]) -> Vec<usize> {
+    let is_new = |i: &usize| *i == 0 || sites[*i].point.tau != sites[*i - 1].point.tau;
+    (0..sites.len()).filter(is_new).collect()
+}
+
 /// Whether values come so near to a bound that one more of their largest changes would lead beyond it.
 fn comes_near(values: &[f64], (bound, sign): (f64, f64)) -> bool {
     // Loops without an exit, of which the compiler makes vector instructions.
@@ -38,10 +79,7 @@ fn comes_near(values: &[f64], (bound, sign): (f64, f64)) -> bool {
 
 /// The places at which values that stay on one side of a bound may be beyond it.
 fn beyond(sites: &[Site], values: &[f64], (bound, sign): (f64, f64), found: &mut Vec<Site>) {
-    // Breakpoints stand twice, once from either side.
-    let is_new = |i: &usize| *i == 0 || sites[*i].point.tau != sites[*i - 1].point.tau;
-    let distinct: Vec<usize> = (0..sites.len()).filter(is_new).collect();
-    for window in distinct.windows(4) {
+    for window in distinct(sites).windows(4) {
         let [first, before, after, last] = [0, 1, 2, 3].map(|i| sites[window[i]].point);
         let step = after.tau - before.tau;
         let is_even = |one: Point, next: Point| {

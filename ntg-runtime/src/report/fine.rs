@@ -194,28 +194,43 @@ impl Part {
     /// The same group, with values, where limits may be crossed between the points: where they fall and rise again, and where
     /// arguments of tables pass nodes. Before: [`Part::values`].
     fn between(&mut self, nlp: &Transcription, x: &[f64]) -> Result<Vec<Self>, SetupError> {
-        let group = nlp.model.structure.group(self.group);
-        let sites = &self.batch.sites;
-        let (mut places, mut is_limited) = (vec![], false);
+        let unknown = self.at(nlp, x, self.places(nlp, dips::unknown))?;
+        let mut places = self.places(nlp, dips::between);
+        places.extend(unknown.iter().flat_map(|part| part.places(nlp, dips::between)));
+        let is_limit = |(lower, upper): &Pair| lower < upper && (lower.is_finite() || upper.is_finite());
+        if self.bounds.iter().any(|(_, bounds)| bounds.iter().any(is_limit)) {
+            if self.passing.is_none() {
+                self.passing = Passing::of(nlp, self.group, &self.batch.sites)?;
+            }
+            if let Some(passing) = &mut self.passing {
+                passing.nodes(nlp, x, &mut places)?;
+            }
+        }
+        let mut all = self.at(nlp, x, places)?;
+        all.extend(unknown);
+        Ok(all)
+    }
+
+    /// The places that a rule finds beside the values of every constraint.
+    fn places(&self, nlp: &Transcription, rule: impl Fn(&[Site], &[f64], Pair, &mut Vec<Site>)) -> Vec<Site> {
+        let (group, sites) = (nlp.model.structure.group(self.group), &self.batch.sites);
+        let mut places = vec![];
         let ends = self.bounds.iter().skip(1).map(|(element, _)| *element).chain([sites.len()]);
         for ((first, bounds), end) in self.bounds.iter().zip(ends) {
             for row in (0..group.rows.len()).filter(|row| matches!(group.rows[*row], Row::Constraint { .. })) {
                 let values = &self.work.node.values[row * sites.len()..][*first..end];
-                dips::between(&sites[*first..end], values, bounds[row], &mut places);
-                let (lower, upper) = bounds[row];
-                is_limited |= lower < upper && (lower.is_finite() || upper.is_finite());
+                rule(&sites[*first..end], values, bounds[row], &mut places);
             }
         }
-        if is_limited && self.passing.is_none() {
-            self.passing = Passing::of(nlp, self.group, sites)?;
-        }
-        if let Some(passing) = self.passing.as_mut().filter(|_| is_limited) {
-            passing.nodes(nlp, x, &mut places)?;
-        }
+        places
+    }
+
+    /// The same group elsewhere, with values.
+    fn at(&self, nlp: &Transcription, x: &[f64], places: Vec<Site>) -> Result<Vec<Self>, SetupError> {
         if places.is_empty() {
             return Ok(vec![]);
         }
-        let at = |batch: Batch| {
+        let part = |batch: Batch| {
             let work = batch.work();
             let mut part =
                 Self { group: self.group, adds: false, checks: true, batch, work, bounds: vec![], passing: None };
@@ -223,7 +238,7 @@ impl Part {
             part.values(nlp, x);
             Ok(part)
         };
-        batches(&nlp.frame(), &group.call, places)?.into_iter().map(at).collect()
+        batches(&nlp.frame(), &nlp.model.structure.group(self.group).call, places)?.into_iter().map(part).collect()
     }
 
     /// Evaluates all rows.

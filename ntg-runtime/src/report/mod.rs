@@ -19,6 +19,7 @@ mod means;
 mod multipliers;
 mod nodes;
 mod refined;
+mod sides;
 mod sizes;
 pub(crate) mod status;
 mod traces;

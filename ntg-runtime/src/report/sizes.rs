@@ -63,13 +63,17 @@ impl Terms {
             // Neither a height above the sea nor the slope of a wall says how high the wall is.
             Some((low, high)) if seen.max(high - low) > LEAST_RANGE * at_points => {
                 let whole = seen.max(high - low).min(at_points);
-                let side = self.rest.map_or(whole, |(low, high)| self.variation.min(high - low));
-                side.clamp(LEAST_SIDE * whole, whole)
+                self.rest.map_or(whole, |(low, high)| with_side(whole, self.variation.min(high - low)))
             }
             _ => at_points,
         };
         Some(Size { at_points, between })
     }
+}
+
+/// The size of a limit of which one side varies by this much, and all of it by `whole`.
+pub(super) fn with_side(whole: f64, side: f64) -> f64 {
+    side.clamp(LEAST_SIDE * whole, whole)
 }
 
 /// The least and largest value of each term of each relation of a block.
