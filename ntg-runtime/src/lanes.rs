@@ -10,22 +10,27 @@ use std::marker::PhantomData;
 use ntg_math::{MOST_LANES, Pack, Scalar, Simd, Task, Work, dispatch};
 use ntg_splines::Table;
 use ntg_structure::Structure;
+use ntg_structure::constant::{self, Constant};
 
 use crate::problem::{Derivatives, Lanes, Problem};
 
 /// What generated code implements: [`Problem`], for lanes of any width.
 pub trait Kernels: Sync {
-    /// As [`Problem::structure`].
-    fn structure(&self) -> Structure;
+    /// What the problem is, with the spec's own values of parameters and tables.
+    fn structure(&self) -> &'static constant::Structure;
 
     /// As [`Problem::update`]: writes the values of parameters and tables.
     fn update(&self, structure: &mut Structure);
 
-    /// As [`Problem::values`]; there are no weights.
+    /// As [`Problem::values`] of kernels that have derivatives; there are no weights.
     fn values<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], values: &mut [f64]);
 
     /// As [`Problem::derivatives`].
     fn derivatives<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>);
+
+    /// As [`Problem::values`] of all other kernels: functions that are only shown, bounds, guesses. A solve asks for
+    /// them at its ends and not in its iterations, so they are compiled for one lane alone.
+    fn undifferentiated(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], values: &mut [f64]);
 
     /// As [`Problem::probes`]; there are no weights. Asked once a solve at most, so it is compiled for one lane alone.
     fn probes(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], probes: &mut [f64]);
@@ -33,7 +38,7 @@ pub trait Kernels: Sync {
 
 impl<T: Kernels> Problem for T {
     fn structure(&self) -> Structure {
-        Kernels::structure(self)
+        updated(Kernels::structure(self), &|structure| Kernels::update(self, structure))
     }
 
     fn update(&self, structure: &mut Structure) {
@@ -52,6 +57,14 @@ impl<T: Kernels> Problem for T {
     fn probes(&self, kernel: usize, lanes: usize, inputs: &[f64], tables: &[Table], probes: &mut [f64]) {
         Kernels::probes(self, kernel, Lanes { lanes, inputs, weights: &[] }, tables, probes);
     }
+}
+
+/// The structure with the present values of parameters and tables. Not generic, so that a program has no code that
+/// makes or drops a structure.
+fn updated(constant: &constant::Structure, update: &dyn Fn(&mut Structure)) -> Structure {
+    let mut structure = constant.owned();
+    update(&mut structure);
+    structure
 }
 
 /// A call of the contract.
@@ -127,7 +140,23 @@ pub fn values<S: Simd, K: Values<I, R>, const I: usize, const R: usize>(
     if point.lanes == 0 || point.inputs.len() < I * point.lanes || out.len() < R * point.lanes {
         return;
     }
-    simd.vectorize(EveryPack::<S, OfValues<K>, I, R> { simd, point, tables, out, kernel: PhantomData });
+    simd.vectorize(EveryPack::<S, K, I, R> { simd, point, tables, out, kernel: PhantomData });
+}
+
+/// As [`values`], one lane after the other.
+#[inline]
+pub fn undifferentiated<K: Values<I, R>, const I: usize, const R: usize>(
+    _: K,
+    point: Lanes<'_>,
+    tables: &[Table],
+    out: &mut [f64],
+) {
+    let zero = Pack::splat(Scalar, 0.0);
+    every_lane(point, &mut [zero; I], &mut [zero; R], out, &|inputs, results| {
+        if let (Some(inputs), Some(results)) = (inputs.first_chunk(), results.first_chunk_mut()) {
+            K::at(Scalar, tables, inputs, results);
+        }
+    });
 }
 
 /// As [`values`], of what is probed, one lane after the other.
@@ -138,10 +167,39 @@ pub fn probes<K: Probes<I, P>, const I: usize, const P: usize>(
     tables: &[Table],
     out: &mut [f64],
 ) {
-    if point.lanes == 0 || point.inputs.len() < I * point.lanes || out.len() < P * point.lanes {
+    let zero = Pack::splat(Scalar, 0.0);
+    every_lane(point, &mut [zero; I], &mut [zero; P], out, &|inputs, results| {
+        if let (Some(inputs), Some(results)) = (inputs.first_chunk(), results.first_chunk_mut()) {
+            K::at(Scalar, tables, inputs, results);
+        }
+    });
+}
+
+/// A kernel for one lane.
+type OfOneLane<'a> = &'a dyn Fn(&[Pack<Scalar>], &mut [Pack<Scalar>]);
+
+/// Calls a kernel with the inputs of every lane and stores its results; the two slices of packs have their numbers.
+/// Not generic, so that a program has no loop for each of its kernels.
+fn every_lane(
+    point: Lanes<'_>,
+    inputs: &mut [Pack<Scalar>],
+    results: &mut [Pack<Scalar>],
+    out: &mut [f64],
+    kernel: OfOneLane<'_>,
+) {
+    let lanes = point.lanes;
+    if lanes == 0 || point.inputs.len() < inputs.len() * lanes || out.len() < results.len() * lanes {
         return;
     }
-    EveryPack::<Scalar, OfProbes<K>, I, P> { simd: Scalar, point, tables, out, kernel: PhantomData }.run();
+    for lane in 0..lanes {
+        for (input, row) in inputs.iter_mut().zip(point.inputs.chunks_exact(lanes)) {
+            *input = Pack::load(Scalar, &row[lane..]);
+        }
+        kernel(inputs, results);
+        for (result, row) in results.iter().zip(out.chunks_exact_mut(lanes)) {
+            result.store(&mut row[lane..]);
+        }
+    }
 }
 
 /// Calls a kernel with the inputs and weights of every pack of lanes and stores values, first
@@ -166,37 +224,15 @@ pub fn derivatives<S: Simd, K, const I: usize, const R: usize, const J: usize, c
     simd.vectorize(EveryPackWithDerivatives::<S, K, I, R, J, H> { simd, point, tables, out, kernel: PhantomData });
 }
 
-/// The function of a kernel that fills one array.
-trait Fill<const I: usize, const R: usize> {
-    fn fill<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; R]);
-}
-
-struct OfValues<K>(PhantomData<K>);
-struct OfProbes<K>(PhantomData<K>);
-
-impl<K: Values<I, R>, const I: usize, const R: usize> Fill<I, R> for OfValues<K> {
-    #[inline(always)]
-    fn fill<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; R]) {
-        K::at(simd, tables, inputs, out);
-    }
-}
-
-impl<K: Probes<I, P>, const I: usize, const P: usize> Fill<I, P> for OfProbes<K> {
-    #[inline(always)]
-    fn fill<S: Simd>(simd: S, tables: &[Table], inputs: &[Pack<S>; I], out: &mut [Pack<S>; P]) {
-        K::at(simd, tables, inputs, out);
-    }
-}
-
-struct EveryPack<'a, S, F, const I: usize, const R: usize> {
+struct EveryPack<'a, S, K, const I: usize, const R: usize> {
     simd: S,
     point: Lanes<'a>,
     tables: &'a [Table],
     out: &'a mut [f64],
-    kernel: PhantomData<F>,
+    kernel: PhantomData<K>,
 }
 
-impl<S: Simd, F: Fill<I, R>, const I: usize, const R: usize> Work for EveryPack<'_, S, F, I, R> {
+impl<S: Simd, K: Values<I, R>, const I: usize, const R: usize> Work for EveryPack<'_, S, K, I, R> {
     #[inline(always)]
     fn run(self) {
         let Self { simd, point, tables, out, .. } = self;
@@ -206,7 +242,7 @@ impl<S: Simd, F: Fill<I, R>, const I: usize, const R: usize> Work for EveryPack<
         let (mut u, mut results) = ([zero; I], [zero; R]);
         for from in packs::<S>(lanes) {
             gather(point.inputs, lanes, from, &mut u);
-            F::fill(simd, tables, &u, &mut results);
+            K::at(simd, tables, &u, &mut results);
             scatter(&results, lanes, from, out);
         }
     }
@@ -313,8 +349,8 @@ mod tests {
     }
 
     impl Kernels for Two {
-        fn structure(&self) -> Structure {
-            Structure::default()
+        fn structure(&self) -> &'static constant::Structure {
+            &constant::Structure::DEFAULT
         }
 
         fn update(&self, _: &mut Structure) {}
@@ -327,8 +363,12 @@ mod tests {
             derivatives(simd, Twice, point, tables, out);
         }
 
+        fn undifferentiated(&self, _: usize, point: Lanes<'_>, tables: &[Table], out: &mut [f64]) {
+            undifferentiated(SumAndProduct, point, tables, out);
+        }
+
         fn probes(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], out: &mut [f64]) {
-            Kernels::values(self, Scalar, kernel, point, tables, out);
+            Kernels::undifferentiated(self, kernel, point, tables, out);
         }
     }
 

@@ -63,7 +63,7 @@ pub struct Grid {
 
 impl Family {
     /// A family that is no matrix.
-    pub fn of(first: i64, last: i64) -> Self {
+    pub const fn of(first: i64, last: i64) -> Self {
         Self { first, last, grid: None }
     }
 

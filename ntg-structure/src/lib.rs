@@ -14,6 +14,7 @@
 //! The crate depends on nothing and computes nothing.
 
 mod call;
+pub mod constant;
 mod group;
 mod guess;
 mod index;
@@ -97,6 +98,15 @@ pub struct Structure {
 }
 
 impl Structure {
+    /// Gives a parameter these values, in SI units, in the memory that it has where their number is the same.
+    ///
+    /// # Panics
+    /// There is no such parameter.
+    pub fn set_parameter(&mut self, parameter: usize, value: &[f64]) {
+        self.parameters[parameter].value.clear();
+        self.parameters[parameter].value.extend_from_slice(value);
+    }
+
     /// A group by its number: those of `groups`, then those of `shown`.
     pub fn group(&self, number: usize) -> &Group {
         self.groups.get(number).unwrap_or_else(|| &self.shown[number - self.groups.len()])

@@ -11,7 +11,7 @@ impl Instant {
     pub const END: Self = Self(1.0_f64.to_bits());
 
     /// The place at a scaled time; what lies outside 0..1 is moved to the nearer end.
-    pub fn new(tau: f64) -> Self {
+    pub const fn new(tau: f64) -> Self {
         // Bits of numbers that are not negative rise with the numbers; `-0` has others.
         Self((tau.clamp(0.0, 1.0) + 0.0).to_bits())
     }

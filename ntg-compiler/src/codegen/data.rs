@@ -1,4 +1,4 @@
-//! Plain data as the Rust expression that rebuilds it.
+//! Plain data as the Rust expression of the constant that holds it.
 //!
 //! Takes the types of `ntg_structure`, gives tokens: `ToRust::to_rust`. Structs and enums are
 //! listed once, by name and fields, in the macros below; the tokens are made by `quote!` alone.
@@ -8,8 +8,8 @@
 //! What is long because of a number (`intervals = 500`) is written as a rule: the size of the
 //! text grows with what the spec says, not with breakpoints or members.
 //!
-//! Afterwards: the expression, with the types of `ntg_structure` in scope, is equal to the data
-//! bit for bit.
+//! Afterwards: the expression, with the types of `ntg_structure::constant` in scope, may stand in a `static`, and the
+//! data that are made of it are equal to those given, bit for bit.
 
 use ntg_structure::{
     Affine, Agent, Angle, Arguments, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration,
@@ -67,8 +67,8 @@ macro_rules! structs_with_default {
                     written.push(quote! { $field: #value });
                 })*
                 match (written.is_empty(), left_out) {
-                    (true, _) => quote! { $name::default() },
-                    (false, true) => quote! { $name { #(#written,)* ..$name::default() } },
+                    (true, _) => quote! { $name::DEFAULT },
+                    (false, true) => quote! { $name { #(#written,)* ..$name::DEFAULT } },
                     (false, false) => quote! { $name { #(#written),* } },
                 }
             }
@@ -117,6 +117,7 @@ structs! {
     Output { name, doc, unit, family, vector, spline }
     Parameter { name, doc, unit, array, grid, value }
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }
+    Places { first, instants }
     Reduction { op, over, body }
     Shared { phase, output, until }
     Table { name, doc, axes, unit, values, method, extrapolation, replaceable }
@@ -159,15 +160,6 @@ impl ToRust for Instant {
                 quote! { Instant::new(#tau) }
             }
         }
-    }
-}
-
-impl ToRust for Places {
-    fn to_rust(&self) -> TokenStream {
-        let Self { first, instants } = self;
-        let taus = instants.iter().map(|instant| instant.tau().to_rust());
-        let first = first.to_rust();
-        quote! { Places { first: #first, instants: [#(#taus),*].map(Instant::new).into() } }
     }
 }
 
@@ -224,10 +216,6 @@ impl ToRust for Affine {
                 let constant = constant.to_rust();
                 quote! { Affine::constant(#constant) }
             }
-            (0, [(k, 1)]) => {
-                let k = k.to_rust();
-                quote! { Affine::index(#k) }
-            }
             (constant, _) => {
                 let (constant, terms) = (constant.to_rust(), self.terms.to_rust());
                 quote! { Affine { constant: #constant, terms: #terms } }
@@ -241,11 +229,13 @@ impl ToRust for Spline {
         let (order, smoothness) = (self.order.to_rust(), self.smoothness.to_rust());
         let breakpoints = match self.breakpoints.len().saturating_sub(1) {
             intervals if intervals >= LONG && equally_spaced(&self.breakpoints) => {
-                let intervals_usize = Literal::usize_unsuffixed(intervals);
-                let intervals = float(intervals as f64);
-                quote! { (0..=#intervals_usize).map(|i| f64::from(i) / #intervals).collect() }
+                let intervals = intervals.to_rust();
+                quote! { Breakpoints::Equal(#intervals) }
             }
-            _ => self.breakpoints.to_rust(),
+            _ => {
+                let breakpoints = self.breakpoints.to_rust();
+                quote! { Breakpoints::At(#breakpoints) }
+            }
         };
         quote! { Spline { order: #order, smoothness: #smoothness, breakpoints: #breakpoints } }
     }
@@ -323,11 +313,7 @@ impl ToRust for i64 {
 
 impl ToRust for String {
     fn to_rust(&self) -> TokenStream {
-        if self.is_empty() {
-            quote! { String::new() }
-        } else {
-            quote! { #self.into() }
-        }
+        quote! { #self }
     }
 }
 
@@ -348,13 +334,11 @@ impl<T: ToRust> ToRust for Vec<T> {
         match self.as_slice() {
             [first, rest @ ..] if self.len() >= LONG && rest.iter().all(|value| value.same(first)) => {
                 let (first, length) = (first.to_rust(), self.len().to_rust());
-                quote! { ::std::iter::repeat_n(#first, #length).collect() }
+                quote! { &[#first; #length] }
             }
-            [] => quote! { Vec::new() },
             all => {
-                // Not `vec!`: formatters leave what is inside a macro alone.
                 let all = all.iter().map(ToRust::to_rust);
-                quote! { Vec::from([#(#all),*]) }
+                quote! { &[#(#all),*] }
             }
         }
     }

@@ -7,14 +7,16 @@ use super::function::{self, Functions};
 use super::names::{Scope, ident};
 use crate::program::Program;
 
-/// The module, and the arms of `match kernel` in the three methods of the contract.
+/// The module, and the arms of `match kernel` in the methods of the contract.
 pub(super) struct Kernels {
     /// `mod kernels { .. }`.
     pub(super) items: TokenStream,
-    /// Arms of `values`.
+    /// Arms of `values`: kernels with derivatives.
     pub(super) values: Vec<TokenStream>,
     /// Arms of `derivatives`.
     pub(super) derivatives: Vec<TokenStream>,
+    /// Arms of `undifferentiated`: all others.
+    pub(super) undifferentiated: Vec<TokenStream>,
     /// Arms of `probes`.
     pub(super) probes: Vec<TokenStream>,
 }
@@ -22,7 +24,8 @@ pub(super) struct Kernels {
 /// Writes all kernels of a program.
 pub(super) fn kernels(program: &Program) -> Kernels {
     let mut scope = Scope::with(&["math", "lanes", "Pack", "Simd", "Table"]);
-    let (mut items, mut values, mut derivatives, mut probes) = (vec![], vec![], vec![], vec![]);
+    let (mut items, mut probes) = (vec![], vec![]);
+    let (mut values, mut derivatives, mut undifferentiated) = (vec![], vec![], vec![]);
     for (i, (shape, body)) in program.structure.kernels.iter().zip(&program.kernels).enumerate() {
         let name = scope.take(&shape.name, |_| false);
         let number = Literal::usize_unsuffixed(i);
@@ -30,13 +33,13 @@ pub(super) fn kernels(program: &Program) -> Kernels {
             function::functions(&name, shape, body);
         let kernel = ident(&name);
         items.push(functions);
-        let of_values = |out| quote! { lanes::values(simd, kernels::#kernel {}, point, tables, #out) };
-        let (all, only) = (of_values(quote! { values }), of_values(quote! { out.values }));
-        values.push(quote! { #number => #all, });
-        derivatives.push(match differentiated {
-            true => quote! { #number => lanes::derivatives(simd, kernels::#kernel {}, point, tables, out), },
-            false => quote! { #number => #only, },
-        });
+        if differentiated {
+            values.push(quote! { #number => lanes::values(simd, kernels::#kernel {}, point, tables, values), });
+            derivatives.push(quote! { #number => lanes::derivatives(simd, kernels::#kernel {}, point, tables, out), });
+        } else {
+            undifferentiated
+                .push(quote! { #number => lanes::undifferentiated(kernels::#kernel {}, point, tables, values), });
+        }
         if probed {
             probes.push(quote! { #number => lanes::probes(kernels::#kernel {}, point, tables, probes), });
         }
@@ -50,5 +53,5 @@ pub(super) fn kernels(program: &Program) -> Kernels {
             #(#items)*
         }
     };
-    Kernels { items, values, derivatives, probes }
+    Kernels { items, values, derivatives, undifferentiated, probes }
 }

@@ -21,7 +21,7 @@ pub(super) struct Field {
     pub(super) declaration: TokenStream,
     /// `v_max: 0.25`
     pub(super) default: TokenStream,
-    /// `structure.parameters[0].value = vec![self.v_max * 1000.0];`
+    /// `structure.set_parameter(0, &[self.v_max * 1000.0]);`
     pub(super) hand_over: TokenStream,
     /// The type of a table's field.
     pub(super) items: TokenStream,
@@ -52,19 +52,19 @@ fn number(i: usize, parameter: &Parameter, place_of: &dyn Fn(&str) -> Span) -> F
             _ => quote! { [#(#literals),*] },
         };
         let si = match factor {
-            Some(factor) => quote! { self.#ident.map(|value| value * #factor).to_vec() },
-            None => quote! { self.#ident.to_vec() },
+            Some(factor) => quote! { &self.#ident.map(|value| value * #factor) },
+            None => quote! { &self.#ident },
         };
         (quote! { [f64; #length] }, default, si)
     } else {
         let default = literals.first().cloned().unwrap_or_else(|| quote! { 0.0 });
         let times = factor.map(|factor| quote! { * #factor });
-        (quote! { f64 }, default, quote! { vec![self.#ident #times] })
+        (quote! { f64 }, default, quote! { &[self.#ident #times] })
     };
     Field {
         declaration: quote! { #(#[doc = #doc])* pub #ident: #kind },
         default: quote! { #ident: #default },
-        hand_over: quote! { structure.parameters[#i].value = #si; },
+        hand_over: quote! { structure.set_parameter(#i, #si); },
         items: TokenStream::new(),
     }
 }

@@ -48,18 +48,11 @@ pub(super) fn problem(program: &Program, kernels: &Kernels, place_of: &dyn Fn(&s
 fn contract(program: &Program, kernels: &Kernels, name: &proc_macro2::Ident) -> TokenStream {
     let fields = parameters::fields(&program.structure, &|_| Span::call_site());
     let hand_over: Vec<_> = fields.iter().map(|field| &field.hand_over).collect();
-    let (structure, update) = match hand_over.is_empty() {
-        true => (quote! { structure::structure() }, quote! { fn update(&self, _: &mut Structure) {} }),
-        false => (
-            quote! {
-                let mut structure = structure::structure();
-                self.update(&mut structure);
-                structure
-            },
-            quote! { fn update(&self, structure: &mut Structure) { #(#hand_over)* } },
-        ),
+    let update = match hand_over.is_empty() {
+        true => quote! { fn update(&self, _: &mut Structure) {} },
+        false => quote! { fn update(&self, structure: &mut Structure) { #(#hand_over)* } },
     };
-    let Kernels { values, derivatives, probes, .. } = kernels;
+    let Kernels { values, derivatives, undifferentiated, probes, .. } = kernels;
     quote! {
         mod contract {
             use super::{kernels, structure};
@@ -67,11 +60,11 @@ fn contract(program: &Program, kernels: &Kernels, name: &proc_macro2::Ident) -> 
             use ::ntg::runtime::math::Simd;
             use ::ntg::runtime::problem::{Derivatives, Lanes};
             use ::ntg::runtime::splines::Table;
-            use ::ntg::runtime::structure::Structure;
+            use ::ntg::runtime::structure::{Structure, constant};
 
             impl Kernels for super::#name {
-                fn structure(&self) -> Structure {
-                    #structure
+                fn structure(&self) -> &'static constant::Structure {
+                    &structure::STRUCTURE
                 }
 
                 #update
@@ -79,14 +72,21 @@ fn contract(program: &Program, kernels: &Kernels, name: &proc_macro2::Ident) -> 
                 fn values<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], values: &mut [f64]) {
                     match kernel {
                         #(#values)*
-                        _ => values.fill(f64::NAN),
+                        _ => self.undifferentiated(kernel, point, tables, values),
                     }
                 }
 
                 fn derivatives<S: Simd>(&self, simd: S, kernel: usize, point: Lanes<'_>, tables: &[Table], out: Derivatives<'_>) {
                     match kernel {
                         #(#derivatives)*
-                        _ => out.values.fill(f64::NAN),
+                        _ => self.undifferentiated(kernel, point, tables, out.values),
+                    }
+                }
+
+                fn undifferentiated(&self, kernel: usize, point: Lanes<'_>, tables: &[Table], values: &mut [f64]) {
+                    match kernel {
+                        #(#undifferentiated)*
+                        _ => values.fill(f64::NAN),
                     }
                 }
 

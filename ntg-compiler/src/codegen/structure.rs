@@ -1,7 +1,8 @@
 //! `mod structure`: the problem without its formulas, as the spec states it.
 //!
-//! One function for each list of the `Structure`, so that a reader finds a phase or a group by
-//! name, and no expression is deeper than one of its entries.
+//! One constant for each list of the `Structure`, so that a reader finds a phase or a group by
+//! name, and no expression is deeper than one of its entries. Constants, because code that builds
+//! the lists takes rustc longer than all formulas do.
 
 use ntg_structure::{Independent, Structure};
 use proc_macro2::TokenStream;
@@ -9,9 +10,9 @@ use quote::{format_ident, quote};
 
 use super::data::ToRust;
 
-/// The module with its `structure()`.
+/// The module with its `STRUCTURE`.
 pub(super) fn structure(structure: &Structure) -> TokenStream {
-    let mut functions = vec![];
+    let mut statics = vec![];
     let mut fields = vec![];
     let mut left_out = false;
     let lists = [
@@ -42,12 +43,10 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
             left_out = true;
             continue;
         }
-        let name = format_ident!("{name}");
-        fields.push(quote! { #name: #name() });
-        functions.push(quote! {
-            fn #name() -> Vec<#kind> {
-                Vec::from([#(#entries),*])
-            }
+        let (field, list) = (format_ident!("{name}"), format_ident!("{}", name.to_uppercase()));
+        fields.push(quote! { #field: #list });
+        statics.push(quote! {
+            static #list: List<#kind> = &[#(#entries),*];
         });
     }
 
@@ -58,25 +57,23 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
         let independent = structure.independent.to_rust();
         quote! { independent: #independent, }
     });
-    let rest = (left_out || independent.is_none()).then(|| quote! { ..Structure::default() });
+    let rest = (left_out || independent.is_none()).then(|| quote! { ..Structure::DEFAULT });
     quote! {
         mod structure {
-            use ::ntg::runtime::structure::*;
+            use ::ntg::runtime::structure::constant::*;
 
-            pub(super) fn structure() -> Structure {
-                Structure {
-                    name: #name,
-                    doc: #doc,
-                    source: #source,
-                    maximize: #maximize,
-                    objective_unit: #objective_unit,
-                    #independent
-                    #(#fields,)*
-                    #rest
-                }
-            }
+            pub(super) static STRUCTURE: Structure = Structure {
+                name: #name,
+                doc: #doc,
+                source: #source,
+                maximize: #maximize,
+                objective_unit: #objective_unit,
+                #independent
+                #(#fields,)*
+                #rest
+            };
 
-            #(#functions)*
+            #(#statics)*
         }
     }
 }

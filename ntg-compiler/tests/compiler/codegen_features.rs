@@ -40,8 +40,12 @@ fn shown(items: &str, starts: &[&str]) -> String {
         let first = lines.iter().position(|line| line.trim_start().starts_with(start));
         let first = first.unwrap_or_else(|| panic!("no `{start}` in\n{text}"));
         let indent = lines[first].len() - lines[first].trim_start().len();
-        let closing = format!("{}}}", " ".repeat(indent));
-        let last = first + lines[first..].iter().position(|line| *line == closing).expect("the item ends");
+        let closing = ["}", "};", "];"].map(|end| format!("{}{end}", " ".repeat(indent)));
+        let ends = |line: &&str| closing.iter().any(|closing| closing == line);
+        let last = match lines[first].ends_with(';') {
+            true => first,
+            false => first + lines[first..].iter().position(ends).expect("the item ends"),
+        };
         shown.push('\n');
         lines[first..=last].iter().for_each(|line| {
             shown.push_str(line.get(indent..).unwrap_or(line));
@@ -66,29 +70,29 @@ snapshots! {
         => ["mod kernels"];
     a_fixed_duration_is_data_and_not_differentiated:
         "duration T = 5; output x: spline(order = 4, intervals = 1); minimize integral(der(x)^2);"
-        => ["fn groups()", "mod kernels"];
+        => ["static GROUPS", "mod kernels"];
     units_are_folded_into_the_numbers:
         "duration T = 2 [min]; output x [km]: spline(order = 4, intervals = 1); minimize integral(der(x)^2); \
          trajectory { der(x) <= 36 [km/h]; }"
-        => ["fn phases()", "mod kernels"];
+        => ["static PHASES", "mod kernels"];
     a_parameter_is_a_field_and_an_input:
         "duration T = 1 [s]; param v = 0.25 [km/s]; output x [km]: spline(order = 4, intervals = 1); minimize integral((der(x) - v)^2);"
         => ["pub struct P {", "impl ::core::default::Default", "fn update(&self", "mod kernels"];
     an_array_of_parameters_is_indexed_from_one:
         "duration T = 1; param a[3] = (1, 2, 4); output x[1 .. 3]: spline(order = 3, intervals = 1); \
          minimize sum(i in 1 .. 3, integral((x[i] - a[i])^2));"
-        => ["pub struct P {", "fn update(&self", "fn groups()"];
+        => ["pub struct P {", "fn update(&self", "static GROUPS"];
     a_variable_has_bounds_and_a_method:
         "duration T = 1 [s]; variable m in 1 .. 5 [kg]; output x: spline(order = 3, intervals = 1); minimize m / 1 [kg] + integral(x^2) / 1 [s];"
-        => ["fn variables()", "pub fn m(&self)"];
+        => ["static VARIABLES", "pub fn m(&self)"];
     an_array_of_outputs_is_a_family:
         "duration T = 1; output x[1 .. 3]: spline(order = 3, intervals = 1); minimize integral(x[1]^2); \
          trajectory { for i in 1 .. 2 { x[i] <= x[i + 1]; } }"
-        => ["pub struct PSolution", "fn new(", "fn groups()"];
+        => ["pub struct PSolution", "fn new(", "static GROUPS"];
     a_sum_is_a_reduction_over_one_kernel:
         "duration T = 1; output x[1 .. 9]: spline(order = 3, intervals = 1); \
          minimize integral(sum(i in 1 .. 9, x[i]^2)^2);"
-        => ["fn groups()", "mod kernels"];
+        => ["static GROUPS", "mod kernels"];
     a_function_is_inlined:
         "duration T = 1; output x: spline(order = 3, intervals = 1); fn bump(u, w) = 1 / (1 + exp(-u / w)); \
          minimize integral(bump(x, 2) * x);"
@@ -96,15 +100,15 @@ snapshots! {
     a_named_expression_is_a_method_and_a_kernel:
         "duration T = 1 [s]; output x [km]: spline(order = 4, intervals = 1); /// How fast.\nlet speed [km/s] = abs(der(x)); \
          minimize integral(x^2);"
-        => ["pub fn speed(&self)", "fn named()"];
+        => ["pub fn speed(&self)", "static NAMED"];
     a_table_is_evaluated_with_its_exact_derivatives:
         "duration T = 1; output x: spline(order = 3, intervals = 1); table f(s) = monotone { 0: 1; 1: 2; 3: 5; } \
          minimize integral(f(x)^2);"
-        => ["fn tables()", "mod kernels"];
+        => ["static TABLES", "mod kernels"];
     a_table_from_a_file_is_data_in_the_code:
         "duration T = 1; output x: spline(order = 3, intervals = 1); table drag(mach) = linear from \"drag.csv\"; \
          minimize integral(drag(x)^2);"
-        => ["fn tables()"];
+        => ["static TABLES"];
     a_replaceable_table_is_a_field:
         "duration T = 1 [s]; output x: spline(order = 3, intervals = 1); param table f(s [m]) [km] = linear { 0: 1; 1: 2; } \
          minimize integral((f(x * 1 [m]) / 1 [m])^2);"
@@ -112,29 +116,29 @@ snapshots! {
     a_double_bound_is_one_row_with_two_bounds:
         "duration T = 1; param a = 2; output x: spline(order = 3, intervals = 1); minimize integral(x^2); \
          trajectory { band: -a <= x * a <= 3 * a; }"
-        => ["fn groups()", "fn constraints()", "pub fn multiplier_band"];
+        => ["static GROUPS", "static CONSTRAINTS", "pub fn multiplier_band"];
     the_four_blocks_have_their_domains:
         "duration T in 1 .. 2; output x: spline(order = 3, intervals = 1); minimize integral(x^2); \
          initial { x == 1; } trajectory { x >= -1; } final { x == 2; } temporal { integral(x) <= 3; }"
-        => ["fn groups()"];
+        => ["static GROUPS"];
     uniform_collocation_has_its_own_points:
         "duration T = 1; output x: spline(order = 3, intervals = 2); collocation uniform(breakpoints = 41); minimize integral(x^2);"
-        => ["fn phases()"];
+        => ["static PHASES"];
     an_integral_that_enters_nonlinearly_is_a_variable:
         "duration T = 1; output x: spline(order = 3, intervals = 1); minimize integral(x)^2 + integral(x^2);"
-        => ["fn integrals()", "fn groups()"];
+        => ["static INTEGRALS", "static GROUPS"];
     maximize_negates_the_kernel_and_says_so:
         "duration T = 1; output x: spline(order = 3, intervals = 1); maximize gain: integral(x - x^2);"
-        => ["pub(super) fn structure()", "mod kernels"];
+        => ["pub(super) static STRUCTURE", "mod kernels"];
     a_guess_is_a_route_or_an_expression:
         "param via = 2; duration T in 1 .. 9; output x, y, z: spline(order = 3, intervals = 1); \
          minimize integral(x^2 + y^2 + z^2); \
          guess { (x, y) through (0, 0), (1, via), (3, 0); z = 1 - tau; T = 4; }"
-        => ["fn guesses()"];
+        => ["static GUESSES"];
     a_continuation_declares_a_parameter:
         "duration T = 1 [s]; output x: spline(order = 3, intervals = 1); continuation width = (20, 5, 1) [deg]; \
          minimize integral((x - width)^2);"
-        => ["pub struct P {", "fn continuations()"];
+        => ["pub struct P {", "static CONTINUATIONS"];
     what_may_fail_is_probed:
         "duration T = 1; output x: spline(order = 3, intervals = 1); minimize integral(sqrt(x) + 1 / x);"
         => ["mod kernels"];
@@ -144,62 +148,62 @@ snapshots! {
     phases_nest_in_the_solution_and_share_their_kernels:
         "output x: spline(order = 4, intervals = 1); minimize integral(der(x, 2)^2); \
          phase a { duration d in 1 .. 2; } phase b after a { duration d in 1 .. 2; }"
-        => ["pub struct PSolution", "fn phases()", "fn groups()"];
+        => ["pub struct PSolution", "static PHASES", "static GROUPS"];
     a_family_of_phases_is_one_phase_with_members:
         "param gate[3] = (1, 3, 2); output x: spline(order = 4, intervals = 1); minimize integral(der(x, 2)^2); \
          phase leg[i in 1 .. 3] after leg[i - 1] { duration d in 1 .. 2; final { x == gate[i]; } }"
-        => ["impl PSolution", "impl PLeg", "fn phases()", "fn groups()"];
+        => ["impl PSolution", "impl PLeg", "static PHASES", "static GROUPS"];
     a_phase_has_its_own_spline_and_a_jump_lifts_continuity:
         "output x, y: spline(order = 4, intervals = 2); minimize integral(der(x, 2)^2 + y^2); phase a { duration = 1; } \
          phase b after a { duration = 1; output x: spline(order = 3, intervals = 1); jump y; continuous x up to 0; }"
-        => ["fn phases()", "fn constraints()"];
+        => ["static PHASES", "static CONSTRAINTS"];
     a_phase_may_have_its_own_points_and_outputs:
         "output x: spline(order = 4, intervals = 2); minimize integral(der(x, 2)^2); phase a { duration = 1; } \
          phase b after a { duration = 1; collocation gauss(points = 4, equalities = 3); \
          output e: spline(order = 4, intervals = 2, smoothness = 1); initial { e == 0; } trajectory { der(e) == x^2; } final { e <= 3; } }"
-        => ["fn phases()", "fn groups()"];
+        => ["static PHASES", "static GROUPS"];
     time_and_scaled_time_are_those_of_the_agent_and_the_phase:
         "output x: spline(order = 4, intervals = 1); minimize integral((x - t)^2 + tau * x); \
          phase a { duration in 1 .. 2; } phase b after a { duration in 1 .. 2; }"
-        => ["mod kernels", "fn groups()"];
+        => ["mod kernels", "static GROUPS"];
     a_template_is_resolved_in_each_phase:
         "output x: spline(order = 4, intervals = 1); minimize integral(force^2); let force = mass * der(x, 2); \
          phase a { duration = 1; let mass = 2; } phase b after a { duration in 1 .. 2; let mass = 2 - t / 10; }"
-        => ["fn named()"];
+        => ["static NAMED"];
     a_family_of_agents_has_one_start_each:
         "agent uav[i in 1 .. 3] { start in 0 .. 60 [s]; duration T in 1 .. 9 [s]; output x [m]: spline(order = 4, intervals = 1); \
          let gone = integral(x); minimize integral(der(x, 2)^2); }"
-        => ["fn agents()", "impl PSolution", "impl PUav", "fn named()"];
+        => ["static AGENTS", "impl PSolution", "impl PUav", "static NAMED"];
     a_fixed_start_is_data:
         "agent one { start = 10 [s]; duration T in 1 .. 9 [s]; output x [m]: spline(order = 4, intervals = 1); minimize integral(t * der(x, 2)^2); } \
          agent two { start = one_s; duration T = 5 [s]; output x [m]: spline(order = 4, intervals = 1); minimize integral(t * der(x, 2)^2); } \
          param one_s = 3 [s];"
-        => ["fn agents()"];
+        => ["static AGENTS"];
     numbers_of_a_phase_are_named_by_its_path:
         "output x: spline(order = 4, intervals = 1); minimize integral(der(x, 2)^2); variable v in 1 .. 2; \
          phase a { duration D in 1 .. 2; let late = 2 * D; } phase b after a { duration in 1 .. 2; } \
          temporal { a.D <= v; a.late >= duration(b); }"
-        => ["fn groups()"];
+        => ["static GROUPS"];
     event_times_meet_in_temporal:
         "agent a { output x: spline(order = 4, intervals = 1); minimize integral(der(x, 2)^2); \
          phase p { duration in 1 .. 2; } phase q after p { duration in 1 .. 2; } } \
          agent b { start in 0 .. 9; duration T in 1 .. 2; output x: spline(order = 4, intervals = 1); minimize integral(x^2); } \
          temporal { start(b) == end(a.p); wait: end(a) - b.T in 0 .. 3; }"
-        => ["fn groups()"];
+        => ["static GROUPS"];
     boundary_values_and_totals_are_those_of_their_path:
         "agent a[i in 1 .. 2] { duration T in 1 .. 2; output x: spline(order = 4, intervals = 1); minimize integral(x^2); } \
          temporal { initial(a[2], x) == final(a[1], 2 * x); integral(a[1], x) <= 3; }"
-        => ["fn groups()"];
+        => ["static GROUPS"];
     a_duration_beside_phases_is_their_sum:
         "output x: spline(order = 4, intervals = 1); duration T in 3 .. 4; minimize integral(x^2) + T; \
          phase leg[i in 1 .. 3] after leg[i - 1] { duration in 1 .. 2; }"
-        => ["fn groups()", "fn agents()"];
+        => ["static GROUPS", "static AGENTS"];
     guesses_name_phases_agents_and_starts:
         "agent a[i in 1 .. 2] { start in 0 .. 5; output x, y: spline(order = 3, intervals = 1); minimize integral(x^2 + y^2); \
          phase p { duration in 1 .. 9; guess { x = tau; } } phase q after p { duration in 1 .. 9; } \
          guess { (x, y) through (0, 0), (i, 1); duration(p) = 4; start = i; } } \
          guess { duration(a[1].q) = 5; for i in 1 .. 2 { a[i].y = tau; } }"
-        => ["fn guesses()"];
+        => ["static GUESSES"];
 }
 
 #[test]
