@@ -179,6 +179,7 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         }
         let searched = state.step_and_search(); // 7 to 9
         if searched == SearchOutcome::Solved {
+            state.take_best();
             return state.outcome(Status::Solved); // 4
         }
         let searched = match searched {

@@ -67,7 +67,7 @@ pub(super) fn constraints(
         report.is_equation &= checked.bounds.0 == checked.bounds.1;
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         let indices = structure.constraints[checked.constraint].shown_indices(checked.indices);
-        let (measured, unit) = (measure(checked.value, checked.bounds, &sizes.0), sizes.1);
+        let (measured, unit) = (measure(checked.value, checked.bounds, sizes.0), sizes.1);
         if measured.relative > LEAST_JUMP {
             sides.add(checked, sizes.0());
         }
