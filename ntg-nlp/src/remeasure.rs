@@ -142,7 +142,8 @@ fn rounds<N: Nlp>(
         let options = Options { max_iterations: most, tolerance, ..options.after(began.elapsed()) };
         let (mut outcome, measure) = solve(&resized, round, &options);
         // By its earlier sizes the start was no solution: that larger ones make it one says nothing.
-        let is_start_again = std::mem::take(&mut is_again) && outcome.iterations == 0 && outcome.status.has_solution();
+        let is_end = outcome.iterations == 0 && outcome.status.has_solution() && measure == Measure::Holds;
+        let is_start_again = std::mem::take(&mut is_again) && is_end;
         iterations += outcome.iterations;
         (outcome.iterations, outcome.seconds) = (iterations, began.elapsed().as_secs_f64());
         if let Some((wide, _)) = wide {
