@@ -64,11 +64,16 @@ impl<N: Nlp> State<'_, N> {
         let point = std::mem::take(&mut self.nearest);
         if point.is_held {
             self.restore(&point);
-            let known = point.record.residuals.scaled;
-            let found = &mut self.record.residuals.scaled;
-            (found.rounding, found.dual_is_rounding) = (found.rounding.max(known.rounding), known.dual_is_rounding);
+            self.recall_rounding(&point);
         }
         self.nearest = point;
+    }
+
+    /// Takes over what is known of the rounding at a point that has been restored.
+    pub(super) fn recall_rounding(&mut self, point: &Point) {
+        let known = point.record.residuals.scaled;
+        let found = &mut self.record.residuals.scaled;
+        (found.rounding, found.dual_is_rounding) = (found.rounding.max(known.rounding), known.dual_is_rounding);
     }
 
     /// Returns to a point, whose derivatives were finite when it was kept.

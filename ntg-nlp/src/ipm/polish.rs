@@ -20,15 +20,11 @@ impl<N: Nlp> State<'_, N> {
     /// Whether the solve is over, at a point that meets all tolerances or after one. If it is, the
     /// present point becomes the best one.
     pub(super) fn is_polished(&mut self, solved: bool) -> bool {
-        if !self.best.is_held {
-            self.solved_at = self.iterations;
+        if solved {
+            self.keep_solved();
         }
         let since = self.solved_at;
         let largest = |record: &IterationRecord| record.residuals.scaled.largest();
-        if solved && (!self.best.is_held || largest(&self.record) < largest(&self.best.record)) {
-            let Self { x, slacks, record, best, .. } = self;
-            best.keep(x, slacks, record);
-        }
         let fine = FINE * self.options.tolerance.min(self.options.constraint_tolerance);
         // Close to the aim, an iteration whose matrix had to be corrected leads to nothing finer.
         let astray = self.iterations > since
@@ -44,6 +40,18 @@ impl<N: Nlp> State<'_, N> {
         over
     }
 
+    /// Keeps the present point, which meets all tolerances, where it is the best one that does.
+    pub(super) fn keep_solved(&mut self) {
+        if !self.best.is_held {
+            self.solved_at = self.iterations;
+        }
+        let largest = |record: &IterationRecord| record.residuals.scaled.largest();
+        if !self.best.is_held || largest(&self.record) < largest(&self.best.record) {
+            let Self { x, slacks, record, best, .. } = self;
+            best.keep(x, slacks, record);
+        }
+    }
+
     /// Returns to the best point; whether there is one.
     pub(super) fn take_best(&mut self) -> bool {
         if !std::mem::take(&mut self.best.is_held) {
@@ -52,6 +60,7 @@ impl<N: Nlp> State<'_, N> {
         if self.best.record != self.record {
             let point = std::mem::take(&mut self.best);
             self.restore(&point);
+            self.recall_rounding(&point);
         }
         true
     }

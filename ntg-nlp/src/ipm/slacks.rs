@@ -7,10 +7,13 @@
 
 use crate::contract::Limits;
 use crate::reductions::{largest, sum};
-use crate::residuals::{ACCEPTABLE, SAME, is_equality};
+use crate::residuals::{SAME, is_equality};
 
 /// How far a multiplier may leave the central path: kappa_Sigma of WB, equation (16).
 const KAPPA_SIGMA: f64 = 1e10;
+/// What residuals of equalities that are rounding may be worth together, as a multiple of the tolerance: at the default one the
+/// objective is known to 1e-6, as at an acceptable end. A choice.
+const WORTH_OF_ROUNDING: f64 = 100.0;
 /// Slacks whose product is taken before a logarithm: ten numbers above 1e-30 do not underflow.
 const FACTORS: usize = 8;
 
@@ -225,16 +228,16 @@ impl Slacks {
         self.equality_residuals(values).zip(&self.y).map(|(c, y)| c * y.abs()).fold(0.0, f64::max)
     }
 
-    /// Whether what residuals of equalities that are rounding are worth is little together, and no other one is worth more
-    /// than `most`, equation (6.5d).
-    pub(super) fn worth_is_rounding(&self, values: &[f64], most: f64) -> bool {
+    /// Whether what residuals of equalities that are rounding are worth is little together beside the tolerance, and no other
+    /// one is worth more than `most`, equation (6.5d).
+    pub(super) fn worth_is_rounding(&self, values: &[f64], (most, tolerance): (f64, f64)) -> bool {
         let residuals = self.equality_residuals(values).zip(&self.equalities).zip(&self.y);
         let worth = residuals.map(|((c, of), y)| match c * y.abs() {
             worth if c <= SAME * of.value.abs().max(1.0) => worth,
             worth if worth <= most => 0.0,
             _ => f64::INFINITY,
         });
-        worth.sum::<f64>() <= ACCEPTABLE
+        worth.sum::<f64>() <= WORTH_OF_ROUNDING * tolerance
     }
 
     /// The largest deviation `|s z - mu|` from the central path.

@@ -25,6 +25,10 @@ use std::time::Instant;
 /// kappa_d of WB, section 3.7; as in their program.
 const DAMPING: f64 = 1e-5;
 
+/// How far Newton's step may move a scaled variable where what is left is rounding, as a multiple of the tolerance: to 1e-6 of
+/// its size at the default one, as at an acceptable end. A choice.
+const KNOWN: f64 = 100.0;
+
 /// Everything that one solve needs, allocated once. All vectors are scaled.
 pub(super) struct State<'a, N: Nlp> {
     pub(super) nlp: &'a N,
@@ -222,8 +226,10 @@ impl<N: Nlp> State<'_, N> {
             worth: self.slacks.worth(&self.values),
             ..Residual::default()
         };
-        let worthless = self.options.tolerance * self.s_d;
-        scaled.worth_is_rounding = scaled.worth > worthless && self.slacks.worth_is_rounding(&self.values, worthless);
+        let tolerance = self.options.tolerance;
+        let worthless = tolerance * self.s_d;
+        scaled.worth_is_rounding =
+            scaled.worth > worthless && self.slacks.worth_is_rounding(&self.values, (worthless, tolerance));
         if self.is_dual_alone(&scaled.relative_to(self.s_d), f64::INFINITY) {
             scaled.dual = self.dual_by_terms();
             if self.is_dual_alone(&scaled.relative_to(self.s_d), ACCEPTABLE) {
@@ -250,8 +256,9 @@ impl<N: Nlp> State<'_, N> {
             && self.mode.has_own_multipliers()
     }
 
-    /// Whether the present point is a solution but for rounding of the dual residual, equation (6.5c): Newton's step, which
-    /// is at hand, promises no decrease of the Lagrangian beyond the tolerance, and (6.5a) is as large. Where what equalities
+    /// Whether the solve is over at a point that is a solution but for rounding of the dual residual, equation (6.5c), after
+    /// which others are tried as after any solution: Newton's step, which
+    /// is at hand, moves no variable and promises no decrease of the Lagrangian beyond the tolerance, and (6.5a) is as large. Where what equalities
     /// are worth keeps it from being one, the record says what the dual residual is.
     pub(super) fn is_solved_but_for_rounding(&mut self) -> bool {
         let Options { constraint_tolerance, tolerance, .. } = *self.options;
@@ -260,14 +267,19 @@ impl<N: Nlp> State<'_, N> {
         if !self.is_dual_alone(&but_for_worth, f64::INFINITY) || self.record.is_corrected() {
             return false;
         }
-        let decrement: f64 = sum([&self.step.x, &self.negative_gradient], |[x, g]| (x * g).abs());
+        let decrement = sum([&self.step.x, &self.negative_gradient], |[x, g]| (x * g).abs());
+        let moves = largest([&self.step.x], |[x]| x.abs());
         let rounding = self.rounding() / self.s_d;
-        if !(decrement <= tolerance && found.dual <= rounding) {
+        if !(decrement <= tolerance && moves <= KNOWN * tolerance && found.dual <= rounding) {
             return false;
         }
         self.record.residuals.scaled = Residual { rounding, dual_is_rounding: true, ..found };
         self.keep_nearest();
-        self.record.residuals.scaled.is_solved(constraint_tolerance, tolerance)
+        if !self.record.residuals.scaled.is_solved(constraint_tolerance, tolerance) {
+            return false;
+        }
+        self.keep_solved();
+        self.options.is_rough()
     }
 
     /// The largest entry of the Lagrangian's gradient; infinite where an entry is not finite.
