@@ -27,8 +27,7 @@ const OTHER_OPTIMA: [(u32, f64); 13] = [
 ];
 
 /// Problems that a method does not solve as asked, and what is seen. A problem that is solved must leave the table.
-const EXCEPTIONS_OF_IPM: [(u32, &str); 1] =
-    [(13, "8e-5 above the optimum, where no multipliers exist, at the limit of iterations")];
+const EXCEPTIONS_OF_IPM: [(u32, &str); 0] = [];
 /// As above. Those of 13 and 116 are faults: they are called solved. So is that of 63.
 const EXCEPTIONS_OF_SQP: [(u32, &str); 5] = [
     (13, "called solved 1e-5 beside the optimum, where no multipliers exist"),
