@@ -17,6 +17,9 @@ use ntg_runtime::structure::Block;
 use ntg_runtime::transcribe::Transcription;
 use shipped::{Change, holds};
 
+/// Four minima of its mesh, three of them between 7.91717 and 7.91790 (`specs/gallery/expected.json`): which one is found, and in
+/// how many iterations, depends on rounding. Sums of its equations take 385 iterations for 89.
+const MANY_MINIMA: &str = "free_flying_robot";
 /// One of how many equations is copied, where not all of them are.
 const EVERY: usize = 3;
 
@@ -94,12 +97,12 @@ fn sums(problem: &mut Problem) -> bool {
 #[test]
 fn equations_that_follow_from_others_change_no_optimum() {
     let changes = [
-        Change { name: "copies", spec: |_| (), problem: copies },
-        Change { name: "doubled motion", spec: |_| (), problem: doubled_motion },
-        Change { name: "doubled ends", spec: |_| (), problem: doubled_ends },
-        Change { name: "sums", spec: |_| (), problem: sums },
+        Change::meant("copies", copies),
+        Change::meant("doubled motion", doubled_motion),
+        Change::meant("doubled ends", doubled_ends),
+        Change::meant("sums", sums),
     ];
-    holds(&changes, 60);
+    holds(&changes, &[MANY_MINIMA], 60);
 }
 
 /// There are no files.

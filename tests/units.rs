@@ -4,22 +4,12 @@
 //! own, time becomes `s t`, and bounds and guesses are divided. That is what a user does who counts in kilometres and
 //! days. Factors that are powers of two round nothing: whatever changes then is a number of the method that has a unit.
 
+mod shipped;
+
 use ntg_compiler::expr::{Binary, InputId, Node, NodeId};
 use ntg_compiler::model::problem::{Bounds, Duration, GuessKind, Leaf, Problem, Start};
-use ntg_compiler::model::{self, Loader};
-use ntg_compiler::source::Source;
-use ntg_compiler::{program, syntax};
-use ntg_interp::Interpreted;
-use ntg_runtime::report::Report;
-use ntg_runtime::settings::Settings;
-use rayon::prelude::*;
+use shipped::{Change, holds};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-
-/// More iterations than this are not compared.
-const LONG: usize = 200;
-/// A path that depends on rounding although it is shorter (`tests/laws.rs`).
-const CHAOTIC: &str = "powered_descent_6dof";
 
 /// The units of a problem: how much of what the spec counts in one of the new units is.
 struct Units {
@@ -205,84 +195,19 @@ impl Rewriting<'_> {
     }
 }
 
-/// Files are found beside the specs.
-struct Beside(PathBuf);
-
-impl Loader for Beside {
-    fn load(&self, path: &str) -> Result<String, String> {
-        std::fs::read_to_string(self.0.join(path)).map_err(|error| error.to_string())
-    }
-}
-
-/// Solves a spec in other units.
-fn solved(path: &Path, units: Option<&Units>) -> Report {
-    let source = Source::new(path.display().to_string(), std::fs::read_to_string(path).expect("readable"));
-    let spec = syntax::parse(&source).unwrap_or_else(|_| panic!("{}", path.display()));
-    let beside = Beside(path.parent().expect("a folder").to_path_buf());
-    let (problem, _) = model::build(&spec, &source, &beside);
-    let mut problem = problem.expect("a shipped spec has a meaning");
-    if let Some(units) = units {
-        let units = &Units { like: together(&problem), ..*units };
-        Rewriting { problem: &mut problem, units, images: HashMap::new() }.rewrite();
-    }
-    let program = program::lower(problem, &source);
-    ntg_runtime::solve(&Interpreted::new(&program), &Settings::default()).expect("can be set up")
-}
-
-/// All shipped specs, and those of the gallery that once depended on units: joints in line, outputs without a slope.
-fn specs() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
-    let files = std::fs::read_dir(&folder).expect("the folder is there").map(|entry| entry.expect("readable").path());
-    let mut specs: Vec<_> = files.filter(|path| path.extension().is_some_and(|e| e == "ntg")).collect();
-    specs.sort();
-    assert!(specs.len() >= 20, "{} specs", specs.len());
-    let of_gallery = ["arm_2", "arm_3", "radar_net_2", "halo_orbit", "f8", "heat_control", "free_flying_robot"];
-    specs.extend(of_gallery.map(|name| folder.join("gallery").join(name).with_extension("ntg")));
-    specs
-}
-
-/// The optimum agrees to 1e-6, and iterations to half as many again.
-fn is_the_same(plain: &Report, other: &Report) -> bool {
-    plain.is_solved() == other.is_solved()
-        && (other.objective - plain.objective).abs() <= 1e-6 * plain.objective.abs().max(1e-9)
-        && other.iterations <= plain.iterations * 3 / 2 + 3
-        && plain.iterations <= other.iterations * 3 / 2 + 3
-}
-
-/// What the law holds for one spec, in each of the units: nothing, or what was found instead.
-fn compared(path: &Path) -> Vec<Option<String>> {
-    let units = |base, seed, time: i32, has_outputs| Units {
-        base,
-        seed,
-        time: f64::powi(base, time),
-        has_outputs,
-        like: HashMap::new(),
-    };
-    let plain = solved(path, None);
-    assert!(plain.has_solution(), "{}: {} after {}", path.display(), plain.status, plain.iterations);
-    // A path of more iterations through a problem that is not convex depends on rounding.
-    let is_chaotic = path.file_stem().is_some_and(|name| name == CHAOTIC);
-    if plain.iterations > LONG || is_chaotic {
-        return vec![];
-    }
-    let compare = |units: Units| {
-        let other = solved(path, Some(&units));
-        if is_the_same(&plain, &other) {
-            return None;
-        }
-        let name = path.file_stem().expect("a name").to_string_lossy();
-        let (found, wanted) = ((&other.status, other.iterations), (&plain.status, plain.iterations));
-        let objectives = (other.objective, plain.objective);
-        let (base, time) = (units.base, units.time);
-        Some(format!("{name} ({base}, time {time:e}): {found:?} for {wanted:?}, {objectives:?}"))
-    };
-    [units(8.0, 1, 0, true), units(10.0, 5, 3, true), units(10.0, 1, -3, false)].map(compare).into()
+/// Counts a problem in units of a base, by a seed, with time in a power of it; without outputs, in a unit of time alone.
+fn other_units(problem: &mut Problem, (base, seed, time): (f64, u64, i32), has_outputs: bool) -> bool {
+    let units = &Units { base, seed, time: base.powi(time), has_outputs, like: together(problem) };
+    Rewriting { problem, units, images: HashMap::new() }.rewrite();
+    true
 }
 
 #[test]
 fn other_units_change_no_optimum() {
-    let compared: Vec<Option<String>> = specs().par_iter().flat_map_iter(|path| compared(path)).collect();
-    let broken: Vec<&str> = compared.iter().flatten().map(String::as_str).collect();
-    assert!(compared.len() >= 60, "{}", compared.len());
-    assert!(broken.is_empty(), "{}", broken.join("\n"));
+    let changes = [
+        Change::meant("outputs in powers of 8", |problem| other_units(problem, (8.0, 1, 0), true)),
+        Change::meant("all in powers of 10, time in 1000", |problem| other_units(problem, (10.0, 5, 3), true)),
+        Change::meant("time in thousandths", |problem| other_units(problem, (10.0, 1, -3), false)),
+    ];
+    holds(&changes, &[], 60);
 }

@@ -170,7 +170,8 @@ impl Slopes {
     }
 
     /// The slopes that scale a program, from those at the start, where the program is evaluated without multipliers of its
-    /// rows, and at a point beside it (none where the program has no derivatives there).
+    /// rows, and at a point beside it (none where the program has no derivatives there). `start` is in the program's own
+    /// units.
     pub fn beside<N: Nlp>(self, beside: Option<Self>, nlp: &N, (at, start): (&Evaluation, &[f64])) -> Self {
         let (blocks, limits) = (nlp.blocks(), nlp.limits());
         let beside = beside.map(|mut beside| {

@@ -16,20 +16,49 @@ use std::path::{Path, PathBuf};
 const LONG: usize = 200;
 /// A path that depends on rounding although it is shorter (`tests/laws.rs`).
 const CHAOTIC: &str = "powered_descent_6dof";
-/// Four minima of its mesh, three of them between 7.91717 and 7.91790 (`specs/gallery/expected.json`): which one is found, and in
-/// how many iterations, depends on rounding.
-const MANY_MINIMA: &str = "free_flying_robot";
 /// By how much optima may differ, relative.
 const SAME_OPTIMUM: f64 = 1e-6;
 
 /// A change of a spec that does not change its optimum.
 pub(crate) struct Change {
     /// What a failure calls it.
-    pub(crate) name: &'static str,
-    /// What it does to what was written.
-    pub(crate) spec: fn(&mut Spec),
-    /// What it does to what is meant; whether there was anything to change.
-    pub(crate) problem: fn(&mut Problem) -> bool,
+    name: &'static str,
+    how: How,
+}
+
+/// What is changed.
+enum How {
+    /// What was written.
+    Written(fn(&mut Spec)),
+    /// What is meant; whether there was anything to change.
+    Meant(Box<dyn Fn(&mut Problem) -> bool + Sync>),
+}
+
+impl Change {
+    /// A change of what was written.
+    #[allow(dead_code, reason = "each law has changes of one kind")]
+    pub(crate) fn written(name: &'static str, change: fn(&mut Spec)) -> Self {
+        Self { name, how: How::Written(change) }
+    }
+
+    /// A change of what is meant, which says whether there was anything to change.
+    #[allow(dead_code, reason = "each law has changes of one kind")]
+    pub(crate) fn meant(name: &'static str, change: impl Fn(&mut Problem) -> bool + Sync + 'static) -> Self {
+        Self { name, how: How::Meant(Box::new(change)) }
+    }
+
+    /// Whether it changes a spec.
+    fn spec(&self, spec: &mut Spec) -> bool {
+        let How::Written(change) = &self.how else { return false };
+        let before = spec.clone();
+        change(spec);
+        *spec != before
+    }
+
+    /// Whether it changes a problem.
+    fn problem(&self, problem: &mut Problem) -> bool {
+        if let How::Meant(change) = &self.how { change(problem) } else { false }
+    }
 }
 
 /// What a law says of one spec after one change.
@@ -51,7 +80,7 @@ impl Loader for Beside {
     }
 }
 
-/// All shipped specs, and those of the gallery that `tests/units.rs` takes.
+/// All shipped specs, and those of the gallery that once depended on units: joints in line, outputs without a slope.
 fn specs() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("specs");
     let files = std::fs::read_dir(&folder).expect("the folder is there").map(|entry| entry.expect("readable").path());
@@ -66,15 +95,12 @@ fn specs() -> Vec<PathBuf> {
 /// Solves a spec after a change; none where the change has nothing to change.
 fn solved(path: &Path, change: Option<&Change>) -> Option<Report> {
     let source = Source::new(path.display().to_string(), std::fs::read_to_string(path).expect("readable"));
-    let written = syntax::parse(&source).unwrap_or_else(|_| panic!("{}", path.display()));
+    let mut spec = syntax::parse(&source).unwrap_or_else(|_| panic!("{}", path.display()));
     let beside = Beside(path.parent().expect("a folder").to_path_buf());
-    let mut spec = written.clone();
-    if let Some(change) = change {
-        (change.spec)(&mut spec);
-    }
+    let is_rewritten = change.is_some_and(|change| change.spec(&mut spec));
     let (problem, findings) = model::build(&spec, &source, &beside);
     let mut problem = problem.unwrap_or_else(|| panic!("{}: {findings:?}", path.display()));
-    if change.is_some_and(|change| !(change.problem)(&mut problem)) && spec == written {
+    if change.is_some_and(|change| !is_rewritten && !change.problem(&mut problem)) {
         return None;
     }
     let program = program::lower(problem, &source);
@@ -90,9 +116,9 @@ fn is_the_same(plain: &Report, other: &Report) -> bool {
 }
 
 /// What the law says of one spec, after each of the changes.
-fn compared(path: &Path, changes: &[Change]) -> Vec<Found> {
+fn compared(path: &Path, changes: &[Change], except: &[&str]) -> Vec<Found> {
     let name = path.file_stem().expect("a name").to_string_lossy();
-    if name == CHAOTIC || name == MANY_MINIMA {
+    if name == CHAOTIC || except.contains(&&*name) {
         return vec![];
     }
     let plain = solved(path, None).expect("nothing is changed");
@@ -112,9 +138,9 @@ fn compared(path: &Path, changes: &[Change]) -> Vec<Found> {
     changes.iter().map(compare).collect()
 }
 
-/// Compares all specs after each of the changes, on all cores; at least `enough` outcomes are of changed specs.
-pub(crate) fn holds(changes: &[Change], enough: usize) {
-    let found: Vec<Found> = specs().par_iter().flat_map_iter(|path| compared(path, changes)).collect();
+/// Compares all specs but for some after each of the changes, on all cores; at least `enough` outcomes are of changed specs.
+pub(crate) fn holds(changes: &[Change], except: &[&str], enough: usize) {
+    let found: Vec<Found> = specs().par_iter().flat_map_iter(|path| compared(path, changes, except)).collect();
     let broken: Vec<&str> = found
         .iter()
         .filter_map(|found| if let Found::Broken(how) = found { Some(how.as_str()) } else { None })

@@ -37,8 +37,6 @@ pub(super) enum SearchOutcome {
     Tiny,
     /// No point along the step is acceptable.
     Stuck,
-    /// The step shows that the present point is a solution but for rounding: nothing was searched.
-    Solved,
 }
 
 /// The present point, as the filter sees it: what trial points are compared with.

@@ -178,19 +178,10 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
             return state.end(status); // 6
         }
         let searched = state.step_and_search(); // 7 to 9
-        if searched == SearchOutcome::Solved {
-            state.take_best();
-            return state.outcome(Status::Solved); // 4
-        }
-        let searched = match searched {
-            // What such a step still moves is rounding, (6.5c).
-            SearchOutcome::Accepted if state.record.residuals.scaled.dual_is_rounding => SearchOutcome::Tiny,
-            searched => searched,
-        };
         tiny_steps = match searched {
             SearchOutcome::Tiny if state.mu == mu => tiny_steps + 1,
             SearchOutcome::Tiny => 1,
-            _ => 0,
+            SearchOutcome::Stuck | SearchOutcome::Accepted => 0,
         };
         mu = state.mu;
         let ended = match searched {
@@ -220,7 +211,7 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
                 }
                 None
             }
-            _ => None,
+            SearchOutcome::Tiny | SearchOutcome::Accepted => None,
         };
         if let Some(status) = ended {
             return state.end(status); // 10
@@ -242,13 +233,15 @@ impl<N: Nlp> State<'_, N> {
             return if self.compute_step() { self.penalty_search() } else { SearchOutcome::Stuck };
         }
         if !self.compute_step() {
-            SearchOutcome::Stuck
-        } else if self.is_solved_but_for_rounding() {
-            SearchOutcome::Solved
-        } else if self.lower_barrier_along_step() {
-            self.watched_search()
-        } else {
-            SearchOutcome::Stuck
+            return SearchOutcome::Stuck;
+        }
+        let is_rounding = self.is_rounding();
+        if !self.lower_barrier_along_step() {
+            return SearchOutcome::Stuck;
+        }
+        match self.watched_search() {
+            SearchOutcome::Accepted if is_rounding => SearchOutcome::Tiny,
+            searched => searched,
         }
     }
 }

@@ -142,17 +142,18 @@ impl Slacks {
         self.centre_multipliers(mu, KAPPA_SIGMA);
     }
 
-    /// Brings multipliers to within a factor of the central path `s z = mu`; does nothing where all are.
-    pub(super) fn centre_multipliers(&mut self, mu: f64, factor: f64) {
+    /// Brings multipliers to within a factor of the central path `s z = mu`; whether one was not.
+    pub(super) fn centre_multipliers(&mut self, mu: f64, factor: f64) -> bool {
         let (most, least) = (factor * mu, mu / factor);
         let pairs: [&[f64]; 2] = [&self.s, &self.z];
         if largest(pairs, |[s, z]| s * z) <= most && largest(pairs, |[s, z]| least - s * z) == 0.0 {
-            return;
+            return false;
         }
         for (s, z) in self.s.iter().zip(&mut self.z) {
             let below = if *z * s < most { *z } else { most / s };
             *z = if below * s > least { below } else { least / s };
         }
+        true
     }
 
     /// Writes the multiplier of every function, `-1` for the objective, so that the gradient of the
@@ -284,5 +285,20 @@ mod tests {
             assert_eq!((slacks.z[0], slacks.z[2]), (near, near));
             assert!((slacks.z[1] / wanted - 1.0).abs() < 1e-15, "{} {wanted}", slacks.z[1]);
         }
+    }
+
+    /// Residuals of the size of rounding are worth little beside small multipliers alone, and no other residual is rounding.
+    #[test]
+    fn a_huge_multiplier_makes_rounding_worth_something() {
+        let tolerance = 1e-8;
+        let is_rounding = |residual: f64, y: f64| {
+            let equalities = vec![Equality { function: 0, value: 0.0 }, Equality { function: 1, value: 1.0 }];
+            let slacks = Slacks { equalities, y: vec![y, 1.0], ..Slacks::default() };
+            slacks.worth_is_rounding(&[residual, 1.0], (tolerance, tolerance))
+        };
+        assert!(is_rounding(4e-13, -6e4), "2.4e-8");
+        assert!(!is_rounding(1e-13, 1e14), "ten units of the objective");
+        assert!(!is_rounding(4e-11, 6e2), "2.4e-8 of a residual that is none of rounding");
+        assert!(is_rounding(4e-11, 1e2), "4e-9, within the tolerance");
     }
 }

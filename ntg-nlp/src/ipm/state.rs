@@ -25,10 +25,6 @@ use std::time::Instant;
 /// kappa_d of WB, section 3.7; as in their program.
 const DAMPING: f64 = 1e-5;
 
-/// How far Newton's step may move a scaled variable where what is left is rounding, as a multiple of the tolerance: to 1e-6 of
-/// its size at the default one, as at an acceptable end. A choice.
-const KNOWN: f64 = 100.0;
-
 /// Everything that one solve needs, allocated once. All vectors are scaled.
 pub(super) struct State<'a, N: Nlp> {
     pub(super) nlp: &'a N,
@@ -247,39 +243,13 @@ impl<N: Nlp> State<'_, N> {
     }
 
     /// Whether a dual residual above the tolerance, but not above `most`, alone keeps the point from being a solution.
-    fn is_dual_alone(&self, found: &Residual, most: f64) -> bool {
+    pub(super) fn is_dual_alone(&self, found: &Residual, most: f64) -> bool {
         let Options { constraint_tolerance, tolerance, .. } = *self.options;
         let but_for_dual = Residual { dual: 0.0, ..*found };
         found.dual > tolerance
             && found.dual <= most
             && but_for_dual.is_solved(constraint_tolerance, tolerance)
             && self.mode.has_own_multipliers()
-    }
-
-    /// Whether the solve is over at a point that is a solution but for rounding of the dual residual, equation (6.5c), after
-    /// which others are tried as after any solution: Newton's step, which
-    /// is at hand, moves no variable and promises no decrease of the Lagrangian beyond the tolerance, and (6.5a) is as large. Where what equalities
-    /// are worth keeps it from being one, the record says what the dual residual is.
-    pub(super) fn is_solved_but_for_rounding(&mut self) -> bool {
-        let Options { constraint_tolerance, tolerance, .. } = *self.options;
-        let found = self.record.residuals.scaled;
-        let but_for_worth = Residual { worth: 0.0, ..found };
-        if !self.is_dual_alone(&but_for_worth, f64::INFINITY) || self.record.is_corrected() {
-            return false;
-        }
-        let decrement = sum([&self.step.x, &self.negative_gradient], |[x, g]| (x * g).abs());
-        let moves = largest([&self.step.x], |[x]| x.abs());
-        let rounding = self.rounding() / self.s_d;
-        if !(decrement <= tolerance && moves <= KNOWN * tolerance && found.dual <= rounding) {
-            return false;
-        }
-        self.record.residuals.scaled = Residual { rounding, dual_is_rounding: true, ..found };
-        self.keep_nearest();
-        if !self.record.residuals.scaled.is_solved(constraint_tolerance, tolerance) {
-            return false;
-        }
-        self.keep_solved();
-        self.options.is_rough()
     }
 
     /// The largest entry of the Lagrangian's gradient; infinite where an entry is not finite.

@@ -18,8 +18,8 @@ use crate::contract::Nlp;
 const CUT: usize = 4;
 const TRIALS: usize = 10;
 /// By which factor of the barrier parameter products of slacks and multipliers may be off where a watch has failed. A fit:
-/// of 10, 100 and 1000 the one with the least iterations for walls steeper than the mesh, of which the gallery has none; no
-/// solve of the gallery changes.
+/// of 10, 100 and 1000 the one with the least iterations for walls steeper than the mesh, of which the gallery has none; with 10
+/// and 100 no status and no optimum of the gallery changes.
 const OFF_CENTRE: f64 = 10.0;
 
 /// What is remembered of cut steps, and of the point at which the watch began.
@@ -101,11 +101,12 @@ impl<N: Nlp> State<'_, N> {
         self.restore(&point);
         self.watchdog.point = point;
         // Multipliers off the central path are those of slacks that their functions left behind: steps are short for them.
-        self.slacks.centre_multipliers(self.mu, OFF_CENTRE);
-        if self.evaluate().is_err() {
-            return SearchOutcome::Stuck;
+        if self.slacks.centre_multipliers(self.mu, OFF_CENTRE) {
+            if self.evaluate().is_err() {
+                return SearchOutcome::Stuck;
+            }
+            self.compute_residuals();
         }
-        self.compute_residuals();
         if self.compute_step() { self.filter_search() } else { SearchOutcome::Stuck }
     }
 }

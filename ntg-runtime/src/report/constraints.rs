@@ -68,12 +68,12 @@ pub(super) fn constraints(
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         let indices = structure.constraints[checked.constraint].shown_indices(checked.indices);
         let (measured, unit) = (measure(checked.value, checked.bounds, sizes.0), sizes.1);
-        if measured.relative > LEAST_JUMP {
-            sides.add(checked, sizes.0());
-        }
-        if measured.relative > LEAST_JUMP && jumped.is_jump(checked) {
-            let worst = jumps.entry(checked.constraint).or_default();
-            hold(nlp, &outcome.x, worst, (measured, unit), (&checked.point, indices));
+        if measured.relative > LEAST_MISSED {
+            sides.add(checked, all_sizes.between(nlp, checked.constraint, checked.indices));
+            if jumped.is_jump(checked) {
+                let worst = jumps.entry(checked.constraint).or_default();
+                hold(nlp, &outcome.x, worst, (measured, unit), (&checked.point, indices));
+            }
         }
         hold(nlp, &outcome.x, &mut report.between, (measured, unit), (&checked.point, indices));
     })?;
@@ -149,9 +149,9 @@ fn is_path(nlp: &Transcription, group: usize) -> bool {
     matches!(nlp.model.structure.group(group).domain, Domain::Path { .. })
 }
 
-/// A limit that is missed by less than this part of its size is not jumped over. A law: ten times the tolerance, within which a
-/// path keeps its limits.
-const LEAST_JUMP: f64 = 1e-7;
+/// A limit that is missed by less than this part of its size is kept, and neither jumped over nor small beside a hill. A law: ten
+/// times the tolerance, within which a path keeps its limits.
+const LEAST_MISSED: f64 = 1e-7;
 
 /// A value, and by how much it misses its bounds.
 #[derive(Clone, Copy)]

@@ -37,6 +37,17 @@ pub(super) struct Checked<'a> {
     pub(super) indices: &'a [i64],
 }
 
+/// A constraint, its member and the phase.
+pub(super) type Key = (usize, Vec<i64>, usize);
+
+impl Checked<'_> {
+    /// Which limit along which phase this is a value of; none of equations, and of what belongs to no phase.
+    pub(super) fn limit(&self) -> Option<Key> {
+        let phase = self.point.phase.filter(|_| self.bounds.0 < self.bounds.1)?;
+        Some((self.constraint, self.indices.to_vec(), phase))
+    }
+}
+
 /// A problem on the finer grid.
 #[derive(Debug)]
 pub(crate) struct Plan {

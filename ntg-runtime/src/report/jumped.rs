@@ -7,11 +7,12 @@
 //! missed is what the straight way from the one point to the other misses: a path that goes round a corner between two points misses
 //! less.
 
-use super::fine::Checked;
+use super::fine::{Checked, Key};
 use crate::transcribe::Transcription;
 use crate::transcribe::rows::RowKind;
+use crate::transcribe::slots::Source;
 use ntg_nlp::{Evaluation, Outcome};
-use ntg_structure::{Domain, Slot};
+use ntg_structure::{Domain, Output};
 use std::collections::BTreeMap;
 
 /// What is missed of a limit that is jumped over is at least this part of what the straight way misses. A choice: all but a
@@ -19,9 +20,6 @@ use std::collections::BTreeMap;
 const OF_STRAIGHT: f64 = 0.1;
 /// At how many places the straight way is looked at. A choice.
 const PLACES: usize = 32;
-
-/// A constraint, its member and the phase.
-type Key = (usize, Vec<i64>, usize);
 
 /// The rows of inequalities along phases, gathered when the first one is asked for.
 pub(super) struct Jumped<'a> {
@@ -51,10 +49,9 @@ impl<'a> Jumped<'a> {
     /// Whether a limit that is violated at a place between two points is jumped over there.
     pub(super) fn is_jump(&mut self, checked: &Checked<'_>) -> bool {
         let (lower, upper) = checked.bounds;
-        let Some(phase) = checked.point.phase.filter(|_| lower < upper) else { return false };
+        let Some(key) = checked.limit() else { return false };
         let side = if checked.value < lower { 1.0 } else { -1.0 };
         self.gather();
-        let key = (checked.constraint, checked.indices.to_vec(), phase);
         let Some(own) = self.rows.as_ref().and_then(|rows| rows.get(&key)) else { return false };
         let next = own.partition_point(|(tau, _)| *tau < checked.point.tau);
         let (Some(&(_, before)), Some(&(_, after))) = (next.checked_sub(1).and_then(|i| own.get(i)), own.get(next))
@@ -87,26 +84,32 @@ impl<'a> Jumped<'a> {
     fn local(&self, row: usize) -> Option<Local> {
         let (number, e, function) = self.nlp.elements.rows[row].maker;
         let (block, values) = (self.nlp.elements.blocks.get(number)?, self.at.blocks.get(number)?);
-        let structure = &self.nlp.model.structure;
-        let group = &structure.groups[self.nlp.elements.batches.get(number)?.group];
-        let phase = self.nlp.elements.rows[row].point.phase?;
-        let declared = &structure.phases[self.nlp.model.layout.phases[phase].phase];
+        let (structure, layout) = (&self.nlp.model.structure, &self.nlp.model.layout);
+        let batch = self.nlp.elements.batches.get(number)?;
         let mut local = Local {
             row: self.at.rows[row],
             slope: vec![0.0; block.slots],
             value: vec![0.0; block.slots],
             size: vec![0.0; block.slots],
         };
-        if !matches!(group.domain, Domain::Path { .. }) {
+        if !matches!(structure.groups[batch.group].domain, Domain::Path { .. }) {
             return None;
         }
+        let sources = batch.batch.sources();
+        let declared = |slot: usize| match sources.get(slot) {
+            Some(&Source::Flat { phase, output, derivative, .. }) => {
+                let phase = &layout.phases[phase];
+                Some((&structure.phases[phase.phase].outputs[phase.outputs[output].output], derivative))
+            }
+            _ => None,
+        };
         let variables = block.variables(e);
         for (entry, &(_, slot)) in block.jacobian.iter().enumerate().filter(|(_, (of, _))| *of == function) {
-            if let Some(Slot::Flat { output, derivative, .. }) = group.call.slots.get(slot) {
-                let spline = &declared.outputs.get(*output)?.spline;
-                if *derivative >= spline.smoothness && spline.breakpoints.len() > 2 {
-                    return None;
-                }
+            let jumps = |(output, derivative): (&Output, usize)| {
+                derivative >= output.spline.smoothness && output.spline.breakpoints.len() > 2
+            };
+            if declared(slot).is_some_and(jumps) {
+                return None;
             }
             let map = block.map(e).chunks_exact(variables.len().max(1)).nth(slot)?;
             let sum: f64 = variables.iter().zip(map).map(|(j, c)| c * self.outcome.x[*j as usize]).sum();
@@ -117,10 +120,7 @@ impl<'a> Jumped<'a> {
             local.size[slot] = typical.map_or(0.0, |(j, _)| self.scale[*j as usize]);
         }
         // Places are compared by one measure, whatever each of their coordinates varies by.
-        let kind = |slot: usize| match group.call.slots.get(slot) {
-            Some(Slot::Flat { output, derivative, .. }) => Some((&declared.outputs.get(*output)?.unit, derivative)),
-            _ => None,
-        };
+        let kind = |slot: usize| declared(slot).map(|(output, derivative)| (&output.unit, derivative));
         let own = local.size.clone();
         for (slot, size) in local.size.iter_mut().enumerate() {
             let alike = (0..block.slots).filter(|other| kind(slot).is_some() && kind(*other) == kind(slot));

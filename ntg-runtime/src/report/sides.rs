@@ -5,18 +5,15 @@
 //! the side itself varies by counts.
 
 use super::constraints::bounds_are_next_to_zero;
-use super::fine::{Checked, Plan, Wanted};
+use super::fine::{Checked, Key, Plan, Wanted};
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::Pair;
 use crate::transcribe::{SetupError, Transcription};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A side that varies by less than this part of the value is constant, and a limit is linear where it is as far from the mean of
 /// its value and of that without outputs. A law: rounding of sums that have tens of terms.
 const ROUNDING: f64 = 1e-10;
-
-/// A constraint, its member and the phase.
-type Key = (usize, Vec<i64>, usize);
 
 /// A place at which a limit is missed.
 pub(super) struct Place {
@@ -44,9 +41,8 @@ struct Side {
 impl Sides {
     /// Takes in a place at which a limit of this size is missed by more than rounding.
     pub(super) fn add(&mut self, checked: &Checked<'_>, size: f64) {
-        let Some(phase) = checked.point.phase else { return };
-        if checked.bounds.0 < checked.bounds.1 && bounds_are_next_to_zero(checked.bounds, size) {
-            let key = (checked.constraint, checked.indices.to_vec(), phase);
+        let Some(key) = checked.limit() else { return };
+        if bounds_are_next_to_zero(checked.bounds, size) {
             self.places.push(Place { key, point: checked.point, value: checked.value, bounds: checked.bounds });
         }
     }
@@ -86,9 +82,12 @@ impl Sides {
     fn values(&self, nlp: &Transcription, (fine, x): (&mut Plan, &[f64])) -> Result<BTreeMap<Key, Side>, SetupError> {
         let mut all: BTreeMap<Key, Side> =
             self.places.iter().map(|place| (place.key.clone(), Side::default())).collect();
+        let constraints: BTreeSet<usize> = self.places.iter().map(|place| place.key.0).collect();
         fine.evaluate(nlp, (x, Wanted::All), |checked| {
-            let Some(phase) = checked.point.phase.filter(|_| checked.value.is_finite()) else { return };
-            if let Some(side) = all.get_mut(&(checked.constraint, checked.indices.to_vec(), phase)) {
+            if !(checked.value.is_finite() && constraints.contains(&checked.constraint)) {
+                return;
+            }
+            if let Some(side) = checked.limit().and_then(|key| all.get_mut(&key)) {
                 let (low, high) = side.range.get_or_insert((checked.value, checked.value));
                 (*low, *high) = (low.min(checked.value), high.max(checked.value));
                 side.values.insert(moment(&checked.point), checked.value);

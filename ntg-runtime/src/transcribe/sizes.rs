@@ -34,8 +34,8 @@ const FAR_BOUND: f64 = 1e4;
 /// less than the second, it is stationary at the point but for rounding. Those of the objective (5.3).
 const LEAST_AT_POINT: f64 = 1e-2;
 const STATIONARY: f64 = 1e-6;
-/// The part of the way to the point beside on which slope and curvature of an integral are taken. A choice: powers of 20
-/// change by a tenth.
+/// The part of the way to the point beside on which slope and curvature of an integral are taken. A choice: where that point is
+/// ten times as far as what is raised to the power of 20, the power changes by a fifth.
 const NEARBY: f64 = 1e-3;
 
 /// What shares a size (an output in all phases of an agent, a variable, a duration), and all constraints in which it
@@ -221,7 +221,7 @@ impl Transcription<'_> {
     /// Sizes of integrals, as the objective has its own (5.3): the value at the point, unless it is stationary there, as a
     /// sum of squares is at 0, by the value beside the point. That is no larger than slope and curvature at the point tell: a
     /// power of 20 has a value of 1e17 times its own there, which says nothing of a solution. `scale` has the sizes of what
-    /// has none yet. Where the integrals have no values beside the point, they stay without a size.
+    /// has none yet. Where the integrals have no values on either way, they stay without a size.
     fn size_integrals(&self, x: &[f64], scale: &[f64], balance: &mut Balance) {
         let size = |j: usize| balance.size[balance.group[j]].unwrap_or(scale[j]);
         let sizes: Vec<f64> = (0..x.len()).map(size).collect();
