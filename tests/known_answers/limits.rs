@@ -118,30 +118,35 @@ fn a_hill_is_as_high_as_it_is_and_not_as_the_flight() {
 /// distance and along time, as a formula and as a table.
 #[test]
 fn a_hill_along_time_is_as_high_as_it_is() {
-    let hut = "let ground [m] = 8 [m] * exp(-((x - 9790 [m]) / 6 [m])^2);";
-    let mast = "table ground(x [m]) [m] = monotone { 0: 0; 9780: 0; 9790: 20; 9800: 0; 10000: 0; }";
+    let along_distance = "domain x [m]; duration D = 10 [km]; param rate = -0.4;";
+    let along_time = "duration D = 100 [s]; param rate = -40 [m/s]; let x [m] = t * 100 [m/s];";
+    let hut = "let ground [m] = HEIGHT [m] * exp(-((x - 9790 [m]) / 6 [m])^2);";
+    let mast = "table ground(x [m]) [m] = monotone { 0: 0; 9780: 0; 9790: HEIGHT; 9800: 0; 10000: 0; }";
     for (way, ground, form) in [
-        ("domain x [m]; duration D = 10 [km];", hut, "z - ground >= 0"),
-        ("domain x [m]; duration D = 10 [km];", hut, "ground <= z"),
-        ("domain x [m]; duration D = 10 [km];", mast, "z >= ground(x)"),
-        ("duration D = 100 [s]; let x [m] = t * 100 [m/s];", hut, "z >= ground"),
+        (along_distance, hut, "z - ground >= 0"),
+        (along_distance, hut, "ground <= z"),
+        (along_distance, mast, "z >= ground(x)"),
+        (along_time, hut, "z >= ground"),
     ] {
-        let rate = if way.contains("domain") { "-0.4" } else { "-40 [m/s]" };
-        let text = |height: &str| {
-            format!(
+        let descent = |height: &str| {
+            solved(&format!(
                 "problem Descent {{
-                    {way} output z [m]: spline(order = 5, intervals = 10); {}
+                    {way}
+                    output z [m]: spline(order = 5, intervals = 10);
+                    {}
                     minimize integral(der(z, 2)^2);
-                    initial {{ z == 2 [km]; der(z) == {rate}; }} trajectory {{ clear: {form}; }} final {{ z == 0; der(z) == 0; }}
+                    initial {{ z == 2 [km];  der(z) == rate; }}
+                    trajectory {{ clear: {form}; }}
+                    final {{ z == 0;  der(z) == 0; }}
                 }}",
-                ground.replace("8 [m] *", height).replace("9790: 20", if height.starts_with('0') { "9790: 0.01" } else { "9790: 20" })
-            )
+                ground.replace("HEIGHT", height)
+            ))
         };
-        let report = solved(&text("8 [m] *"));
+        let report = descent("10");
         assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{form}\n{report}");
         assert!(report.violated_between().iter().any(|own| own.name == "clear"), "{form}\n{report}");
         // A centimetre under a descent of two kilometres is none.
-        let report = solved(&text("0.01 [m] *"));
+        let report = descent("0.01");
         assert_eq!(report.resolution(), Some(Resolution::Fine), "{form}\n{report}");
     }
 }

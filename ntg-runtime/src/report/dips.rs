@@ -15,34 +15,23 @@ const WORTH: f64 = 1e-2;
 /// to the least value is then at most a third of it, down to a ten thousandth of a step.
 const HALVINGS: i32 = 11;
 
-/// The places between the points at which values of one row that stay within their bounds may leave them. Bounds of 0 have no size
-/// that is known here, and are left out, as equations are.
-pub(super) fn between(sites: &[Site], values: &[f64], (lower, upper): Pair, found: &mut Vec<Site>) {
-    if lower == upper {
-        return;
-    }
-    for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
-        if bound != 0.0 && bound.is_finite() && comes_near(values, (bound, sign)) {
-            beyond(sites, values, (bound, sign), found);
-        }
-    }
-}
-
 /// Into so many parts a step is divided that values do not follow. A choice: a cubic that turns round within a step is all but
 /// straight in an eighth of it.
 const PARTS: usize = 8;
 
+/// The places between the points at which values of one row that stay within their bounds may leave them. Bounds of 0 have no size
+/// that is known here, and are left out, as equations are.
+pub(super) fn between(sites: &[Site], values: &[f64], bounds: Pair, found: &mut Vec<Site>) {
+    for bound in near(values, bounds) {
+        beyond(sites, values, bound, found);
+    }
+}
+
 /// Even parts of those steps between which values stay within their bounds, but not on the lines through their neighbours: what
 /// lies between is not known from the points. Where a line misses a value by more than that is from its bound, the bound may be
 /// crossed twice.
-pub(super) fn unknown(sites: &[Site], values: &[f64], (lower, upper): Pair, found: &mut Vec<Site>) {
-    if lower == upper {
-        return;
-    }
-    for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
-        if !(bound != 0.0 && bound.is_finite() && comes_near(values, (bound, sign))) {
-            continue;
-        }
+pub(super) fn unknown(sites: &[Site], values: &[f64], bounds: Pair, found: &mut Vec<Site>) {
+    for (bound, sign) in near(values, bounds) {
         let distinct = distinct(sites);
         for (i, pair) in distinct.windows(2).enumerate() {
             let (before, after) = (sites[pair[0]].point, sites[pair[1]].point);
@@ -61,6 +50,14 @@ pub(super) fn unknown(sites: &[Site], values: &[f64], (lower, upper): Pair, foun
             }
         }
     }
+}
+
+/// The bounds that values come near to, each with its side; none of an equation, and no bound of 0.
+fn near(values: &[f64], (lower, upper): Pair) -> impl Iterator<Item = (f64, f64)> {
+    let is_near = move |&(bound, sign): &(f64, f64)| {
+        lower != upper && bound != 0.0 && bound.is_finite() && comes_near(values, (bound, sign))
+    };
+    [(lower, 1.0), (upper, -1.0)].into_iter().filter(is_near)
 }
 
 /// The sites but for those that stand twice: breakpoints, once from either side.
