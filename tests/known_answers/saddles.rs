@@ -228,3 +228,44 @@ fn a_stationary_point_that_nothing_leaves_is_not_solved() {
     assert_eq!(report.status, Status::Stationary, "{report}");
     assert!((report.objective - 1.0).abs() < 1e-6, "{report}");
 }
+
+#[test]
+fn an_arm_without_a_guess_goes_from_rest_to_rest() {
+    // As with a cubic for a guess. A straight line bent at its ends to rest there costs more than every minimum, and the
+    // second link went round once on its way.
+    solved(
+        "problem Arm {
+            duration T = 2;
+            output a, b: spline(order = 5, intervals = 8, smoothness = 2);
+            collocation gauss(points = 3);
+            let turn = (3 + 2 * cos(b)) * der(a, 2) + (1 + cos(b)) * der(b, 2)
+                - sin(b) * der(b) * (2 * der(a) + der(b));
+            let bend = (1 + cos(b)) * der(a, 2) + der(b, 2) + sin(b) * der(a)^2;
+            minimize integral(turn^2 + bend^2);
+            initial { a == 0;  b == 0;  der(a) == 0;  der(b) == 0; }
+            final { a == 1;  b == 1.5;  der(a) == 0;  der(b) == 0; }
+        }",
+        28.9475004,
+    );
+}
+
+#[test]
+fn four_robots_that_cross_do_not_go_astray() {
+    // The least of what eight starts and IPOPT find; the guess leads all of them through the middle at once.
+    solved(
+        "problem Crossing {
+            const n = 4;
+            duration T = 10;
+            output p[1 .. n, 1 .. 2]: spline(order = 5, intervals = 8, smoothness = 3);
+            param a[n, 2] = ((0, 0), (10, 0), (10, 10), (0, 10));
+            param b[n, 2] = ((10, 10), (0, 10), (0, 0), (10, 0));
+            minimize sum(i in 1 .. n, integral(der(p[i, 1], 2)^2 + der(p[i, 2], 2)^2));
+            initial { for i in 1 .. n { p[i] == a[i];  der(p[i]) == 0; } }
+            trajectory {
+                for i in 1 .. n { for j in i + 1 .. n { (p[i, 1] - p[j, 1])^2 + (p[i, 2] - p[j, 2])^2 >= 1; } }
+            }
+            final { for i in 1 .. n { p[i] == b[i];  der(p[i]) == 0; } }
+        }",
+        9.984000,
+    );
+}

@@ -66,8 +66,8 @@ fn middle((mut lower, mut upper): (f64, f64), unit: f64) -> f64 {
     }
 }
 
-/// Outputs: straight lines over time between the values that boundary conditions fix and measurements tell; else the
-/// middle of constant bounds; else 0.
+/// Outputs: from one value that boundary conditions fix or measurements tell to the next, at rest where rates are fixed
+/// to 0, else straight; where no value is known, the middle of constant bounds, else 0 (docs/maths.md, equation 8.0).
 pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
     let mut met = HashMap::new(); // Looked up, never iterated.
@@ -85,7 +85,7 @@ pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
                 let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
                 let member = &layout.phases[phase].outputs[output];
                 for (variable, tau) in member.coefficients.iter().zip(member.knots.greville()) {
-                    x[*variable as usize] = line(&known, start + tau * duration).unwrap_or(constant);
+                    x[*variable as usize] = between(&known, start + tau * duration).unwrap_or(constant);
                 }
             }
         }
@@ -105,13 +105,17 @@ fn constant(nlp: &Transcription, phase: usize, output: usize) -> f64 {
     if upper.is_finite() { middle((lower, upper), unit) } else { lower + unit }
 }
 
-/// `(t, value)` wherever a boundary condition fixes this output in its agent, or a measurement tells it.
-fn known_values(
-    nlp: &Transcription,
-    measured: &Measured,
-    (phase, output): (usize, usize),
-    x: &[f64],
-) -> Vec<(f64, f64)> {
+/// What is known of an output at a time.
+#[derive(Clone, Copy)]
+struct Known {
+    time: f64,
+    value: f64,
+    /// How many derivatives, from the first one on, are fixed to 0.
+    still: usize,
+}
+
+/// What is known wherever a boundary condition fixes this output in its agent, or a measurement tells it, by time.
+fn known_values(nlp: &Transcription, measured: &Measured, (phase, output): (usize, usize), x: &[f64]) -> Vec<Known> {
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
     let name = |phase: usize, output: usize| {
         let member = &layout.phases[phase];
@@ -122,27 +126,50 @@ fn known_values(
     for other in layout.agents[layout.phases[phase].agent].phases.clone() {
         let same = (0..layout.phases[other].outputs.len()).find(|o| name(other, *o) == name(phase, output));
         let Some(same) = same else { continue };
+        let time = |tau: f64| layout.start(other, x) + tau * layout.duration(other, x);
+        let orders = layout.phases[other].outputs[same].knots.order();
         for (tau, side) in [(0.0, Side::Right), (1.0, Side::Left)] {
-            let map = AffineMap { terms: layout.basis(other, same, 0, tau, side), offset: 0.0 };
-            if let Some(value) = nlp.linear.value(&map) {
-                known.push((layout.start(other, x) + tau * layout.duration(other, x), value));
+            let fixed = |derivative: usize| {
+                let terms = layout.basis(other, same, derivative, tau, side);
+                nlp.linear.value(&AffineMap { terms, offset: 0.0 })
+            };
+            if let Some(value) = fixed(0) {
+                let still = (1..orders).take_while(|derivative| fixed(*derivative) == Some(0.0)).count();
+                known.push(Known { time: time(tau), value, still });
             }
         }
         let times = measured.values(other, same).iter();
-        known.extend(times.map(|(tau, value)| (layout.start(other, x) + tau * layout.duration(other, x), *value)));
+        known.extend(times.map(|(tau, value)| Known { time: time(*tau), value: *value, still: 0 }));
     }
-    known.sort_by(|a, b| a.0.total_cmp(&b.0));
+    known.sort_by(|a, b| a.time.total_cmp(&b.time));
     known
 }
 
-/// The polygon through known values, constant beyond them.
-fn line(known: &[(f64, f64)], t: f64) -> Option<f64> {
-    let next = known.partition_point(|k| k.0 <= t);
+/// From one known value to the next, constant beyond them.
+fn between(known: &[Known], time: f64) -> Option<f64> {
+    let next = known.partition_point(|k| k.time <= time);
     match (next.checked_sub(1).map(|i| known[i]), known.get(next)) {
         (None, None) => None,
-        (Some((_, value)), None) | (None, Some(&(_, value))) => Some(value),
-        (Some((t0, a)), Some(&(t1, b))) => Some(a + (b - a) * (t - t0) / (t1 - t0)),
+        (Some(only), None) | (None, Some(&only)) => Some(only.value),
+        (Some(a), Some(b)) => {
+            let part = (time - a.time) / (b.time - a.time);
+            Some(a.value + (b.value - a.value) * rise(part, a.still, b.still))
+        }
     }
+}
+
+/// The polynomial of least degree from 0 at `s = 0` to 1 at `s = 1` of which the first `p` derivatives are 0 at the start
+/// and the first `q` at the end (docs/maths.md, equation 8.0). It only rises.
+fn rise(s: f64, p: usize, q: usize) -> f64 {
+    let degree = p + q + 1;
+    let (mut sum, mut binomial) = (0.0, 1.0);
+    for j in 0..=degree {
+        if j > p {
+            sum += binomial * s.powi(j as i32) * (1.0 - s).powi((degree - j) as i32);
+        }
+        binomial *= (degree - j) as f64 / (j + 1) as f64;
+    }
+    sum
 }
 
 /// Bounds along the phase on the output itself, each member of an array by its own: rows of one slot whose
@@ -190,4 +217,20 @@ fn bounds_by(nlp: &Transcription, phase: usize, output: usize, counts: impl Fn(u
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rise;
+
+    #[test]
+    fn a_rise_rests_where_it_is_asked_to() {
+        for s in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            assert_eq!(rise(s, 0, 0), s);
+            assert!((rise(s, 1, 0) - s * s).abs() < 1e-15);
+            assert!((rise(s, 0, 1) - s * (2.0 - s)).abs() < 1e-15);
+            assert!((rise(s, 1, 1) - s * s * (3.0 - 2.0 * s)).abs() < 1e-15);
+            assert!((rise(s, 2, 2) - s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s)).abs() < 1e-15);
+        }
+    }
 }
