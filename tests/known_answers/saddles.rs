@@ -269,3 +269,44 @@ fn four_robots_that_cross_do_not_go_astray() {
         9.984000,
     );
 }
+
+/// What is stationary at the guess, beside a straight line whose bending is rounding there, and beside a motion from rest to
+/// rest.
+fn beside_a_line(declared: &str, objective: &str, known: f64) {
+    let motions = [("x == 0;", "x == 1;", 0.0), ("x == 0;  der(x) == 0;", "x == 1;  der(x) == 0;", 12.0)];
+    for (start, end, bending) in motions {
+        for intervals in [2, 7, 12, 24, 30] {
+            let text = format!(
+                "problem Beside {{
+                    duration T = 1;
+                    {declared}
+                    output x: spline(order = 5, intervals = {intervals});
+                    minimize {objective} + integral(der(x, 2)^2);
+                    initial {{ {start} }}
+                    final {{ {end} }}
+                }}"
+            );
+            let report = Shipped::text(&text).solve();
+            assert!(report.is_solved(), "{intervals} intervals, {end}: {}", report.status);
+            let missed = (report.objective - known - bending).abs();
+            assert!(missed < 1e-6 * known.abs().max(1.0), "{intervals} intervals, {end}: {}", report.objective);
+        }
+    }
+}
+
+#[test]
+fn variables_beside_a_line_leave_their_maxima() {
+    beside_a_line("variable a;", "(a^2 - 4)^2", 0.0);
+    beside_a_line("variable a;", "1000 + (a^2 - 1)^2", 1000.0);
+    beside_a_line("variable a, b;", "(a^2 - 1)^2 + (b^2 - 4)^2", 0.0);
+    beside_a_line("variable a [rad];", "(5 - 10 * cos(a))^2", 0.0);
+    // The camel with six humps (L. C. W. Dixon and G. P. Szegö, 1978).
+    beside_a_line("variable a, b;", "(4 - 2.1 * a^2 + a^4 / 3) * a^2 + a * b + (4 * b^2 - 4) * b^2", -1.031_628_453);
+}
+
+#[test]
+fn outputs_beside_a_line_leave_their_maxima() {
+    let output = "output y: spline(order = 4, intervals = 6);";
+    beside_a_line(output, "integral((y^2 - 4)^2)", 0.0);
+    beside_a_line(output, "integral(y^4 / 4 - y^2 / 2)", -0.25);
+}

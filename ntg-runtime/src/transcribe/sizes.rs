@@ -146,11 +146,27 @@ impl Transcription<'_> {
         self.size_integrals(x, scale, balance);
         balance.propagate(&[Balance::balanced]);
         if balance.size.contains(&None) {
-            let size = self.objective_size(at, balance);
-            // What is stationary at the guess, as a sum of squares of what is 0 there, has its value.
-            balance.objective = if size > 0.0 { size } else { at.objective.abs() };
+            balance.objective = self.measured_objective(x, at, balance);
             balance.curvature = self.curvatures(x, balance);
             balance.propagate(&[Balance::balanced, Balance::curved, Balance::partly_balanced]);
+        }
+    }
+
+    /// The size of the objective by its slopes and known sizes. What is stationary at the point but for rounding, as a sum of
+    /// squares of what is 0 there, is as large as its value, or as beside the point where that is rounding too.
+    fn measured_objective(&self, x: &[f64], at: &Evaluation, balance: &Balance) -> f64 {
+        let sizes: Vec<f64> = balance.group.iter().map(|group| balance.size[*group].unwrap_or(0.0)).collect();
+        let mut near = x.to_vec();
+        beside(x, &self.limits, &sizes, &mut near);
+        let (mut workspace, mut there) = self.workspace();
+        let there = self.values(&near, &mut workspace, &mut there).map_or(0.0, |()| there.objective.abs());
+        let (slopes, here) = (self.objective_size(at, balance), at.objective.abs());
+        if slopes > ROUNDING * here.max(there) {
+            slopes
+        } else if here > STATIONARY * there {
+            here
+        } else {
+            there
         }
     }
 
