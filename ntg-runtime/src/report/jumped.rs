@@ -18,9 +18,6 @@ use std::collections::BTreeMap;
 /// What is missed of a limit that is jumped over is at least this part of what the straight way misses. A choice: all but a
 /// twentieth of a parabola's width is as deep, and what goes round a corner misses a hundredth of what the straight way does.
 const OF_STRAIGHT: f64 = 0.1;
-/// At how many places the straight way is looked at. A choice.
-const PLACES: usize = 32;
-
 /// The rows of inequalities along phases, gathered when the first one is asked for.
 pub(super) struct Jumped<'a> {
     nlp: &'a Transcription<'a>,
@@ -142,18 +139,42 @@ fn depth(before: &Local, after: &Local, (bound, side): (f64, f64)) -> Option<f64
         rises += side * after.slope[slot] * way;
         along += before.slope[slot] * after.slope[slot] * before.size[slot] * before.size[slot];
     }
-    let ends = [before, after].map(|of| side * (of.row - bound));
-    let cubic = |t: f64| {
-        let r = 1.0 - t;
-        ends[0] * r * r * (1.0 + 2.0 * t) + ends[1] * t * t * (1.0 + 2.0 * r) + falls * t * r * r - rises * t * t * r
-    };
-    let least = (1..PLACES).map(|i| cubic(i as f64 / PLACES as f64)).fold(f64::INFINITY, f64::min);
+    let [first, last] = [before, after].map(|of| side * (of.row - bound));
+    let least = least_of_cubic((first, last), (falls, rises));
     (falls < 0.0 && rises > 0.0 && along < 0.0 && least < 0.0).then_some(-least)
+}
+
+/// The least value between 0 and 1 of the cubic with these values and slopes there, of which the first slope falls and the
+/// last one rises. At places alone the least value of a path that crosses hundreds of radii in a step is far above it.
+fn least_of_cubic((first, last): (f64, f64), (falls, rises): (f64, f64)) -> f64 {
+    let change = last - first;
+    let (cube, square) = (falls + rises - 2.0 * change, 3.0 * change - 2.0 * falls - rises);
+    // The root of 3 cube t^2 + 2 square t + falls at which it rises, without cancellation: falls is negative.
+    let root = (square * square - 3.0 * cube * falls).max(0.0).sqrt();
+    let lowest = if square >= 0.0 { -falls / (square + root) } else { (root - square) / (3.0 * cube) };
+    let t = if lowest.is_finite() { lowest.clamp(0.0, 1.0) } else { 0.5 };
+    first + t * (falls + t * (square + t * cube))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Local, depth};
+    use super::{Local, depth, least_of_cubic};
+
+    #[test]
+    fn the_least_value_of_a_cubic_is_exact() {
+        // (t - 0.3)^2 - 0.01 and t^3 - t.
+        assert!((least_of_cubic((0.08, 0.48), (-0.6, 1.4)) + 0.01).abs() < 1e-15);
+        let known = -2.0 / 27.0_f64.sqrt();
+        assert!((least_of_cubic((0.0, 0.0), (-1.0, 2.0)) - known).abs() < 1e-15);
+        // The last slope alone is that of a minimum near the start.
+        assert!((least_of_cubic((0.0, 0.0), (-2.0, 1.0)) - known).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_way_of_a_thousand_radii_goes_through_a_disc() {
+        let through = depth(&disc(-1000.3, 0.1), &disc(1700.0, 0.1), (1.0, 1.0)).expect("it is jumped over");
+        assert!((through - 0.99).abs() < 1e-6, "{through}");
+    }
 
     /// The square of the distance from the origin.
     fn disc(x: f64, y: f64) -> Local {

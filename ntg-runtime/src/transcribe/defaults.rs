@@ -14,6 +14,9 @@ const DECADE: f64 = 10.0;
 /// A bound so many times as far from 0 as the other one on its other side is what people write who know of none. A choice.
 const FAR: f64 = 1e4;
 
+/// The ends of a phase in scaled time, each with its side.
+const ENDS: [(f64, Side); 2] = [(0.0, Side::Right), (1.0, Side::Left)];
+
 /// Durations, starts and variables in the middle of their bounds.
 pub(crate) fn times(nlp: &Transcription, x: &mut [f64]) {
     nlp.durations.iter().for_each(|duration| x[duration.variable as usize] = duration.guess);
@@ -72,10 +75,12 @@ pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
     let mut met = HashMap::new(); // Looked up, never iterated.
     let measured = Measured::of(nlp);
+    let moving: Vec<[bool; 2]> =
+        (0..layout.phases.len()).map(|phase| ENDS.map(|end| is_moving(nlp, phase, end))).collect();
     for agent in 0..layout.agents.len() {
         for phase in layout.agents[agent].phases.clone() {
             for output in 0..layout.phases[phase].outputs.len() {
-                let known = known_values(nlp, &measured, (phase, output), x);
+                let known = known_values(nlp, (&measured, &moving), (phase, output), x);
                 let first = layout.phases[phase].outputs[output].coefficients[0];
                 // What members of a scenario share is looked at once.
                 let constant = match known.is_empty() {
@@ -110,12 +115,28 @@ fn constant(nlp: &Transcription, phase: usize, output: usize) -> f64 {
 struct Known {
     time: f64,
     value: f64,
-    /// How many derivatives, from the first one on, are fixed to 0.
+    /// How many derivatives, from the first one on, are fixed to 0 where the agent is at rest.
     still: usize,
 }
 
+/// Whether a rate of any output of a phase is fixed at one end, and not to 0: its agent is not at rest there.
+fn is_moving(nlp: &Transcription, phase: usize, (tau, side): (f64, Side)) -> bool {
+    let layout = &nlp.model.layout;
+    let rate = |output: usize| {
+        let terms = layout.basis(phase, output, 1, tau, side);
+        nlp.linear.value(&AffineMap { terms, offset: 0.0 })
+    };
+    let rates = |output: &usize| layout.phases[phase].outputs[*output].knots.order() > 1;
+    (0..layout.phases[phase].outputs.len()).filter(rates).any(|output| rate(output).is_some_and(|rate| rate != 0.0))
+}
+
 /// What is known wherever a boundary condition fixes this output in its agent, or a measurement tells it, by time.
-fn known_values(nlp: &Transcription, measured: &Measured, (phase, output): (usize, usize), x: &[f64]) -> Vec<Known> {
+fn known_values(
+    nlp: &Transcription,
+    (measured, moving): (&Measured, &[[bool; 2]]),
+    (phase, output): (usize, usize),
+    x: &[f64],
+) -> Vec<Known> {
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
     let name = |phase: usize, output: usize| {
         let member = &layout.phases[phase];
@@ -128,13 +149,14 @@ fn known_values(nlp: &Transcription, measured: &Measured, (phase, output): (usiz
         let Some(same) = same else { continue };
         let time = |tau: f64| layout.start(other, x) + tau * layout.duration(other, x);
         let orders = layout.phases[other].outputs[same].knots.order();
-        for (tau, side) in [(0.0, Side::Right), (1.0, Side::Left)] {
+        for ((tau, side), is_moving) in ENDS.into_iter().zip(moving[other]) {
             let fixed = |derivative: usize| {
                 let terms = layout.basis(other, same, derivative, tau, side);
                 nlp.linear.value(&AffineMap { terms, offset: 0.0 })
             };
             if let Some(value) = fixed(0) {
-                let still = (1..orders).take_while(|derivative| fixed(*derivative) == Some(0.0)).count();
+                let is_still = |derivative: &usize| !is_moving && fixed(*derivative) == Some(0.0);
+                let still = (1..orders).take_while(is_still).count();
                 known.push(Known { time: time(tau), value, still });
             }
         }
