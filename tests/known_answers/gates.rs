@@ -104,9 +104,8 @@ fn a_limit_that_is_missed_is_told_of_with_what_shorter_intervals_say() {
 
 #[test]
 fn what_the_settings_ask_of_violations_is_all_that_is_done() {
-    let solved = |settings: &Settings| {
-        solve(Shipped::text(&posts(0.9, 10)).problem(), settings).expect("it can be set up")
-    };
+    let solved =
+        |settings: &Settings| solve(Shipped::text(&posts(0.9, 10)).problem(), settings).expect("it can be set up");
     let refused = solved(&Settings { between: Between::Refuse, ..Settings::default() });
     assert!(refused.confirmation.is_none() && !refused.has_solution(), "{refused}");
     let tolerant = solved(&Settings { between_tolerance: 0.2, ..Settings::default() });
