@@ -1,6 +1,6 @@
 //! What a person should know about a report although it is a solution.
 
-use super::{ConstraintReport, RefineStatus, Report, hints, jumped};
+use super::{ConstraintReport, Doubt, RefineStatus, Report, hints, jumped};
 use crate::digits::brief;
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::member_words;
@@ -64,7 +64,11 @@ impl Report {
         });
         let left = self.confirmation.iter().map(|confirmation| Warning {
             message: confirmation.words(self.objective),
-            place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
+            place: (match &confirmation.doubt {
+                Doubt::Motion(_) => equation,
+                Doubt::Limit(name) => self.constraint(name),
+            })
+            .map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
         });
