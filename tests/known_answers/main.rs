@@ -17,6 +17,7 @@ mod flat_limits;
 mod fleet;
 mod flight;
 mod flight_phases;
+mod gates;
 mod integrals;
 mod jumped;
 mod limits;

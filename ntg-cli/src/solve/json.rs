@@ -2,7 +2,7 @@
 
 use ntg_report::run::{gathered, members};
 use ntg_runtime::problem::Problem;
-use ntg_runtime::report::{ConstraintReport, Report, Resolution, Worst};
+use ntg_runtime::report::{ConstraintReport, Doubt, Report, Resolution, Worst};
 use ntg_runtime::structure::{Independent, Parameter};
 use serde_json::{Map, Value, json};
 
@@ -63,8 +63,12 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
         document["sensitivity"] = super::sensitivity::document(sensitivity, solved.samples);
     }
     if let Some(confirmation) = &report.confirmation {
+        let (name, of, missed) = match &confirmation.doubt {
+            Doubt::Motion(output) => ("output", output, "defects"),
+            Doubt::Limit(limit) => ("limit", limit, "missed"),
+        };
         document["confirmation"] = json!({
-            "output": confirmation.output, "defects": confirmation.defects, "halvings": confirmation.halvings,
+            (name): of, (missed): confirmation.missed, "halvings": confirmation.halvings,
             "status": confirmation.status.label(), "objective": confirmation.objective,
             "iterations": confirmation.iterations, "seconds": confirmation.seconds,
             "refuted": confirmation.refutes(report.objective),

@@ -1,14 +1,15 @@
-//! Whether a solution that leaves its own equations of motion is one of the problem: solves on shorter intervals
-//! (docs/maths.md, section 9).
+//! Whether a solution that leaves its own equations of motion, or its limits between the points, is one of the problem: solves
+//! on shorter intervals (docs/maths.md, section 9).
 
 use super::from;
 use super::marks::{halved, split};
 use crate::error::Error;
 use crate::guess::{Defect, defect};
 use crate::problem::{Problem, WithStructure};
-use crate::report::{Confirmation, Report, Resolution};
+use crate::report::{Confirmation, Doubt, Report, Resolution};
 use crate::settings::{Between, Method, Settings};
 use crate::status::Status;
+use crate::strategy::warm;
 use crate::transcribe::crossed::crossed;
 use crate::transcribe::{Transcription, names};
 use std::time::{Duration, Instant};
@@ -21,10 +22,10 @@ const PATIENCE: usize = 5;
 const LEAST: usize = 300;
 
 impl Report {
-    /// The report with what solves on shorter intervals say, where a solution leaves its equations of motion by more than is
-    /// worth a warning. What it misses between the points does not tell of that: a jump over a pole falls between all samples.
-    /// Only where the settings ask nothing else of such a solution. [`solve`](crate::solve) does this by itself, a
-    /// [`Solver`](crate::Solver) does not.
+    /// The report with what solves on shorter intervals say, where a solution leaves its equations of motion, or misses limits of
+    /// what is continuous, by more than is worth a warning. What equations miss between the points does not tell of that: a jump
+    /// over a pole falls between all samples. Only where the settings ask nothing else of such a solution.
+    /// [`solve`](crate::solve) does this by itself, a [`Solver`](crate::Solver) does not.
     ///
     /// # Errors
     /// [`Error`] where the problem, which has to be that of the report, cannot be set up on shorter intervals.
@@ -47,23 +48,28 @@ impl Report {
             structure.continuations.clear();
         });
         let mut nlp = Transcription::new(&mesh)?;
-        let Some(Defect { phase, output, relative }) = self.doubts(&nlp, settings)? else {
+        let Some((doubt, missed)) = self.doubts(&nlp, settings)? else {
             self.seconds += began.elapsed().as_secs_f64();
             return Ok(self.advised());
         };
+        // What keeps a limit is a neighbour, which is found in as many iterations as from any solution, or is another solution.
+        let most = match doubt {
+            Doubt::Motion(_) => (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations),
+            Doubt::Limit(_) => warm(settings).max_iterations,
+        };
         let mut found = Confirmation {
-            output: names::output(&nlp.model.structure, &nlp.model.layout, phase, output),
-            defects: vec![relative],
+            doubt,
+            missed: vec![missed],
             halvings: 0,
             status: self.status.clone(),
+            resolution: self.resolution(),
             objective: self.objective,
             iterations: 0,
             seconds: 0.0,
         };
-        let most = (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations);
         let until = settings.time_limit.map(|limit| began + limit);
         let mut last = None;
-        while found.halvings < HALVINGS && found.falls() && found.defects.last() > Some(&settings.between_tolerance) {
+        while found.halvings < HALVINGS && found.asks_more(self.objective, settings.between_tolerance) {
             let marks = halved(&nlp);
             drop(nlp);
             let finer = mesh.edited(|structure| split(structure, &marks));
@@ -84,14 +90,18 @@ impl Report {
             }
             found.halvings += 1;
             found.iterations += next.iterations;
-            (found.objective, found.status) = (next.objective, next.status.clone());
+            (found.objective, found.status, found.resolution) =
+                (next.objective, next.status.clone(), next.resolution());
             mesh = finer;
             nlp = Transcription::new(&mesh)?;
             if !next.has_solution() {
                 break;
             }
-            let again = defect(&nlp, next.solution.coefficients());
-            found.defects.push(again.map_or(f64::INFINITY, |again| again.relative));
+            let again = match &found.doubt {
+                Doubt::Motion(_) => defect(&nlp, next.solution.coefficients()).map(|again| again.relative),
+                Doubt::Limit(name) => next.constraint(name).and_then(|own| Some(own.between.as_ref()?.relative)),
+            };
+            found.missed.push(again.unwrap_or(f64::INFINITY));
             last = Some(next.solution);
         }
         found.seconds = began.elapsed().as_secs_f64();
@@ -107,12 +117,19 @@ impl Report {
         is_asked && is_open && self.confirmation.is_none() && !self.solution.structure().terms.is_empty()
     }
 
-    /// Looks at a solution on its own mesh: by how much it leaves its equations of motion, if that is more than is worth a
-    /// warning and no pole is crossed, which is told.
-    pub(crate) fn doubts(&mut self, nlp: &Transcription, settings: &Settings) -> Result<Option<Defect>, Error> {
+    /// Looks at a solution on its own mesh: what it may not keep, if it misses that by more than is worth a warning and crosses
+    /// no pole, which is told.
+    pub(crate) fn doubts(&mut self, nlp: &Transcription, settings: &Settings) -> Result<Option<(Doubt, f64)>, Error> {
         self.poles = crossed(nlp, self.solution.coefficients())?;
-        let own = || defect(nlp, self.solution.coefficients());
-        Ok(self.poles.is_empty().then(own).flatten().filter(|own| own.relative > settings.between_tolerance))
+        if !self.poles.is_empty() {
+            return Ok(None);
+        }
+        let own = defect(nlp, self.solution.coefficients()).filter(|own| own.relative > settings.between_tolerance);
+        if let Some(Defect { phase, output, relative }) = own {
+            let output = names::output(&nlp.model.structure, &nlp.model.layout, phase, output);
+            return Ok(Some((Doubt::Motion(output), relative)));
+        }
+        Ok(self.limit_in_doubt(nlp).map(|(limit, missed)| (Doubt::Limit(limit.to_owned()), missed)))
     }
 }
 

@@ -1,21 +1,35 @@
-//! What solves on shorter intervals say of a solution that leaves its own equations of motion (docs/maths.md, section 9).
+//! What solves on shorter intervals say of a solution that leaves its own equations of motion, or its limits between the points
+//! (docs/maths.md, section 9).
 
+use super::Resolution;
 use super::cost::cost_apart;
 use crate::digits::brief;
 use crate::status::Status;
 
+/// What a solution may not keep although it keeps it at the points.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Doubt {
+    /// Its equations of motion: the output that leaves them most.
+    Motion(String),
+    /// A limit of what is continuous: the one that is missed most between the points.
+    Limit(String),
+}
+
 /// What solves on intervals half as long, and half as long again, have found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Confirmation {
-    /// The output that leaves its equations most.
-    pub output: String,
-    /// By how much it does, relative to what it varies by (docs/maths.md, equation 9.3d), and the largest such defect of each
-    /// solution on shorter intervals; infinite where a motion cannot be followed.
-    pub defects: Vec<f64>,
+    /// What is in doubt.
+    pub doubt: Doubt,
+    /// By how much it is missed by the solution, and by each on shorter intervals. An output leaves its equations relative to
+    /// what it varies by (docs/maths.md, equation 9.3d), infinitely where a motion cannot be followed; a limit is missed
+    /// relative to the scale of its bounds (9.3).
+    pub missed: Vec<f64>,
     /// How often intervals were halved.
     pub halvings: usize,
     /// How the last solve ended.
     pub status: Status,
+    /// How far what it found is a solution of the problem; nothing where it found none.
+    pub resolution: Option<Resolution>,
     /// Its objective, in the user's sense and unit.
     pub objective: f64,
     /// Iterations on shorter intervals, which are not among those of the report.
@@ -31,9 +45,21 @@ impl Confirmation {
     /// unresolved by itself; that of a goal out of reach falls at most by chance.
     const FALLS: f64 = 0.7;
 
+    /// Whether one more solve, on intervals half as long again, has something to tell. `objective` is that of the solution,
+    /// `tolerance` what is worth a warning. A limit is missed less on shorter intervals wherever it can be kept, but how fast
+    /// the miss falls tells nothing: it does not at all where what is limited would jump, as an acceleration. The objective
+    /// does: the way through what is closed hangs on the length of the intervals.
+    pub(crate) fn asks_more(&self, objective: f64, tolerance: f64) -> bool {
+        match self.doubt {
+            Doubt::Motion(_) => self.falls() && self.missed.last() > Some(&tolerance),
+            Doubt::Limit(_) if self.halvings == 0 => true,
+            Doubt::Limit(_) => !self.refutes(objective) && cost_apart(objective, self.objective) > tolerance,
+        }
+    }
+
     /// Whether the last defect is that of a motion which is met better and better.
-    pub(crate) fn falls(&self) -> bool {
-        self.defects.windows(2).all(|pair| pair[1] <= Self::FALLS * pair[0])
+    fn falls(&self) -> bool {
+        self.missed.windows(2).all(|pair| pair[1] <= Self::FALLS * pair[0])
     }
 
     /// Objectives on shorter intervals that differ by more than this part of the larger are those of other curves. A choice: of
@@ -43,9 +69,13 @@ impl Confirmation {
     /// Whether the solution is one of the points alone, as far as is known: nothing like it was found on shorter intervals.
     /// `objective` is that of the solution.
     pub fn refutes(&self, objective: f64) -> bool {
-        match self.status.has_solution() {
-            true => !self.falls() || cost_apart(objective, self.objective) > Self::APART,
-            false => self.status != Status::Cancelled,
+        let is_apart = || cost_apart(objective, self.objective) > Self::APART;
+        match (&self.doubt, self.status.has_solution()) {
+            (Doubt::Motion(_), true) => !self.falls() || is_apart(),
+            (Doubt::Motion(_), false) => self.status != Status::Cancelled,
+            (Doubt::Limit(_), true) => self.resolution == Some(Resolution::Unresolved) || is_apart(),
+            // A solve that comes to no end tells nothing of a limit.
+            (Doubt::Limit(_), false) => matches!(self.status, Status::Infeasible { .. } | Status::Contradiction { .. }),
         }
     }
 
@@ -55,18 +85,20 @@ impl Confirmation {
             true => format!("by {} %", brief((1e3 * part).round() / 10.0)),
             false => "by more than can be followed".to_owned(),
         };
-        let left = format!(
-            "`{}` leaves its equations of motion: simulated from the start of each interval with the solution's inputs, it misses \
-             the ends {} of its variation in all",
-            self.output,
-            self.defects.first().map_or(String::new(), percent)
-        );
+        let first = self.missed.first().map_or(String::new(), percent);
+        let left = match &self.doubt {
+            Doubt::Motion(output) => format!(
+                "`{output}` leaves its equations of motion: simulated from the start of each interval with the solution's inputs, \
+                 it misses the ends {first} of its variation in all"
+            ),
+            Doubt::Limit(name) => format!("`{name}` is missed {first} of its size between the points"),
+        };
         let length = match self.halvings {
             1 => "half as long".to_owned(),
             2 => "a quarter as long".to_owned(),
             halvings => format!("1/{} as long", 1_usize << halvings),
         };
-        let last = self.defects.get(1..).and_then(<[f64]>::last).map_or(String::new(), percent);
+        let last = self.missed.get(1..).and_then(<[f64]>::last).map_or(String::new(), percent);
         let found = format!("{last}, where the objective is {}", brief(self.objective));
         let doubt = "the points are too few, and what is asked may be out of reach";
         match (self.status.has_solution(), self.refutes(objective)) {
@@ -79,7 +111,10 @@ impl Confirmation {
                 format!("{left}; on intervals {length} nothing was found ({}): {doubt}", self.status.label())
             }
             (false, false) => {
-                format!("{left}; a solve on intervals {length} was cancelled before it told whether that vanishes")
+                format!(
+                    "{left}; a solve on intervals {length} did not end ({}): it does not tell whether that vanishes",
+                    self.status.label()
+                )
             }
         }
     }

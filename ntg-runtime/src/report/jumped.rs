@@ -9,7 +9,7 @@
 
 use super::fine::{Checked, Key};
 use crate::transcribe::Transcription;
-use crate::transcribe::rows::RowKind;
+use crate::transcribe::rows::{RowInfo, RowKind};
 use crate::transcribe::slots::Source;
 use ntg_nlp::{Evaluation, Outcome};
 use ntg_structure::{Domain, Output};
@@ -81,7 +81,7 @@ impl<'a> Jumped<'a> {
     fn local(&self, row: usize) -> Option<Local> {
         let (number, e, function) = self.nlp.elements.rows[row].maker;
         let (block, values) = (self.nlp.elements.blocks.get(number)?, self.at.blocks.get(number)?);
-        let (structure, layout) = (&self.nlp.model.structure, &self.nlp.model.layout);
+        let structure = &self.nlp.model.structure;
         let batch = self.nlp.elements.batches.get(number)?;
         let mut local = Local {
             row: self.at.rows[row],
@@ -93,19 +93,10 @@ impl<'a> Jumped<'a> {
             return None;
         }
         let sources = batch.batch.sources();
-        let declared = |slot: usize| match sources.get(slot) {
-            Some(&Source::Flat { phase, output, derivative, .. }) => {
-                let phase = &layout.phases[phase];
-                Some((&structure.phases[phase.phase].outputs[phase.outputs[output].output], derivative))
-            }
-            _ => None,
-        };
+        let declared = |slot: usize| declared(self.nlp, sources.get(slot)?);
         let variables = block.variables(e);
         for (entry, &(_, slot)) in block.jacobian.iter().enumerate().filter(|(_, (of, _))| *of == function) {
-            let jumps = |(output, derivative): (&Output, usize)| {
-                derivative >= output.spline.smoothness && output.spline.breakpoints.len() > 2
-            };
-            if declared(slot).is_some_and(jumps) {
+            if declared(slot).is_some_and(may_jump) {
                 return None;
             }
             let map = block.map(e).chunks_exact(variables.len().max(1)).nth(slot)?;
@@ -125,6 +116,33 @@ impl<'a> Jumped<'a> {
         }
         Some(local)
     }
+}
+
+/// Whether a constraint depends on nothing along phases that may jump by itself, as an input does.
+pub(super) fn is_continuous(nlp: &Transcription, constraint: usize) -> bool {
+    let own = |info: &&RowInfo| {
+        matches!(info.kind, RowKind::Constraint(of) if of == constraint) && info.point.phase.is_some()
+    };
+    nlp.elements.rows.iter().filter(own).all(|info| {
+        let (number, _, function) = info.maker;
+        let (Some(block), Some(batch)) = (nlp.elements.blocks.get(number), nlp.elements.batches.get(number)) else {
+            return false;
+        };
+        let sources = batch.batch.sources();
+        let mut slots = block.jacobian.iter().filter(|(of, _)| *of == function).map(|(_, slot)| *slot);
+        !slots.any(|slot| sources.get(slot).and_then(|source| declared(nlp, source)).is_some_and(may_jump))
+    })
+}
+
+/// The output that a slot is of, and which derivative by time.
+fn declared<'n>(nlp: &'n Transcription, source: &Source) -> Option<(&'n Output, usize)> {
+    let &Source::Flat { phase, output, derivative, .. } = source else { return None };
+    let phase = &nlp.model.layout.phases[phase];
+    Some((&nlp.model.structure.phases[phase.phase].outputs[phase.outputs[output].output], derivative))
+}
+
+fn may_jump((output, derivative): (&Output, usize)) -> bool {
+    derivative >= output.spline.smoothness && output.spline.breakpoints.len() > 2
 }
 
 /// By how much the straight way from one point to another misses a limit, which allows what is above its bound with side 1 and

@@ -26,7 +26,7 @@ mod traces;
 mod warnings;
 
 pub use crate::transcribe::rows::member_words;
-pub use confirmation::Confirmation;
+pub use confirmation::{Confirmation, Doubt};
 pub use cost::cost_apart;
 pub(crate) use ending::Elsewhere;
 pub use ending::{Missed, Resolution};
@@ -115,8 +115,8 @@ pub struct Report {
     pub poles: Vec<Singular>,
     /// What a simulation tells of the motion that was to be found.
     pub(crate) simulation: Option<Elsewhere>,
-    /// What a solve on intervals half as long says of a solution that leaves its own equations of motion; none where that is in
-    /// no doubt, and from a kept solver.
+    /// What a solve on intervals half as long says of a solution that leaves its own equations of motion, or its limits between
+    /// the points; none where that is in no doubt, and from a kept solver.
     pub confirmation: Option<Confirmation>,
     /// The residuals of the optimality conditions.
     pub residuals: Residuals,

@@ -1,6 +1,6 @@
 //! What a person should know about a report although it is a solution.
 
-use super::{ConstraintReport, RefineStatus, Report, hints};
+use super::{ConstraintReport, Doubt, RefineStatus, Report, hints, jumped};
 use crate::digits::brief;
 use crate::transcribe::layout::Time;
 use crate::transcribe::rows::member_words;
@@ -64,7 +64,11 @@ impl Report {
         });
         let left = self.confirmation.iter().map(|confirmation| Warning {
             message: confirmation.words(self.objective),
-            place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
+            place: (match &confirmation.doubt {
+                Doubt::Motion(_) => equation,
+                Doubt::Limit(name) => self.constraint(name),
+            })
+            .map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
         });
@@ -132,6 +136,17 @@ impl Report {
             constraint: String::new(),
             time: None,
         })
+    }
+
+    /// The limit of what is continuous that is violated most between the points, if any is by more than
+    /// `Settings::between_tolerance`, with that violation.
+    pub(crate) fn limit_in_doubt(&self, nlp: &Transcription) -> Option<(&str, f64)> {
+        let number = |own: &ConstraintReport| self.constraints.iter().position(|other| std::ptr::eq(own, other));
+        let is_in_doubt = |own: &&ConstraintReport| {
+            !own.is_equation && number(own).is_some_and(|number| jumped::is_continuous(nlp, number))
+        };
+        let worst = self.violated_between().into_iter().find(is_in_doubt)?;
+        Some((&worst.name, worst.between.as_ref()?.relative))
     }
 
     /// The constraints of a solution that are violated between the points of the transcription by more than
