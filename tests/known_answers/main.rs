@@ -18,6 +18,7 @@ mod fleet;
 mod flight;
 mod flight_phases;
 mod integrals;
+mod invariants;
 mod jumped;
 mod limits;
 mod missile;

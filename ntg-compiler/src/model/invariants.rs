@@ -84,11 +84,14 @@ impl Elaborator<'_> {
         let of_span = |k: &usize| self.problem.constraints[*k].span == span;
         let all = (0..self.problem.constraints.len()).filter(of_span).count();
         let own = found.iter().map(|own| own.constraint).filter(of_span).count();
-        let part = if own < all { format!("{own} of {all} rows of ") } else { String::new() };
-        let follow = if own < all { "follow" } else { "follows" };
-        let message = format!(
-            "{part}this equation {follow} from the equations of motion once it holds at the start, and is imposed there alone"
-        );
+        let message = match own {
+            own if own < all => format!(
+                "{own} of {all} rows of this equation follow from the equations of motion once they hold at the start, and are \
+                 imposed there alone"
+            ),
+            _ => "this equation follows from the equations of motion once it holds at the start, and is imposed there alone"
+                .to_owned(),
+        };
         let help = "nothing is to be done: reports look at it everywhere; in `initial { }` it would say the same";
         self.report(Diagnostic::new(Code::Invariant, span, message).help(help));
     }

@@ -18,12 +18,18 @@ use ntg_structure::Block;
 /// What goes on without a jump at the starts of phases: members of an output and an order of derivative, at the first member of
 /// the phase or at those after it.
 #[derive(Default)]
-pub(super) struct Joined(HashMap<(usize, bool, usize, usize), Vec<Option<(i64, i64)>>>); // Looked up, never iterated.
+pub(super) struct Joined(HashMap<Start, Vec<Members>>); // Looked up, never iterated.
+
+/// A phase, whether at members after its first, an output, and an order of derivative.
+type Start = (usize, bool, usize, usize);
+
+/// The first and the last member of an array; none for what is no array.
+type Members = Option<(i64, i64)>;
 
 impl Joined {
     fn is_joined(&self, (phase, is_inner): (usize, bool), output: usize, order: usize, member: Option<i64>) -> bool {
         let ranges = self.0.get(&(phase, is_inner, output, order));
-        let holds = |range: &Option<(i64, i64)>| match (range, member) {
+        let holds = |range: &Members| match (range, member) {
             (None, None) => true,
             (Some((first, last)), Some(member)) => (*first..=*last).contains(&member),
             _ => false,

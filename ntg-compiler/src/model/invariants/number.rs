@@ -116,8 +116,10 @@ fn unit(seed: u64) -> f64 {
     sign * (0.5 + 1.5 * fraction(seed))
 }
 
+/// Whether a value is a number to calculate with, and the function no constant there; a bit beside there may be no value.
 fn usable(value: f64, elsewhere: f64) -> bool {
-    SIZES.contains(&value.abs()) && !((elsewhere - value).abs() <= ALIVE * NUDGE * value.abs())
+    let is_constant = (elsewhere - value).abs() <= ALIVE * NUDGE * value.abs();
+    SIZES.contains(&value.abs()) && !is_constant
 }
 
 /// The change of a function by the error of an argument; all of its value where that leads out of its domain.

@@ -4,6 +4,7 @@
 //! From a drawn point, steps of least length of Newton's method lead to where all of them hold.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use super::motion::Indices;
 use super::number::Number;
@@ -63,9 +64,9 @@ pub(super) fn groups(rows: &[Row], point: &mut Point<'_>) -> Vec<(Vec<usize>, Ve
             own.1.extend(states);
         }
         for state in met {
-            if !group_of.contains_key(&state) {
+            if let Entry::Vacant(place) = group_of.entry(state) {
+                place.insert(groups.len());
                 own.1.push(state);
-                group_of.insert(state, groups.len());
             }
         }
         own.1.iter().for_each(|state| {
