@@ -35,7 +35,7 @@ const ORDINARY: Draw = Draw { seed: 0, decades: 0.0, is_positive: true, is_turne
 /// The most members of all equations of a phase that are tried.
 const MOST_MEMBERS: usize = 4096;
 /// The most leaves of formulas that are evaluated for one spec: a fifth of a second.
-const MOST_LEAVES: usize = 1_000_000;
+const MOST_LEAVES: usize = 500_000;
 
 /// An equation that follows from the equations of motion.
 struct Invariant {
@@ -112,6 +112,8 @@ impl Elaborator<'_> {
         if candidates.iter().map(|own| own.rows.len()).sum::<usize>() > MOST_MEMBERS {
             return vec![];
         }
+        let rates: Vec<NodeId> = candidates.iter().flat_map(|own| own.rows.first()).map(|row| row.rate).collect();
+        motion.find_branches(&self.problem.dag, &rates);
         let motion = Rc::new(motion);
         let problem = &self.problem;
         let vanishes: Vec<bool> = candidates.iter().map(|own| always_vanishes(problem, &motion, own, budget)).collect();
@@ -186,23 +188,38 @@ impl Elaborator<'_> {
 /// Whether the rate of an equation is 0 for all states and inputs, whatever branches conditions take.
 fn always_vanishes(problem: &Problem, motion: &Motion, own: &Candidate, budget: &mut Budget) -> bool {
     own.rows.iter().all(|row| {
-        let mut told = [0, 0];
-        for draw in draws(1) {
+        let mut told = Told::default();
+        for draw in draws(1, motion.has_branches) {
             let Some(rate) = Point::new(problem, motion, draw, budget).value(row.rate, &row.indices) else { continue };
             if !rate.is_rounding() {
                 return false;
             }
-            told[usize::from(draw.is_turned)] += usize::from(rate.vanishes());
+            told.add(draw, rate);
         }
-        told.iter().all(|told| *told >= LEAST_TOLD)
+        told.is_enough(motion)
     })
 }
 
-/// Points to draw, each with the one at which conditions take the other branches.
-fn draws(first: u64) -> impl Iterator<Item = Draw> {
-    (first..).zip(DRAWS).flat_map(|(seed, (decades, is_positive))| {
+/// How many points have told of a rate that it vanishes, with the branches that conditions take there and with the others.
+#[derive(Clone, Copy, Default)]
+struct Told([usize; 2]);
+
+impl Told {
+    fn add(&mut self, draw: Draw, rate: Number) {
+        self.0[usize::from(draw.is_turned)] += usize::from(rate.vanishes());
+    }
+
+    fn is_enough(self, motion: &Motion) -> bool {
+        self.0[0] >= LEAST_TOLD && (self.0[1] >= LEAST_TOLD || !motion.has_branches)
+    }
+}
+
+/// Points to draw, each with the one at which conditions take the other branches, where there are any.
+fn draws(first: u64, has_branches: bool) -> impl Iterator<Item = Draw> {
+    let both = (first..).zip(DRAWS).flat_map(|(seed, (decades, is_positive))| {
         [false, true].map(|is_turned| Draw { seed, decades, is_positive, is_turned })
-    })
+    });
+    both.filter(move |draw| has_branches || !draw.is_turned)
 }
 
 /// Which equations hold everywhere once all of these hold: first all are thought to, then those that are left go out.
@@ -238,9 +255,9 @@ fn leaving(problem: &Problem, motion: &Motion, rows: &[Row], budget: &mut Budget
     for (members, states) in groups {
         members.iter().for_each(|k| seen[*k] = true);
         let own: Vec<&Row> = members.iter().map(|k| &rows[*k]).collect();
-        let mut told = vec![[0, 0]; own.len()];
+        let mut told = vec![Told::default(); own.len()];
         let mut leaves = vec![false; own.len()];
-        for draw in draws(100) {
+        for draw in draws(100, motion.has_branches) {
             let mut point = Point::new(problem, motion, draw, budget);
             if !surface::reach(&own, &states, &mut point) {
                 continue;
@@ -248,10 +265,10 @@ fn leaving(problem: &Problem, motion: &Motion, rows: &[Row], budget: &mut Budget
             for (k, row) in own.iter().enumerate() {
                 let Some(rate) = point.value(row.rate, &row.indices) else { continue };
                 leaves[k] |= !rate.is_rounding();
-                told[k][usize::from(draw.is_turned)] += usize::from(rate.vanishes());
+                told[k].add(draw, rate);
             }
         }
-        let goes = |k: &usize| leaves[*k] || told[*k].iter().any(|told| *told < LEAST_TOLD);
+        let goes = |k: &usize| leaves[*k] || !told[*k].is_enough(motion);
         left.extend((0..own.len()).filter(goes).map(|k| own[k].equation));
     }
     left.extend(rows.iter().zip(seen).filter(|(_, seen)| !seen).map(|(row, _)| row.equation));

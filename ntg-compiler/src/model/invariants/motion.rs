@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use crate::expr::{NodeId, gradient};
+use crate::expr::{Dag, NodeId, gradient, kinks};
 use crate::model::elaborator::Elaborator;
 use crate::model::problem::{At, Collocation, Domain, Form, IndexId, Leaf, Loop};
 use crate::syntax::ast::Role;
@@ -39,6 +39,8 @@ pub(super) struct Motion {
     orders: Vec<Option<usize>>,
     equations: Vec<Equation>,
     of: HashMap<Element, (usize, Indices)>, // Looked up, never iterated.
+    /// Whether a condition stands in the equations, or in what is asked about.
+    pub(super) has_branches: bool,
 }
 
 /// The most elements whose equations are looked for.
@@ -55,6 +57,14 @@ impl Motion {
         self.of.get(element).map(|(equation, indices)| (self.equations[*equation], indices))
     }
 
+    /// Looks for conditions in the equations and in what is asked about.
+    pub(super) fn find_branches(&mut self, dag: &Dag, asked: &[NodeId]) {
+        let nodes = |own: &Equation| [own.factor, own.rest, own.bound];
+        let roots: Vec<NodeId> = self.equations.iter().flat_map(nodes).chain(asked.iter().copied()).collect();
+        self.has_branches = !kinks(dag, &roots).is_empty();
+    }
+
+    /// Whether there are states to look at.
     pub(super) fn has_states(&self) -> bool {
         self.orders.iter().any(Option::is_some)
     }
@@ -95,7 +105,7 @@ impl Elaborator<'_> {
                 orders[k] = (role == Role::State && is_determined).then_some(spline.smoothness);
             }
         }
-        Motion { phase, orders, equations: vec![], of: HashMap::new() }
+        Motion { phase, orders, equations: vec![], of: HashMap::new(), has_branches: false }
     }
 
     /// Finds the equations of motion.
