@@ -19,6 +19,7 @@ mod flight;
 mod flight_phases;
 mod gates;
 mod integrals;
+mod invariants;
 mod jumped;
 mod limits;
 mod missile;

@@ -145,6 +145,7 @@ codes! {
     BareAngle "N009" "a bare number beside an angle, of more than a turn";
     GuessOutside "N010" "a guess outside of its bounds";
     SoftName "N011" "a constraint named `soft` that has no price";
+    Invariant "N012" "an equation that follows from the equations of motion";
 }
 
 impl Code {

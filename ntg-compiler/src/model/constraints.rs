@@ -10,7 +10,7 @@ use ntg_structure::{Block, Unit};
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::element_text::member_text;
-use super::problem::{Bounds, Constraint, Domain, Form, Part};
+use super::problem::{Bounds, Constraint, Domain, Form, Imposed, Part};
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
 use super::value::Value;
@@ -316,6 +316,7 @@ impl<'a> Elaborator<'a> {
                 sides: 0,
                 written: None,
                 domain: domain.clone(),
+                imposed: Imposed::Everywhere,
                 body: body.node,
                 bounds,
             });

@@ -7,7 +7,7 @@
 use ntg_structure::{Block, Unit};
 
 use super::elaborator::Elaborator;
-use super::problem::{At, Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt};
+use super::problem::{At, Bounds, Constraint, Domain, Form, Imposed, Leaf, Loop, PhaseAt};
 use super::scope::{Allow, Context, Point};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -214,6 +214,7 @@ impl<'a> Elaborator<'a> {
                 sides: 0,
                 written: None,
                 domain: Domain::Mission,
+                imposed: Imposed::Everywhere,
                 body,
                 bounds: Bounds { lower: Some(zero), upper: Some(zero) },
             });

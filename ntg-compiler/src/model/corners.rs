@@ -10,7 +10,7 @@ use ntg_structure::Block;
 
 use super::elaborator::Elaborator;
 use super::monotone::Push;
-use super::problem::{Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt, Problem};
+use super::problem::{Bounds, Constraint, Domain, Form, Imposed, Leaf, Loop, PhaseAt, Problem};
 use super::ranges::Ranges;
 use super::signs::Signs;
 use super::smoothed;
@@ -256,6 +256,7 @@ impl Elaborator<'_> {
                 sides: 0,
                 written: None,
                 domain: Domain::Mission,
+                imposed: Imposed::Everywhere,
                 body,
                 bounds: Bounds { lower: Some(zero), upper: None },
             });

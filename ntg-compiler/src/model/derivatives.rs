@@ -201,6 +201,13 @@ impl<'a> Elaborator<'a> {
         Some(forward_from(dag, node, tangent, &mut again, &mut self.time_rates.1))
     }
 
+    /// The derivative of a node along the rates of its inputs; those without a rate do not change.
+    pub(super) fn pushed(&mut self, node: NodeId, rates: &Map<InputId, NodeId>) -> NodeId {
+        let Problem { dag, leaves, ranges, .. } = &mut self.problem;
+        let mut again = MoreIndices { leaves, ranges, next: &mut self.next_index };
+        forward(dag, node, |input| rates.get(&input).copied(), &mut again)
+    }
+
     fn rate_of_tau(&mut self, cx: &Context<'a>) -> Option<NodeId> {
         let phase = self.scopes[cx.scope].phase?;
         let duration = self.leaf(Leaf::Duration(cx.phase_at(phase)));

@@ -10,7 +10,7 @@ use ntg_structure::Block;
 use super::check::members;
 use super::constraints::Site;
 use super::elaborator::Elaborator;
-use super::problem::{At, Constraint, Domain, Form, Leaf, Part};
+use super::problem::{At, Constraint, Domain, Form, Imposed, Leaf, Part};
 use super::scope::{Allow, Context, Point, ScopeId};
 use super::settle::Use;
 use super::shape::{Ends, Shape};
@@ -216,6 +216,7 @@ impl<'a> Elaborator<'a> {
                 sides: 0,
                 written: None,
                 domain,
+                imposed: Imposed::Everywhere,
                 body: body.value.node,
                 bounds: body.bounds,
             });

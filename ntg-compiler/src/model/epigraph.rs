@@ -9,7 +9,7 @@ use ntg_structure::{Block, Unit};
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
-use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Leaf, Loop, Output, Part, Variable};
+use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, Variable};
 use super::unknowns::{is_affine, is_given};
 use crate::expr::{Binary, Fold, Node, NodeId, Unary};
 use crate::source::Span;
@@ -201,6 +201,7 @@ impl Elaborator<'_> {
             sides: 0,
             written: None,
             domain,
+            imposed: Imposed::Everywhere,
             body,
             bounds,
         });

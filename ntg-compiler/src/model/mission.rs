@@ -7,7 +7,7 @@
 //! Afterwards: every phase has a duration, and names and paths can be given a meaning.
 
 use super::elaborator::Elaborator;
-use super::problem::{Agent, Bounds, Collocation, Constraint, Domain, Duration, Form, Loop, Phase, Start};
+use super::problem::{Agent, Bounds, Collocation, Constraint, Domain, Duration, Form, Imposed, Loop, Phase, Start};
 use super::scope::{Allow, Context, PROBLEM, Point, ScopeId};
 use super::settle::Use;
 use super::value::Value;
@@ -415,6 +415,7 @@ impl<'a> Elaborator<'a> {
             sides: 0,
             written: None,
             domain: Domain::Mission,
+            imposed: Imposed::Everywhere,
             body,
             bounds,
         });

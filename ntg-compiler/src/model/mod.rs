@@ -43,6 +43,7 @@ mod guess_checks;
 mod helps;
 mod impulses;
 mod independent;
+mod invariants;
 mod kinds;
 mod known_shapes;
 mod library;
@@ -244,6 +245,7 @@ impl<'a> Elaborator<'a> {
         self.jumps_noted();
         self.check();
         self.always_holding();
+        self.invariants();
         self.corners();
     }
 }

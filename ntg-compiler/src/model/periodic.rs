@@ -7,7 +7,7 @@
 use ntg_structure::Block;
 
 use super::elaborator::Elaborator;
-use super::problem::{At, Bounds, Constraint, Domain, Form, Leaf, PhaseAt};
+use super::problem::{At, Bounds, Constraint, Domain, Form, Imposed, Leaf, PhaseAt};
 use super::scope::{Allow, Context, Point};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{ItemKind, Periodic, Segment};
@@ -127,6 +127,7 @@ impl<'a> Elaborator<'a> {
                 sides: 0,
                 written: None,
                 domain: Domain::Mission,
+                imposed: Imposed::Everywhere,
                 body,
                 bounds: Bounds { lower: Some(zero), upper: Some(zero) },
             });

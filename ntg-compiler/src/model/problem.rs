@@ -264,6 +264,18 @@ pub enum Domain {
     Path(PhaseAt, Part),
 }
 
+/// At which points of its domain a constraint is imposed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Imposed {
+    /// At all.
+    #[default]
+    Everywhere,
+    /// At the start of its phase, for the members of these loops: from there the equations of motion keep it.
+    AtStart(Vec<Loop>),
+    /// At none: the phase before ends where it holds.
+    Nowhere,
+}
+
 /// `lower <= body <= upper`, at every point of the domain, for all members of the loops.
 #[derive(Clone, Debug)]
 pub struct Constraint {
@@ -283,6 +295,8 @@ pub struct Constraint {
     pub written: Option<NodeId>,
     /// Where it holds.
     pub domain: Domain,
+    /// Where it is imposed.
+    pub imposed: Imposed,
     /// What is bounded.
     pub body: NodeId,
     /// Bounds; an equality has the same node twice.

@@ -11,7 +11,7 @@ use super::constraints::{Body, Site};
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::problem::{
-    At, Bounds, Collocation, Constraint, Domain, Form, Leaf, Loop, Output, Part, PhaseAt, Term, Variable,
+    At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, PhaseAt, Term, Variable,
 };
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
@@ -130,6 +130,7 @@ impl<'a> Elaborator<'a> {
                     sides: 0,
                     written: None,
                     domain: domain.clone(),
+                    imposed: Imposed::Everywhere,
                     body: node,
                     bounds,
                 });
@@ -221,6 +222,7 @@ impl<'a> Elaborator<'a> {
             sides: 0,
             written: None,
             domain: Domain::Path(at.clone(), Part::WHOLE),
+            imposed: Imposed::Everywhere,
             body,
             bounds: Bounds { lower: Some(zero), upper: None },
         });

@@ -18,7 +18,7 @@ use super::pieces::{Piece, Role, part_of, split};
 use super::points::point_sets;
 use super::{KernelBody, Program};
 use crate::expr::{Dag, Map, Node, NodeId};
-use crate::model::problem::{self as model, Constraint, Loop, Problem};
+use crate::model::problem::{self as model, Constraint, Imposed, Loop, Problem};
 use crate::source::{Source, Span};
 
 /// Makes a problem's program. `source` is the text that the problem's spans point into.
@@ -102,6 +102,14 @@ impl Lowering<'_> {
     /// The pieces of a constraint with a given body.
     fn constraint_pieces(&mut self, number: usize, of: Constraint, body: NodeId) -> Vec<Piece> {
         let role = Role::Constraint { constraint: number, bounds: of.bounds };
+        match (of.imposed, &of.domain) {
+            (Imposed::Nowhere, _) => return vec![],
+            (Imposed::AtStart(loops), model::Domain::Path(phase, _)) => {
+                let domain = model::Domain::Start(phase.clone());
+                return vec![Piece { loops, domain, body, role, span: of.span }];
+            }
+            _ => {}
+        }
         if of.domain == model::Domain::Mission {
             let part = part_of(number, of.loops.len());
             return split(&mut self.problem, &of.loops, body, of.span, role, &part);
@@ -170,7 +178,7 @@ impl Lowering<'_> {
         (!axes.is_empty()).then(|| Arguments { group, shown, call: call(self, "arguments", Mode::Show, &roots), axes })
     }
 
-    /// Costs and constraints as the spec writes them, where helpers stand for corners; not those that would need integrals
+    /// Costs and constraints as the spec writes them, where helpers stand for corners or not all points are taken; not those that would need integrals
     /// of their own.
     fn written(&mut self) -> Vec<Piece> {
         let mut pieces = Vec::new();
@@ -181,8 +189,11 @@ impl Lowering<'_> {
             pieces.extend(self.without_integrals(own));
         }
         for (constraint, c) in self.problem.constraints.clone().into_iter().enumerate() {
-            let Some(written) = c.written else { continue };
-            let own = self.constraint_pieces(constraint, c, written);
+            // What is imposed at some points holds at all.
+            let written = c.written.or_else(|| (c.imposed != Imposed::Everywhere).then_some(c.body));
+            let Some(written) = written else { continue };
+            let everywhere = Constraint { imposed: Imposed::Everywhere, ..c };
+            let own = self.constraint_pieces(constraint, everywhere, written);
             pieces.extend(self.without_integrals(own));
         }
         pieces

@@ -16,6 +16,7 @@ mod mistakes_words;
 mod model_ambiguities;
 mod model_conditions;
 mod model_corners;
+mod model_invariants;
 mod model_limits;
 mod model_meaning;
 mod model_mission;

@@ -107,6 +107,10 @@ pub(crate) const NOTES: Section = (
         ("variable a [deg];  temporal { a <= 90; }", "N009"),
         ("guess { T = 70 [s]; }", "N010"),
         ("trajectory { soft: x <= 11 [m]; }", "N011"),
+        (
+            "problem Balance { duration T = 5; state a, b; collocation gauss(points = 3, intervals = 4); minimize final(a); dynamics { der(a) == -a; der(b) == a; } initial { a == 1; } trajectory { a + b == 1; } }",
+            "N012",
+        ),
     ],
 );
 

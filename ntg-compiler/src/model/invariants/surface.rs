@@ -1,0 +1,152 @@
+//! Points at which several equations hold together, and whether they are left there.
+//!
+//! Takes equations of one phase without their inputs, member by member; equations that have states in common belong together.
+//! From a drawn point, steps of least length of Newton's method lead to where all of them hold.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use super::motion::Indices;
+use super::number::Number;
+use super::sample::{Point, State};
+use crate::expr::{Binary, NodeId, Scalar};
+
+/// One member of an equation.
+#[derive(Clone)]
+pub(super) struct Row {
+    /// Which equation.
+    pub(super) equation: usize,
+    pub(super) body: NodeId,
+    pub(super) bound: NodeId,
+    /// The rate of the body along the motion.
+    pub(super) rate: NodeId,
+    pub(super) indices: Indices,
+}
+
+impl Row {
+    /// By how much the equation is missed.
+    pub(super) fn miss(&self, point: &mut Point<'_>) -> Option<Number> {
+        let (body, bound) = (point.value(self.body, &self.indices)?, point.value(self.bound, &self.indices)?);
+        Some(Number::binary(Binary::Sub, &body, &bound))
+    }
+}
+
+/// The most equations, and the most states, that are solved together: a rotation matrix has nine.
+const MOST: usize = 48;
+/// Steps of Newton's method: those to a sphere that is `10^k` times as large or small halve the distance, three a decade.
+const STEPS: usize = 60;
+/// The step of differences, relative to the state.
+const DIFFERENCE: f64 = 1e-6;
+/// What is added to a diagonal, relative to its mean, so that equations that follow from one another have a step.
+const DAMPING: f64 = 1e-8;
+/// A state that has come to this part of what it was is on its way to 0, where nothing else has a size.
+const NOTHING: f64 = 1e-30;
+/// States are where equations hold within rounding: by so many units of the last digit of the largest.
+const BLUR: f64 = 64.0;
+
+/// Rows that have states in common, directly or by others; each group with its states. None where a row has no value.
+pub(super) fn groups(rows: &[Row], point: &mut Point<'_>) -> Vec<(Vec<usize>, Vec<State>)> {
+    let mut group_of: HashMap<State, usize> = HashMap::new(); // Looked up, never iterated.
+    let mut groups: Vec<(Vec<usize>, Vec<State>)> = vec![];
+    for (k, row) in rows.iter().enumerate() {
+        point.met.clear();
+        if row.miss(point).is_none() {
+            continue;
+        }
+        let met = std::mem::take(&mut point.met);
+        let mut own = (vec![k], vec![]);
+        let mut joined: Vec<usize> = met.iter().filter_map(|state| group_of.get(state).copied()).collect();
+        joined.sort_unstable();
+        joined.dedup();
+        for other in &joined {
+            let (rows, states) = std::mem::take(&mut groups[*other]);
+            own.0.extend(rows);
+            own.1.extend(states);
+        }
+        for state in met {
+            if let Entry::Vacant(place) = group_of.entry(state) {
+                place.insert(groups.len());
+                own.1.push(state);
+            }
+        }
+        own.1.iter().for_each(|state| {
+            group_of.insert(*state, groups.len());
+        });
+        groups.push(own);
+    }
+    groups.retain(|(rows, _)| !rows.is_empty());
+    groups
+}
+
+/// Leads states to where all rows hold; whether they got there.
+pub(super) fn reach(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> bool {
+    if rows.len() > MOST || states.len() > MOST {
+        return false;
+    }
+    let drawn: Vec<f64> = states.iter().map(|state| point.state(state)).collect();
+    for _ in 0..STEPS {
+        let Some(missed) = misses(rows, point) else { return false };
+        if missed.iter().all(|number| number.is_rounding()) {
+            let largest = states.iter().fold(0.0_f64, |most, state| most.max(point.state(state).abs()));
+            point.blur = BLUR * f64::EPSILON * largest;
+            return true;
+        }
+        let Some(slopes) = slopes(rows, states, point) else { return false };
+        let missed: Vec<f64> = missed.iter().map(|number| number.value).collect();
+        let Some(weights) = weights(&slopes, missed) else { return false };
+        for (k, state) in states.iter().enumerate() {
+            let step: f64 = slopes.iter().zip(&weights).map(|(row, weight)| row[k] * weight).sum();
+            let next = point.state(state) - step;
+            point.put(*state, if next.abs() <= NOTHING * drawn[k].abs() { 0.0 } else { next });
+        }
+    }
+    false
+}
+
+fn misses(rows: &[&Row], point: &mut Point<'_>) -> Option<Vec<Number>> {
+    rows.iter().map(|row| row.miss(point)).collect()
+}
+
+/// The derivatives of each row by every state, by differences.
+fn slopes(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> Option<Vec<Vec<f64>>> {
+    let mut slopes = vec![vec![0.0; states.len()]; rows.len()];
+    for (k, state) in states.iter().enumerate() {
+        let at = point.state(state);
+        let step = DIFFERENCE * if at == 0.0 { 1.0 } else { at.abs() };
+        point.put(*state, at + step);
+        let above = misses(rows, point)?;
+        point.put(*state, at - step);
+        let below = misses(rows, point)?;
+        point.put(*state, at);
+        for (row, (above, below)) in above.iter().zip(&below).enumerate() {
+            slopes[row][k] = (above.value - below.value) / (2.0 * step);
+        }
+    }
+    Some(slopes)
+}
+
+/// How much of each row's slope the least step is: `(J J^T + d) y = c`, by elimination.
+fn weights(slopes: &[Vec<f64>], mut right: Vec<f64>) -> Option<Vec<f64>> {
+    let n = slopes.len();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut matrix: Vec<Vec<f64>> = slopes.iter().map(|a| slopes.iter().map(|b| product(a, b)).collect()).collect();
+    let damping = DAMPING * (0..n).map(|i| matrix[i][i]).sum::<f64>() / n.max(1) as f64;
+    (0..n).for_each(|i| matrix[i][i] += damping);
+    for i in 0..n {
+        let pivot = matrix[i][i];
+        if !(pivot.is_finite() && pivot > 0.0) {
+            return None;
+        }
+        let (above, below) = matrix.split_at_mut(i + 1);
+        for (row, own) in below.iter_mut().enumerate() {
+            let factor = own[i] / pivot;
+            own.iter_mut().zip(&above[i]).for_each(|(own, other)| *own -= factor * other);
+            right[i + 1 + row] -= factor * right[i];
+        }
+    }
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|j| matrix[i][j] * right[j]).sum();
+        right[i] = (right[i] - known) / matrix[i][i];
+    }
+    Some(right)
+}
