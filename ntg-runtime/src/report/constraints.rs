@@ -70,10 +70,10 @@ pub(super) fn constraints(
         let (measured, unit) = (measure(checked.value, checked.bounds, sizes.0), sizes.1);
         if measured.relative > LEAST_MISSED {
             sides.add(checked, all_sizes.between(nlp, checked.constraint, checked.indices));
-            if jumped.is_jump(checked) {
-                let worst = jumps.entry(checked.constraint).or_default();
-                hold(nlp, &outcome.x, worst, (measured, unit), (&checked.point, indices));
-            }
+        }
+        if (measured.relative > LEAST_MISSED || measured.is_much_of(checked.bounds)) && jumped.is_jump(checked) {
+            let worst = jumps.entry(checked.constraint).or_default();
+            hold(nlp, &outcome.x, worst, (measured, unit), (&checked.point, indices));
         }
         hold(nlp, &outcome.x, &mut report.between, (measured, unit), (&checked.point, indices));
     })?;
@@ -152,6 +152,8 @@ fn is_path(nlp: &Transcription, group: usize) -> bool {
 /// A limit that is missed by less than this part of its size is kept, and neither jumped over nor small beside a hill. A law: ten
 /// times the tolerance, within which a path keeps its limits.
 const LEAST_MISSED: f64 = 1e-7;
+/// What is missed by more than this part of a bound may be a jump. A law: the default of what is worth a warning.
+const MUCH: f64 = 1e-2;
 
 /// A value, and by how much it misses its bounds.
 #[derive(Clone, Copy)]
@@ -160,6 +162,14 @@ struct Measured {
     missed: f64,
     /// Relative to the scale of the bounds.
     relative: f64,
+}
+
+impl Measured {
+    /// Whether much of a bound is missed, however small that is beside what the limit varies by.
+    fn is_much_of(&self, (lower, upper): (f64, f64)) -> bool {
+        let bound = if self.value < lower { lower } else { upper };
+        bound.is_finite() && bound != 0.0 && self.missed > MUCH * bound.abs()
+    }
 }
 
 fn measure(value: f64, (lower, upper): (f64, f64), size: impl Fn() -> f64) -> Measured {

@@ -119,15 +119,16 @@ struct Known {
     still: usize,
 }
 
-/// Whether a rate of any output of a phase is fixed at one end, and not to 0: its agent is not at rest there.
+/// Whether an output of a phase is known at one end, and its rate there is not known to be 0: its agent may not rest there.
 fn is_moving(nlp: &Transcription, phase: usize, (tau, side): (f64, Side)) -> bool {
     let layout = &nlp.model.layout;
-    let rate = |output: usize| {
-        let terms = layout.basis(phase, output, 1, tau, side);
+    let fixed = |output: usize, derivative: usize| {
+        let terms = layout.basis(phase, output, derivative, tau, side);
         nlp.linear.value(&AffineMap { terms, offset: 0.0 })
     };
-    let rates = |output: &usize| layout.phases[phase].outputs[*output].knots.order() > 1;
-    (0..layout.phases[phase].outputs.len()).filter(rates).any(|output| rate(output).is_some_and(|rate| rate != 0.0))
+    let has_rates = |output: &usize| layout.phases[phase].outputs[*output].knots.order() > 1;
+    let mut outputs = (0..layout.phases[phase].outputs.len()).filter(has_rates);
+    outputs.any(|output| fixed(output, 0).is_some() && fixed(output, 1) != Some(0.0))
 }
 
 /// What is known wherever a boundary condition fixes this output in its agent, or a measurement tells it, by time.
@@ -173,6 +174,9 @@ fn between(known: &[Known], time: f64) -> Option<f64> {
     match (next.checked_sub(1).map(|i| known[i]), known.get(next)) {
         (None, None) => None,
         (Some(only), None) | (None, Some(&only)) => Some(only.value),
+        (Some(a), Some(b)) if a.still + b.still == 0 => {
+            Some(a.value + (b.value - a.value) * (time - a.time) / (b.time - a.time))
+        }
         (Some(a), Some(b)) => {
             let part = (time - a.time) / (b.time - a.time);
             Some(a.value + (b.value - a.value) * rise(part, a.still, b.still))
