@@ -50,7 +50,8 @@ pub(super) fn constraints(
         let RowKind::Constraint(constraint) = info.kind else { continue };
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
         let report = &mut reports[constraint];
-        report.is_equation &= bounds.0 == bounds.1;
+        // An equation that says nothing is no row of the program, and is an equation.
+        report.is_equation &= nlp.elements.lower[row] == nlp.elements.upper[row];
         let sizes = (|| all_sizes.at_points(nlp, constraint, &info.indices), report.unit.factor);
         let indices = structure.constraints[constraint].shown_indices(&info.indices);
         keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), (&info.point, indices));

@@ -23,8 +23,8 @@ const ROUNDING: f64 = 1e-7;
 pub(crate) struct Decided {
     /// The linear equalities that stand at single points.
     pub(crate) system: LinearSystem,
-    /// The inequalities at the ends of phases that are not linear, whose inputs are all fixed, and that are met on a bound:
-    /// they say nothing, and a cone at its apex has no gradient to say it with.
+    /// The rows at the ends of phases that are not linear, whose inputs are all fixed, and that are met on a bound: they say
+    /// nothing, a cone at its apex has no gradient to say it with, and an equation would depend on those that fix its inputs.
     pub(crate) met: Vec<usize>,
 }
 
@@ -126,7 +126,7 @@ fn affine_row(block: &Block, values: &BlockValues, element: usize, row: usize) -
     sum
 }
 
-/// Checks rows at the ends of phases whose own slots are all determined; the inequalities among them that are met on a bound.
+/// Checks rows at the ends of phases whose own slots are all determined; those among them that are met on a bound.
 fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Result<Vec<usize>, SetupError> {
     let mut met = vec![];
     for (index, group) in elements.batches.iter().enumerate() {
@@ -179,13 +179,13 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
     Ok(met)
 }
 
-/// Whether a row is an inequality, and on one of its bounds but for rounding.
+/// Whether a row is on one of its bounds but for rounding.
 fn is_on_bound(frame: &Frame, elements: &Elements, row: usize, value: f64) -> bool {
     let (lower, upper) = (elements.lower[row], elements.upper[row]);
     let RowKind::Constraint(constraint) = elements.rows[row].kind else { return false };
     let unit = frame.structure.constraints[constraint].unit.factor;
     let near = |bound: f64| (value - bound).abs() <= ROUNDING * (value.abs().max(bound.abs()) + unit);
-    lower < upper && (near(lower) || near(upper))
+    near(lower) || near(upper)
 }
 
 /// The slots on which a row depends.
