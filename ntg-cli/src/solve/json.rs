@@ -65,7 +65,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
     if let Some(confirmation) = &report.confirmation {
         let (name, of, missed) = match &confirmation.doubt {
             Doubt::Motion(output) => ("output", output, "defects"),
-            Doubt::Limit(limit) => ("limit", limit, "missed"),
+            Doubt::Limit(limit) => ("limit", &report.constraints[*limit].name, "missed"),
         };
         document["confirmation"] = json!({
             (name): of, (missed): confirmation.missed, "halvings": confirmation.halvings,

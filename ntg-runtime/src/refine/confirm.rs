@@ -99,7 +99,9 @@ impl Report {
             }
             let again = match &found.doubt {
                 Doubt::Motion(_) => defect(&nlp, next.solution.coefficients()).map(|again| again.relative),
-                Doubt::Limit(name) => next.constraint(name).and_then(|own| Some(own.between.as_ref()?.relative)),
+                Doubt::Limit(limit) => {
+                    next.constraints.get(*limit).and_then(|own| Some(own.between.as_ref()?.relative))
+                }
             };
             found.missed.push(again.unwrap_or(f64::INFINITY));
             last = Some(next.solution);
@@ -129,7 +131,7 @@ impl Report {
             let output = names::output(&nlp.model.structure, &nlp.model.layout, phase, output);
             return Ok(Some((Doubt::Motion(output), relative)));
         }
-        Ok(self.limit_in_doubt(nlp).map(|(limit, missed)| (Doubt::Limit(limit.to_owned()), missed)))
+        Ok(self.limit_in_doubt(nlp).map(|(limit, missed)| (Doubt::Limit(limit), missed)))
     }
 }
 

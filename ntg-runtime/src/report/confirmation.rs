@@ -11,8 +11,9 @@ use crate::status::Status;
 pub enum Doubt {
     /// Its equations of motion: the output that leaves them most.
     Motion(String),
-    /// A limit of what is continuous: the one that is missed most between the points.
-    Limit(String),
+    /// A limit of what is continuous: of those the one that is missed most between the points, by its number in
+    /// [`Report::constraints`](crate::report::Report).
+    Limit(usize),
 }
 
 /// What solves on intervals half as long, and half as long again, have found.
@@ -79,7 +80,7 @@ impl Confirmation {
         }
     }
 
-    /// What a person should know.
+    /// What a person should know; of a limit what follows upon how it is missed.
     pub(super) fn words(&self, objective: f64) -> String {
         let percent = |part: &f64| match part.is_finite() {
             true => format!("by {} %", brief((1e3 * part).round() / 10.0)),
@@ -91,7 +92,8 @@ impl Confirmation {
                 "`{output}` leaves its equations of motion: simulated from the start of each interval with the solution's inputs, \
                  it misses the ends {first} of its variation in all"
             ),
-            Doubt::Limit(name) => format!("`{name}` is missed {first} of its size between the points"),
+            // What is missed is told before.
+            Doubt::Limit(_) => String::new(),
         };
         let length = match self.halvings {
             1 => "half as long".to_owned(),

@@ -62,18 +62,22 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        let left = self.confirmation.iter().map(|confirmation| Warning {
+        let (limits, motions): (Vec<_>, Vec<_>) =
+            self.confirmation.iter().partition(|confirmation| matches!(confirmation.doubt, Doubt::Limit(_)));
+        let left = motions.into_iter().map(|confirmation| Warning {
             message: confirmation.words(self.objective),
-            place: (match &confirmation.doubt {
-                Doubt::Motion(_) => equation,
-                Doubt::Limit(name) => self.constraint(name),
-            })
-            .map_or_else(Place::default, |constraint| constraint.place.clone()),
+            place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
         });
         let independent = &self.solution.structure().independent;
-        let between = self.violated_between().into_iter().map(|constraint| violated_between(constraint, independent));
+        let between = self.violated_between().into_iter().map(|constraint| {
+            let is_own = |number: usize| self.constraints.get(number).is_some_and(|own| std::ptr::eq(own, constraint));
+            let own = limits.iter().find(|own| matches!(own.doubt, Doubt::Limit(number) if is_own(number)));
+            let mut warning = violated_between(constraint, independent);
+            warning.message += &own.map_or(String::new(), |own| own.words(self.objective));
+            warning
+        });
         let unmet = self.refined.iter().filter(|refined| refined.status != RefineStatus::Met).map(|refined| Warning {
             message: format!("refinement to {:.0e}: {}", refined.tolerance, refined.status),
             place: Place::default(),
@@ -138,15 +142,15 @@ impl Report {
         })
     }
 
-    /// The limit of what is continuous that is violated most between the points, if any is by more than
+    /// The limit of what is continuous that is violated most between the points, by its number, if any is by more than
     /// `Settings::between_tolerance`, with that violation.
-    pub(crate) fn limit_in_doubt(&self, nlp: &Transcription) -> Option<(&str, f64)> {
-        let number = |own: &ConstraintReport| self.constraints.iter().position(|other| std::ptr::eq(own, other));
-        let is_in_doubt = |own: &&ConstraintReport| {
-            !own.is_equation && number(own).is_some_and(|number| jumped::is_continuous(nlp, number))
-        };
-        let worst = self.violated_between().into_iter().find(is_in_doubt)?;
-        Some((&worst.name, worst.between.as_ref()?.relative))
+    pub(crate) fn limit_in_doubt(&self, nlp: &Transcription) -> Option<(usize, f64)> {
+        let limits = self.violated_between().into_iter().filter(|own| !own.is_equation);
+        let found = limits.filter_map(|own| {
+            let number = self.constraints.iter().position(|other| std::ptr::eq(own, other))?;
+            Some((number, own.between.as_ref()?.relative))
+        });
+        found.into_iter().find(|(number, _)| jumped::is_continuous(nlp, *number))
     }
 
     /// The constraints of a solution that are violated between the points of the transcription by more than
