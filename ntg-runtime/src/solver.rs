@@ -99,7 +99,7 @@ impl<P: Problem, S> Solver<P, S> {
     }
 
     /// A report of the last solve with what [`solve`](crate::solve) looks at besides: whether the solution leaves its equations
-    /// of motion, and what is on shorter intervals then.
+    /// of motion or limits of what is continuous, and what is on shorter intervals then.
     ///
     /// # Errors
     /// As [`Solver::solve`].
