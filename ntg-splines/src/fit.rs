@@ -78,6 +78,18 @@ pub fn fit(knots: &Knots, samples: &[Sample], ends: Ends) -> Vec<f64> {
     column.sized(&solve(knots, &places, &[&column]), 0, 1)
 }
 
+/// Places at which a function is sampled to be fitted by a spline on these knots: the same number in every interval.
+pub fn fit_places(knots: &Knots) -> Vec<Place> {
+    /// Samples in an interval for each coefficient that acts there.
+    const SAMPLES: usize = 4;
+    let count = SAMPLES * knots.order();
+    let in_interval = |pair: &[f64]| {
+        let (start, width) = (pair[0], pair[1] - pair[0]);
+        (0..count).map(move |i| Place { tau: start + width * (i as f64 + 0.5) / count as f64, weight: width })
+    };
+    knots.breakpoints().windows(2).flat_map(in_interval).collect()
+}
+
 /// As [`fit`] with exact ends, for functions that are sampled at the same places, a value for each: the work is
 /// hardly more than for one of them. In the order of the functions.
 pub fn fit_all(knots: &Knots, places: &[Place], functions: &[Sampled]) -> Vec<Vec<f64>> {

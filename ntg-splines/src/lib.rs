@@ -34,7 +34,7 @@ mod quadrature;
 mod table;
 
 pub use basis::Spline;
-pub use fit::{Ends, Place, Sample, Sampled, fit, fit_all};
+pub use fit::{Ends, Place, Sample, Sampled, fit, fit_all, fit_places};
 pub use knots::{KnotError, Knots, MAX_INTERVALS, MAX_ORDER, Side};
 pub use quadrature::{Rule, equidistant, gauss, trapezoid};
 pub use table::{

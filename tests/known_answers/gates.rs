@@ -14,7 +14,7 @@ fn is_solution(report: &Report) -> bool {
     report.is_solved() && report.resolution() < Some(Resolution::Unresolved)
 }
 
-/// A flat robot in a corridor with two posts, `clear` of which is at a distance from the middle.
+/// A flat robot in a corridor with two posts of radius 1, each so far from the middle.
 fn posts(from_middle: f64, intervals: usize) -> String {
     format!(
         "problem Posts {{ duration T in 3 .. 30; output x, y: spline(order = 5, intervals = {intervals});
@@ -27,7 +27,7 @@ fn posts(from_middle: f64, intervals: usize) -> String {
     )
 }
 
-/// A cart in a corridor with a wall of two ellipses at an angle, end to end.
+/// A cart in a corridor with a wall of two ellipses at an angle, each so far from the middle along the wall.
 fn wall(from_middle: f64, intervals: usize) -> String {
     let ellipse = |from: f64| {
         format!(

@@ -1,4 +1,4 @@
-//! Equations along a phase that follow from the equations of motion (docs/maths.md, section 4).
+//! Equations along a phase that follow from the equations of motion (docs/maths.md, section 4.8).
 //!
 //! A unit quaternion beside its kinematics, a balance beside the rates of what it balances, a conserved energy: such an equation
 //! is an invariant of the motion, which holds everywhere once it holds at the start. At every point of a mesh it would say again
@@ -34,7 +34,7 @@ const LEAST_TOLD: usize = 3;
 const ORDINARY: Draw = Draw { seed: 0, decades: 0.0, is_positive: true, is_turned: false };
 /// The most members of all equations of a phase that are tried.
 const MOST_MEMBERS: usize = 4096;
-/// The most leaves of formulas that are evaluated for one spec: a fifth of a second.
+/// The most leaves of formulas that are evaluated for one spec. A choice: a spec of that many is compiled in seconds anyway.
 const MOST_LEAVES: usize = 500_000;
 
 /// An equation that follows from the equations of motion.

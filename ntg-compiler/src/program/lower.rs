@@ -178,8 +178,8 @@ impl Lowering<'_> {
         (!axes.is_empty()).then(|| Arguments { group, shown, call: call(self, "arguments", Mode::Show, &roots), axes })
     }
 
-    /// Costs and constraints as the spec writes them, where helpers stand for corners or not all points are taken; not those that would need integrals
-    /// of their own.
+    /// Costs and constraints as the spec writes them, where helpers stand for corners or not all points are taken; not those that
+    /// would need integrals of their own.
     fn written(&mut self) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for (term, t) in self.problem.objective.clone().into_iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::transcribe::layout::{Layout, Time};
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Transcription, defaults};
 use ntg_nlp::Nlp;
-use ntg_splines::{Knots, Place, Sampled, fit_all};
+use ntg_splines::{Knots, Sampled, fit_all, fit_places};
 use std::rc::Rc;
 
 /// A guessed function of scaled time, SI: its values at many times.
@@ -104,15 +104,7 @@ pub(crate) fn apply(layout: &Layout, curves: &[Curve], x: &mut [f64]) -> Result<
 
 /// Least squares through samples in every interval, with exact ends (equation 8.3).
 fn fit_together(layout: &Layout, curves: &[&Curve], knots: &Knots, x: &mut [f64]) -> Result<(), SetupError> {
-    /// Samples in an interval for each coefficient that acts there.
-    const SAMPLES: usize = 4;
-    let count = SAMPLES * knots.order();
-    let mut places = vec![];
-    for pair in knots.breakpoints().windows(2) {
-        let width = pair[1] - pair[0];
-        let at = |i: usize| pair[0] + width * (i as f64 + 0.5) / count as f64;
-        places.extend((0..count).map(|i| Place { tau: at(i), weight: width }));
-    }
+    let places = fit_places(knots);
     let mut functions = vec![];
     for curve in curves {
         let time = if curve.whole { Whole::new(layout, curve.phase, x) } else { Whole::PHASE };

@@ -62,18 +62,16 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        let (limits, motions): (Vec<_>, Vec<_>) =
-            self.confirmation.iter().partition(|confirmation| matches!(confirmation.doubt, Doubt::Limit(_)));
-        let left = motions.into_iter().map(|confirmation| Warning {
+        let motion = self.confirmation.iter().filter(|confirmation| matches!(confirmation.doubt, Doubt::Motion(_)));
+        let left = motion.map(|confirmation| Warning {
             message: confirmation.words(self.objective),
             place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
         });
         let independent = &self.solution.structure().independent;
-        let between = self.violated_between().into_iter().map(|constraint| {
-            let is_own = |number: usize| self.constraints.get(number).is_some_and(|own| std::ptr::eq(own, constraint));
-            let own = limits.iter().find(|own| matches!(own.doubt, Doubt::Limit(number) if is_own(number)));
+        let between = self.violated().into_iter().map(|(number, constraint)| {
+            let own = self.confirmation.as_ref().filter(|confirmation| confirmation.doubt == Doubt::Limit(number));
             let mut warning = violated_between(constraint, independent);
             warning.message += &own.map_or(String::new(), |own| own.words(self.objective));
             warning
@@ -145,24 +143,27 @@ impl Report {
     /// The limit of what is continuous that is violated most between the points, by its number, if any is by more than
     /// `Settings::between_tolerance`, with that violation.
     pub(crate) fn limit_in_doubt(&self, nlp: &Transcription) -> Option<(usize, f64)> {
-        let limits = self.violated_between().into_iter().filter(|own| !own.is_equation);
-        let found = limits.filter_map(|own| {
-            let number = self.constraints.iter().position(|other| std::ptr::eq(own, other))?;
-            Some((number, own.between.as_ref()?.relative))
-        });
-        found.into_iter().find(|(number, _)| jumped::is_continuous(nlp, *number))
+        let mut limits = self.violated().into_iter().filter(|(_, own)| !own.is_equation);
+        let (number, worst) = limits.find(|(number, _)| jumped::is_continuous(nlp, *number))?;
+        Some((number, worst.between.as_ref()?.relative))
     }
 
     /// The constraints of a solution that are violated between the points of the transcription by more than
     /// `Settings::between_tolerance`, the worst first; empty where there is no solution.
     pub fn violated_between(&self) -> Vec<&ConstraintReport> {
+        self.violated().into_iter().map(|(_, constraint)| constraint).collect()
+    }
+
+    /// As [`Report::violated_between`], each with its number.
+    fn violated(&self) -> Vec<(usize, &ConstraintReport)> {
         if !self.meets_points() {
             return vec![];
         }
         let relative = |c: &ConstraintReport| c.between.as_ref().map_or(0.0, |worst| worst.relative);
-        let is_violated = |c: &&ConstraintReport| relative(c) > self.between_tolerance || relative(c).is_nan();
-        let mut found: Vec<&ConstraintReport> = self.constraints.iter().filter(is_violated).collect();
-        found.sort_by(|a, b| relative(b).total_cmp(&relative(a)));
+        let is_violated =
+            |(_, c): &(usize, &ConstraintReport)| relative(c) > self.between_tolerance || relative(c).is_nan();
+        let mut found: Vec<_> = self.constraints.iter().enumerate().filter(is_violated).collect();
+        found.sort_by(|(_, a), (_, b)| relative(b).total_cmp(&relative(a)));
         found
     }
 }

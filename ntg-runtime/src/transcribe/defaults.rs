@@ -4,7 +4,7 @@ use super::Transcription;
 use super::measured::Measured;
 use super::slots::AffineMap;
 use ntg_nlp::Target;
-use ntg_splines::Side;
+use ntg_splines::{Knots, Sampled, Side, fit_all, fit_places};
 use ntg_structure::{Block, Degree, Domain, Row};
 use std::collections::HashMap;
 
@@ -89,12 +89,24 @@ pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
                 };
                 let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
                 let member = &layout.phases[phase].outputs[output];
-                for (variable, tau) in member.coefficients.iter().zip(member.knots.greville()) {
-                    x[*variable as usize] = between(&known, start + tau * duration).unwrap_or(constant);
+                let value = |tau: f64| between(&known, start + tau * duration).unwrap_or(constant);
+                let coefficients = match known.windows(2).any(is_curved) {
+                    true => fitted(&member.knots, value),
+                    false => member.knots.greville().into_iter().map(value).collect(),
+                };
+                for (variable, coefficient) in member.coefficients.iter().zip(coefficients) {
+                    x[*variable as usize] = coefficient;
                 }
             }
         }
     }
+}
+
+/// The coefficients of the spline that follows a function best.
+fn fitted(knots: &Knots, value: impl Fn(f64) -> f64) -> Vec<f64> {
+    let places = fit_places(knots);
+    let values = places.iter().map(|place| value(place.tau)).collect();
+    fit_all(knots, &places, &[Sampled { values, ends: (value(0.0), value(1.0)) }]).swap_remove(0)
 }
 
 /// The middle of constant bounds, else 0. What is bounded from below alone, and by nothing but what the compiler knows of the
@@ -119,16 +131,28 @@ struct Known {
     still: usize,
 }
 
-/// Whether an output of a phase is known at one end, and its rate there is not known to be 0: its agent may not rest there.
-fn is_moving(nlp: &Transcription, phase: usize, (tau, side): (f64, Side)) -> bool {
+/// Whether the way from one value to the next is no straight line.
+fn is_curved(pair: &[Known]) -> bool {
+    pair[0].value != pair[1].value && pair[0].still + pair[1].still > 0
+}
+
+/// The value of an output at one end of a phase, if it is fixed, and how many of its derivatives are fixed to 0 there, from the
+/// first one on.
+fn fixed(nlp: &Transcription, (phase, output): (usize, usize), (tau, side): (f64, Side)) -> Option<(f64, usize)> {
     let layout = &nlp.model.layout;
-    let fixed = |output: usize, derivative: usize| {
+    let at = |derivative: usize| {
         let terms = layout.basis(phase, output, derivative, tau, side);
         nlp.linear.value(&AffineMap { terms, offset: 0.0 })
     };
-    let has_rates = |output: &usize| layout.phases[phase].outputs[*output].knots.order() > 1;
-    let mut outputs = (0..layout.phases[phase].outputs.len()).filter(has_rates);
-    outputs.any(|output| fixed(output, 0).is_some() && fixed(output, 1) != Some(0.0))
+    let derivatives = 1..layout.phases[phase].outputs[output].knots.order();
+    Some((at(0)?, derivatives.take_while(|derivative| at(*derivative) == Some(0.0)).count()))
+}
+
+/// Whether an output of a phase is fixed at one end, and its rate is not fixed to 0: its agent may not rest there.
+fn is_moving(nlp: &Transcription, phase: usize, end: (f64, Side)) -> bool {
+    let outputs = &nlp.model.layout.phases[phase].outputs;
+    let mut with_rates = (0..outputs.len()).filter(|output| outputs[*output].knots.order() > 1);
+    with_rates.any(|output| fixed(nlp, (phase, output), end).is_some_and(|(_, still)| still == 0))
 }
 
 /// What is known wherever a boundary condition fixes this output in its agent, or a measurement tells it, by time.
@@ -149,17 +173,10 @@ fn known_values(
         let same = (0..layout.phases[other].outputs.len()).find(|o| name(other, *o) == name(phase, output));
         let Some(same) = same else { continue };
         let time = |tau: f64| layout.start(other, x) + tau * layout.duration(other, x);
-        let orders = layout.phases[other].outputs[same].knots.order();
-        for ((tau, side), is_moving) in ENDS.into_iter().zip(moving[other]) {
-            let fixed = |derivative: usize| {
-                let terms = layout.basis(other, same, derivative, tau, side);
-                nlp.linear.value(&AffineMap { terms, offset: 0.0 })
-            };
-            if let Some(value) = fixed(0) {
-                let is_still = |derivative: &usize| !is_moving && fixed(*derivative) == Some(0.0);
-                let still = (1..orders).take_while(is_still).count();
-                known.push(Known { time: time(tau), value, still });
-            }
+        for (end, is_moving) in ENDS.into_iter().zip(moving[other]) {
+            let still_at = |still: usize| if is_moving { 0 } else { still };
+            let own = fixed(nlp, (other, same), end);
+            known.extend(own.map(|(value, still)| Known { time: time(end.0), value, still: still_at(still) }));
         }
         let times = measured.values(other, same).iter();
         known.extend(times.map(|(tau, value)| Known { time: time(*tau), value: *value, still: 0 }));

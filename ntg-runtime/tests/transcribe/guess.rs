@@ -22,14 +22,9 @@ fn first(problem: &Double, guess: &Guess) -> Solution {
 fn boundary_conditions_give_a_motion_from_rest_to_rest() {
     let problem = problems::double_integrator(3.0, 2.0, false);
     let x = first(&problem, &Guess::new()).output("x").expect("it is declared");
-    assert!((x.at(1.0) - 1.5).abs() < 1e-12, "half of the way takes half of the time");
-    for t in [0.0, 0.3, 0.7] {
+    for t in [0.0, 0.3, 0.7, 1.0, 1.6, 2.0] {
         let s: f64 = t / 2.0;
-        let (there, back) = (x.at(t), 3.0 - x.at(2.0 - t));
-        // The coefficients are the polynomial's values where the B-splines sit: the spline lags behind it towards the line.
-        let (cubic, line) = (3.0 * s * s * (3.0 - 2.0 * s), 1.5 * t);
-        assert!(cubic - 1e-12 <= there && there <= line - 0.1 * t, "{there} at {t}");
-        assert!((there - back).abs() < 1e-12, "it ends as it begins");
+        assert!((x.at(t) - 3.0 * s * s * (3.0 - 2.0 * s)).abs() < 1e-9, "{} at {t}", x.at(t));
     }
 }
 

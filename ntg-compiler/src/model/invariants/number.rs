@@ -1,4 +1,4 @@
-//! Numbers that tell whether a formula vanishes for all of its inputs (docs/maths.md, section 4).
+//! Numbers that tell whether a formula vanishes for all of its inputs (docs/maths.md, section 4.8).
 //!
 //! A value comes with a bound of its rounding and with the size of the terms that it is a sum of. What has no formula at the
 //! point at hand, a logarithm of a negative number, or none that could be told from a constant, an exponential that is 0 to
