@@ -26,6 +26,7 @@ mod offsets;
 mod oscillator;
 mod out_of_reach;
 mod phases;
+mod piecewise_linear;
 mod places;
 mod poles;
 mod quotients;

@@ -10,6 +10,7 @@ use ntg_structure::Block;
 
 use super::elaborator::Elaborator;
 use super::monotone::Push;
+use super::piecewise::Lines;
 use super::problem::{Bounds, Constraint, Domain, Form, Leaf, Loop, PhaseAt, Problem};
 use super::ranges::Ranges;
 use super::signs::Signs;
@@ -39,6 +40,8 @@ pub(super) struct Corners {
     pub(super) widths: Widths,
     /// The nodes in which there are corners.
     within: Set<NodeId>, // Asked, never iterated.
+    /// Tables that are convex or concave, by their lines.
+    pub(super) tables: Map<NodeId, Lines>, // Looked up, never iterated.
     done: Map<(NodeId, bool, Site), NodeId>, // Looked up, never iterated.
     /// The corners for which helpers stand.
     pub(super) treated: Set<NodeId>, // Asked, never iterated.
@@ -67,11 +70,14 @@ impl Elaborator<'_> {
         }
         let terms = self.problem.objective.iter().map(|term| term.body);
         let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
+        let mut ranges = Ranges::within(&self.problem);
+        let tables = self.tables_of_lines(&mut ranges, &bodies);
         let mut pass = Corners {
             signs: Signs::of(&self.problem),
-            ranges: Ranges::within(&self.problem),
+            ranges,
             widths: Widths::of(&self.problem),
-            within: self.with_corners(&bodies),
+            within: self.with_corners(&tables, &bodies),
+            tables,
             done: Map::default(),
             treated: Set::default(),
             tips: Set::default(),
@@ -119,10 +125,23 @@ impl Elaborator<'_> {
         all
     }
 
-    fn with_corners(&mut self, bodies: &[NodeId]) -> Set<NodeId> {
+    /// The tables among all nodes below some that are made of lines, and are not given.
+    fn tables_of_lines(&self, ranges: &mut Ranges, bodies: &[NodeId]) -> Map<NodeId, Lines> {
+        let mut tables = Map::default();
+        for node in self.below(bodies) {
+            if let Some(lines) = self.lines_of(ranges, node)
+                && !is_given(&self.problem, node)
+            {
+                tables.insert(node, lines);
+            }
+        }
+        tables
+    }
+
+    fn with_corners(&mut self, tables: &Map<NodeId, Lines>, bodies: &[NodeId]) -> Set<NodeId> {
         let mut within = Set::default();
         for node in self.below(bodies) {
-            let mut has = self.is_corner(node);
+            let mut has = tables.contains_key(&node) || self.is_corner(node);
             match self.problem.dag.node(node) {
                 Node::Input(input) => {
                     if let Leaf::Integral { integrand, .. } = self.problem.leaves.leaf(*input) {
@@ -269,7 +288,8 @@ impl Elaborator<'_> {
         let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();
         let all = self.below(&bodies);
         let kinks: Set<NodeId> = expr::kinks(&self.problem.dag, &all).into_iter().collect();
-        let mut left: Vec<NodeId> = all.iter().copied().filter(|node| kinks.contains(node)).collect();
+        let has_kink = |node: &NodeId| kinks.contains(node) || self.is_piecewise(*node);
+        let mut left: Vec<NodeId> = all.iter().copied().filter(has_kink).collect();
         left.retain(|node| !pass.tips.contains(node) && self.may_jump(*node));
         let mut smoothed = smoothed::among(&mut self.kinds, (&self.problem, &all), &bodies, &left);
         left.retain(|node| !smoothed.contains(node));

@@ -38,6 +38,13 @@ impl Elaborator<'_> {
             false => None,
         };
         let against = self.against(pass, corner, (site, growing), depth)?;
+        if let Against::Members(members) = &against
+            && let [(only, loops)] = members.as_slice()
+            && loops.is_empty()
+            && matches!(self.problem.dag.node(corner), Node::Table { .. })
+        {
+            return Some(*only);
+        }
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
         let helper = self.helper_leaf(pass, corner, site, span)?;
         let zero = self.problem.dag.constant(0.0);
@@ -78,6 +85,7 @@ impl Elaborator<'_> {
             Node::Unary(Unary::Abs, x) => vec![x],
             Node::Binary(Binary::Max | Binary::Min, a, b) => vec![a, b],
             Node::Reduce { fold: Fold::Max | Fold::Min, body, .. } => vec![body],
+            Node::Table { ref args, .. } => args.clone(),
             _ => vec![],
         };
         sides
@@ -115,7 +123,10 @@ impl Elaborator<'_> {
                 let mut open = vec![corner];
                 while let Some(node) = open.pop() {
                     match *self.problem.dag.node(node) {
-                        Node::Binary(own, a, b) if own == op => open.extend([b, a]),
+                        Node::Binary(own, a, b) if own == op => {
+                            pass.treated.insert(node);
+                            open.extend([b, a]);
+                        }
                         _ => members.push((self.smooth(pass, node, (site, growing), depth + 1), vec![])),
                     }
                 }
@@ -127,6 +138,13 @@ impl Elaborator<'_> {
                 inner.loops.push(over.clone());
                 let body = self.smooth(pass, body, (&inner, growing), depth + 1);
                 Some(Against::Members(vec![(body, vec![over])]))
+            }
+            Node::Table { .. } => {
+                let mut members = vec![];
+                for line in self.lines_pushed(pass, corner, growing)? {
+                    members.push((self.smooth(pass, line, (site, growing), depth + 1), vec![]));
+                }
+                Some(Against::Members(members))
             }
             Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if is_root => {
                 let sum = self.square_of_root(corner)?;
@@ -174,6 +192,9 @@ impl Elaborator<'_> {
     /// The unit of the first output or variable in a corner, which is the corner's own where that is affine.
     fn unit_within(&self, corner: NodeId) -> Unit {
         let problem = &self.problem;
+        if let Node::Table { table, .. } = problem.dag.node(corner) {
+            return problem.tables[*table as usize].unit.clone();
+        }
         let inputs = problem.dag.inputs_of(&[corner]);
         let units = inputs.into_iter().filter_map(|input| match problem.leaves.leaf(input) {
             Leaf::Flat { phase, output, order: 0, .. } => Some(&problem.phases[phase.phase].outputs[*output].unit),

@@ -116,7 +116,10 @@ impl Elaborator<'_> {
                 let (mut members, mut open) = (vec![], vec![node]);
                 while let Some(node) = open.pop() {
                     match *self.problem.dag.node(node) {
-                        Node::Binary(own, a, b) if own == op => open.extend([b, a]),
+                        Node::Binary(own, a, b) if own == op => {
+                            sides.treated.push(node);
+                            open.extend([b, a]);
+                        }
                         _ => members.push(self.side(pass, sides, node, growing, depth + 1)),
                     }
                 }
@@ -132,6 +135,14 @@ impl Elaborator<'_> {
                     _ => node,
                 }
             }
+            Node::Table { .. } => match self.lines_pushed(pass, node, growing) {
+                Some(lines) => {
+                    let lines: Vec<NodeId> =
+                        lines.into_iter().map(|line| self.side(pass, sides, line, growing, depth + 1)).collect();
+                    self.choice(sides, &lines)
+                }
+                None => self.below_sides(pass, sides, (node, &own), growing, depth + 1),
+            },
             _ => self.below_sides(pass, sides, (node, &own), growing, depth + 1),
         };
         if one != node {
@@ -143,6 +154,9 @@ impl Elaborator<'_> {
 
     /// One of several nodes, by a new index.
     fn choice(&mut self, sides: &mut Sides, members: &[NodeId]) -> NodeId {
+        if let [only] = members {
+            return *only;
+        }
         let count = members.len() as i64;
         let over = self.new_index(Form::number(1), Form::number(count));
         let index = self.leaf(Leaf::Index(Form::index(over.index)));
