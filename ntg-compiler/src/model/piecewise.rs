@@ -19,7 +19,7 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// By how much a number is lost in adding and multiplying a few, relative to the largest. A law.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Most lines of a table for which helpers stand; one of more stays as it is. A choice.
+/// Most lines of a table for which helpers stand; one of more stays as it is. A guess: its cost is not measured yet.
 const MOST_LINES: usize = 1000;
 
 /// `value + slope * (argument - node)`.
