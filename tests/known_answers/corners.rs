@@ -10,8 +10,8 @@ use crate::support::{Shipped, close};
 /// A formula in `x`: its text, and its value.
 struct Formula(String, Box<dyn Fn(f64) -> f64>);
 
-/// Numbers of a fixed sequence.
-struct Draw(u64);
+/// Numbers of a fixed sequence, and whether sides of corners may be curved.
+struct Draw(u64, bool);
 
 impl Draw {
     fn below(&mut self, count: usize) -> usize {
@@ -24,14 +24,32 @@ impl Draw {
         (least + self.below((most - least + 1) as usize) as i64) as f64 / 100.0
     }
 
-    fn line(&mut self) -> Formula {
+    /// A line, or a curve.
+    fn side(&mut self) -> Formula {
         let (slope, offset) = ([1.0, -1.0, 2.0, -0.5, 1.5][self.below(5)], self.number(-200, 200));
-        Formula(format!("({slope} * x + ({offset}))"), Box::new(move |x| slope * x + offset))
+        if !self.1 {
+            return Formula(format!("({slope} * x + ({offset}))"), Box::new(move |x| slope * x + offset));
+        }
+        let (bend, pace) = (self.number(-50, 50), self.number(50, 200));
+        match self.below(3) {
+            0 => Formula(
+                format!("({slope} * x + ({bend}) * x^2 + ({offset}))"),
+                Box::new(move |x| slope * x + bend * x * x + offset),
+            ),
+            1 => Formula(
+                format!("({slope} * sin({pace} * x) + ({offset}))"),
+                Box::new(move |x| slope * (pace * x).sin() + offset),
+            ),
+            _ => Formula(
+                format!("({slope} * x * exp(-x^2 / 9) + ({offset}))"),
+                Box::new(move |x| slope * x * (-x * x / 9.0).exp() + offset),
+            ),
+        }
     }
 
     fn corner(&mut self) -> Formula {
-        let Formula(a, f) = self.line();
-        let Formula(b, g) = self.line();
+        let Formula(a, f) = self.side();
+        let Formula(b, g) = self.side();
         let (c, d) = (self.number(20, 150), self.number(0, 200));
         match self.below(7) {
             0 => Formula(format!("abs{a}"), Box::new(move |x| f(x).abs())),
@@ -94,7 +112,20 @@ const PLACES: [&str; 4] = [
 
 #[test]
 fn a_corner_is_what_it_is_wherever_it_stands() {
-    let mut draw = Draw(7);
+    // Minima at corners that no helper stands for: `tanh(abs(x))`, `1 / (1 + min(1, max(0, x))^2)`.
+    let (unsolved, tried) = unsolved_of(Draw(7, false));
+    assert!(20 * unsolved <= 3 * tried, "{unsolved} of {tried} unsolved");
+}
+
+#[test]
+fn a_corner_of_curved_sides_is_what_it_is_wherever_it_stands() {
+    let (unsolved, tried) = unsolved_of(Draw(11, true));
+    assert!(20 * unsolved <= 3 * tried, "{unsolved} of {tried} unsolved");
+}
+
+/// How many of how many problems with formulas that are drawn are unsolved; what is solved has the value of its formula, and
+/// is a minimum of it.
+fn unsolved_of(mut draw: Draw) -> (usize, usize) {
     let (mut tried, mut unsolved) = (0, 0);
     for _ in 0..150 {
         let Formula(text, value) = draw.formula();
@@ -119,8 +150,7 @@ fn a_corner_is_what_it_is_wherever_it_stands() {
             assert!(found - least <= 1e-5 * size, "{place}: x = {x} has {found}, beside it {least}");
         }
     }
-    // Minima at corners that no helper stands for: `tanh(abs(x))`, `1 / (1 + min(1, max(0, x))^2)`.
-    assert!(20 * unsolved <= 3 * tried, "{unsolved} of {tried} unsolved");
+    (unsolved, tried)
 }
 
 /// Price by the hour, nothing at night: what floats at night costs nothing, and stays within its bounds.

@@ -1,6 +1,6 @@
 //! Second-order cones whose width is solved for: `norm(v) <= s` (docs/maths.md, section 18).
 //!
-//! Takes constraints with one bound that hold a positive multiple of the root of a sum of squares of affine expressions
+//! Takes constraints with one bound that hold a positive multiple of the root of a sum of squares
 //! below something that is solved for, as a thrust below its magnitude or a glide slope does. Where the root is 0 the
 //! gradient jumps, and along the vector the root has no curvature: Newton steps overshoot. The row is posed as (18.4): the
 //! set is the same, and so are value and slopes at the bound, but the row is smooth there and curves.

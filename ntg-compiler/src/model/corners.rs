@@ -10,11 +10,12 @@ use ntg_structure::Block;
 
 use super::elaborator::Elaborator;
 use super::monotone::Push;
-use super::problem::{Bounds, Constraint, Domain, Form, Imposed, Leaf, Loop, PhaseAt, Problem};
+use super::piecewise::Lines;
+use super::problem::{Bounds, Constraint, Domain, Form, Imposed, Leaf, Loop, PhaseAt};
 use super::ranges::Ranges;
 use super::signs::Signs;
 use super::smoothed;
-use super::unknowns::{is_affine, is_given};
+use super::unknowns::is_given;
 use super::widths::Widths;
 use crate::diagnostic::Code;
 use crate::expr::{self, Binary, Dag, Fold, Map, Node, NodeId, Set, Unary};
@@ -39,6 +40,12 @@ pub(super) struct Corners {
     pub(super) widths: Widths,
     /// The nodes in which there are corners.
     within: Set<NodeId>, // Asked, never iterated.
+    /// Tables that are convex or concave, by their lines.
+    pub(super) tables: Map<NodeId, Lines>, // Looked up, never iterated.
+    /// What stands for conditions whose branches meet.
+    pub(super) branches: Map<NodeId, NodeId>, // Looked up, never iterated.
+    /// Corners that are none in what is made of them.
+    pub(super) smoothed: Set<NodeId>, // Asked, never iterated.
     done: Map<(NodeId, bool, Site), NodeId>, // Looked up, never iterated.
     /// The corners for which helpers stand.
     pub(super) treated: Set<NodeId>, // Asked, never iterated.
@@ -67,11 +74,20 @@ impl Elaborator<'_> {
         }
         let terms = self.problem.objective.iter().map(|term| term.body);
         let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
+        let (_, smoothed) = self.corners_left(&Set::default());
+        let mut ranges = Ranges::within(&self.problem);
+        let all = self.below(&bodies);
+        let branches = self.branches_that_meet(&all);
+        let bodies: Vec<NodeId> = bodies.into_iter().chain(branches.values().copied()).collect();
+        let tables = self.tables_of_lines(&mut ranges, &bodies);
         let mut pass = Corners {
             signs: Signs::of(&self.problem),
-            ranges: Ranges::within(&self.problem),
+            ranges,
             widths: Widths::of(&self.problem),
-            within: self.with_corners(&bodies),
+            within: self.with_corners((&tables, &branches), &bodies),
+            tables,
+            branches,
+            smoothed,
             done: Map::default(),
             treated: Set::default(),
             tips: Set::default(),
@@ -91,7 +107,7 @@ impl Elaborator<'_> {
             }
         }
         self.weights_held(&pass);
-        let (left, smoothed) = self.corners_left(&pass);
+        let (left, smoothed) = self.corners_left(&pass.tips);
         self.unnoted((&pass, &smoothed), &left);
         let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();
         spans.sort_by_key(|span| (span.start, span.end));
@@ -100,7 +116,7 @@ impl Elaborator<'_> {
     }
 
     /// All nodes below some, those of integrands too, operands first.
-    fn below(&self, bodies: &[NodeId]) -> Vec<NodeId> {
+    pub(super) fn below(&self, bodies: &[NodeId]) -> Vec<NodeId> {
         let mut roots = bodies.to_vec();
         let mut known: Set<NodeId> = Set::default();
         let mut next = 0;
@@ -119,10 +135,27 @@ impl Elaborator<'_> {
         all
     }
 
-    fn with_corners(&mut self, bodies: &[NodeId]) -> Set<NodeId> {
+    /// The tables among all nodes below some that are made of lines, and are not given.
+    fn tables_of_lines(&self, ranges: &mut Ranges, bodies: &[NodeId]) -> Map<NodeId, Lines> {
+        let mut tables = Map::default();
+        for node in self.below(bodies) {
+            if let Some(lines) = self.lines_of(ranges, node)
+                && !is_given(&self.problem, node)
+            {
+                tables.insert(node, lines);
+            }
+        }
+        tables
+    }
+
+    fn with_corners(
+        &mut self,
+        (tables, branches): (&Map<NodeId, Lines>, &Map<NodeId, NodeId>),
+        bodies: &[NodeId],
+    ) -> Set<NodeId> {
         let mut within = Set::default();
         for node in self.below(bodies) {
-            let mut has = self.is_corner(node);
+            let mut has = tables.contains_key(&node) || branches.contains_key(&node) || self.is_corner(node);
             match self.problem.dag.node(node) {
                 Node::Input(input) => {
                     if let Leaf::Integral { integrand, .. } = self.problem.leaves.leaf(*input) {
@@ -138,13 +171,25 @@ impl Elaborator<'_> {
         within
     }
 
+    /// Takes in a node that was made later.
+    pub(super) fn corners_found(&mut self, pass: &mut Corners, node: NodeId) {
+        let all = self.below(&[node]);
+        let branches = self.branches_that_meet(&all);
+        let bodies: Vec<NodeId> = branches.values().copied().chain([node]).collect();
+        let tables = self.tables_of_lines(&mut pass.ranges, &bodies);
+        pass.within.extend(self.with_corners((&tables, &branches), &bodies));
+        pass.tables.extend(tables);
+        pass.branches.extend(branches);
+    }
+
     /// Whether the gradient of a node itself may jump where its value is pushed to.
     pub(super) fn is_corner(&mut self, node: NodeId) -> bool {
         let has = match *self.problem.dag.node(node) {
             Node::Unary(Unary::Abs, _) | Node::Binary(Binary::Min | Binary::Max, ..) => true,
             Node::Reduce { fold: Fold::Min | Fold::Max, .. } => true,
-            Node::Unary(Unary::Sqrt, sum) => may_vanish(&self.problem, sum),
-            Node::Binary(Binary::Hypot, a, b) => is_affine(&self.problem, a) && is_affine(&self.problem, b),
+            Node::Unary(Unary::Sqrt, sum) => squares(&self.problem.dag, sum).is_some(),
+            // A given side is a width, by which the root is smooth.
+            Node::Binary(Binary::Hypot, a, b) => [a, b].into_iter().all(|side| !is_given(&self.problem, side)),
             _ => false,
         };
         has && !is_given(&self.problem, node)
@@ -165,11 +210,14 @@ impl Elaborator<'_> {
         if let Some(known) = pass.done.get(&key) {
             return *known;
         }
-        let helper = self.helper(pass, node, (site, growing), depth);
-        let smooth = match helper {
-            Some(helper) => {
+        let by_branches = pass.branches.get(&node).copied().and_then(|sum| {
+            let smooth = self.smooth(pass, sum, (site, growing), depth + 1);
+            (smooth != sum).then_some(smooth)
+        });
+        let smooth = match by_branches.or_else(|| self.helper(pass, node, (site, growing), depth)) {
+            Some(smooth) => {
                 pass.treated.insert(node);
-                helper
+                smooth
             }
             None => self.below_smooth(pass, node, (site, growing), depth + 1),
         };
@@ -265,13 +313,14 @@ impl Elaborator<'_> {
 
     /// The corners in what is solved, and those that are none because a factor vanishes where they are; of what is only shown
     /// there are these too.
-    fn corners_left(&mut self, pass: &Corners) -> (Vec<NodeId>, Set<NodeId>) {
+    fn corners_left(&mut self, tips: &Set<NodeId>) -> (Vec<NodeId>, Set<NodeId>) {
         let bodies = self.problem.constraints.iter().map(|constraint| constraint.body);
         let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();
         let all = self.below(&bodies);
         let kinks: Set<NodeId> = expr::kinks(&self.problem.dag, &all).into_iter().collect();
-        let mut left: Vec<NodeId> = all.iter().copied().filter(|node| kinks.contains(node)).collect();
-        left.retain(|node| !pass.tips.contains(node) && self.may_jump(*node));
+        let has_kink = |node: &NodeId| kinks.contains(node) || self.is_piecewise(*node);
+        let mut left: Vec<NodeId> = all.iter().copied().filter(has_kink).collect();
+        left.retain(|node| !tips.contains(node) && self.may_jump(*node));
         let mut smoothed = smoothed::among(&mut self.kinds, (&self.problem, &all), &bodies, &left);
         left.retain(|node| !smoothed.contains(node));
         let solved: Set<NodeId> = all.into_iter().collect();
@@ -308,10 +357,9 @@ impl Elaborator<'_> {
     }
 }
 
-/// Whether a sum is one of squares of affine expressions alone, so that its root is the tip of a cone where all are 0.
-fn may_vanish(problem: &Problem, sum: NodeId) -> bool {
-    let dag = &problem.dag;
-    let mut open = vec![sum];
+/// What is squared in a sum of squares, whose root is the tip of a cone where all are 0; none of another sum.
+pub(super) fn squares(dag: &Dag, sum: NodeId) -> Option<Vec<NodeId>> {
+    let (mut open, mut squared) = (vec![sum], vec![]);
     let mut depth = 0;
     while let Some(node) = open.pop() {
         depth += 1;
@@ -320,12 +368,12 @@ fn may_vanish(problem: &Problem, sum: NodeId) -> bool {
             Node::Reduce { fold: Fold::Sum, body, .. } => open.push(body),
             Node::Binary(Binary::Mul, a, b) if is_number(dag, a) => open.push(b),
             Node::Binary(Binary::Mul | Binary::Div, a, b) if is_number(dag, b) => open.push(a),
-            Node::Binary(Binary::Mul, a, b) if a == b && is_affine(problem, a) => {}
-            Node::Powi(x, 2) if is_affine(problem, x) => {}
-            _ => return false,
+            Node::Binary(Binary::Mul, a, b) if a == b => squared.push(a),
+            Node::Powi(x, 2) => squared.push(x),
+            _ => return None,
         }
     }
-    true
+    Some(squared)
 }
 
 fn is_number(dag: &Dag, node: NodeId) -> bool {

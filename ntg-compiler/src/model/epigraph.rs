@@ -7,7 +7,7 @@
 
 use ntg_structure::{Block, Unit};
 
-use super::corners::{Corners, Site};
+use super::corners::{Corners, Site, squares};
 use super::elaborator::Elaborator;
 use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, Variable};
 use super::unknowns::{is_affine, is_given};
@@ -38,6 +38,13 @@ impl Elaborator<'_> {
             false => None,
         };
         let against = self.against(pass, corner, (site, growing), depth)?;
+        if let Against::Members(members) = &against
+            && let [(only, loops)] = members.as_slice()
+            && loops.is_empty()
+            && matches!(self.problem.dag.node(corner), Node::Table { .. })
+        {
+            return Some(*only);
+        }
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
         let helper = self.helper_leaf(pass, corner, site, span)?;
         let zero = self.problem.dag.constant(0.0);
@@ -71,13 +78,14 @@ impl Elaborator<'_> {
     }
 
     /// Whether the sides of a corner are affine in what is solved for, but for corners in them: the rows of a helper are
-    /// convex then. Beside curved sides a helper is as exact, and often worse to solve than the corner: the clamp of a
-    /// smooth step is a corner whose gradient does not jump in what is made of it.
-    fn has_affine_sides(&mut self, pass: &Corners, corner: NodeId) -> bool {
-        let sides = match *self.problem.dag.node(corner) {
+    /// convex then.
+    fn has_affine_sides(&self, pass: &Corners, corner: NodeId) -> bool {
+        let dag = &self.problem.dag;
+        let sides = match *dag.node(corner) {
             Node::Unary(Unary::Abs, x) => vec![x],
-            Node::Binary(Binary::Max | Binary::Min, a, b) => vec![a, b],
+            Node::Binary(Binary::Max | Binary::Min | Binary::Hypot, a, b) => vec![a, b],
             Node::Reduce { fold: Fold::Max | Fold::Min, body, .. } => vec![body],
+            Node::Unary(Unary::Sqrt, sum) => squares(dag, sum).unwrap_or_default(),
             _ => vec![],
         };
         sides
@@ -96,7 +104,8 @@ impl Elaborator<'_> {
             return None;
         }
         let fold = if growing { (Binary::Max, Fold::Max) } else { (Binary::Min, Fold::Min) };
-        if !self.has_affine_sides(pass, corner) {
+        // The clamp of a smooth step needs none, and would be posed by rows that are not convex.
+        if pass.smoothed.contains(&corner) && !self.has_affine_sides(pass, corner) {
             return None;
         }
         let is_root = growing && self.is_corner(corner);
@@ -115,7 +124,10 @@ impl Elaborator<'_> {
                 let mut open = vec![corner];
                 while let Some(node) = open.pop() {
                     match *self.problem.dag.node(node) {
-                        Node::Binary(own, a, b) if own == op => open.extend([b, a]),
+                        Node::Binary(own, a, b) if own == op => {
+                            pass.treated.insert(node);
+                            open.extend([b, a]);
+                        }
                         _ => members.push((self.smooth(pass, node, (site, growing), depth + 1), vec![])),
                     }
                 }
@@ -127,6 +139,13 @@ impl Elaborator<'_> {
                 inner.loops.push(over.clone());
                 let body = self.smooth(pass, body, (&inner, growing), depth + 1);
                 Some(Against::Members(vec![(body, vec![over])]))
+            }
+            Node::Table { .. } => {
+                let mut members = vec![];
+                for line in self.lines_pushed(pass, corner, growing)? {
+                    members.push((self.smooth(pass, line, (site, growing), depth + 1), vec![]));
+                }
+                Some(Against::Members(members))
             }
             Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if is_root => {
                 let sum = self.square_of_root(corner)?;
@@ -151,7 +170,7 @@ impl Elaborator<'_> {
         let (name, doc) = (format!("corner({})", pass.helpers), format!("Stands for `{}`.", self.text(span)));
         let count = members.family.as_ref().map(|(count, _)| *count);
         let index = members.family.map(|(_, member)| member);
-        let unit = self.unit_within(corner);
+        let unit = self.unit_within(pass, corner);
         let Some(at) = &site.along else {
             let place = self.problem.variables.len();
             let family = count.map(|count| self.new_index(Form::number(1), Form::number(count)));
@@ -171,9 +190,16 @@ impl Elaborator<'_> {
         Some(self.leaf(Leaf::Flat { phase: at.clone(), at: At::Here, output: place, index, order: 0 }))
     }
 
-    /// The unit of the first output or variable in a corner, which is the corner's own where that is affine.
-    fn unit_within(&self, corner: NodeId) -> Unit {
+    /// The unit of the first output or variable in a corner, which is the corner's own where that is affine; where it is curved,
+    /// no unit is known.
+    fn unit_within(&self, pass: &Corners, corner: NodeId) -> Unit {
         let problem = &self.problem;
+        if let Node::Table { table, .. } = problem.dag.node(corner) {
+            return problem.tables[*table as usize].unit.clone();
+        }
+        if !self.has_affine_sides(pass, corner) {
+            return Unit::default();
+        }
         let inputs = problem.dag.inputs_of(&[corner]);
         let units = inputs.into_iter().filter_map(|input| match problem.leaves.leaf(input) {
             Leaf::Flat { phase, output, order: 0, .. } => Some(&problem.phases[phase.phase].outputs[*output].unit),

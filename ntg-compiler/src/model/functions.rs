@@ -545,6 +545,7 @@ impl<'a> Elaborator<'a> {
         }
         let number = u32::try_from(table).expect("fewer than 2^32 tables fit in memory");
         let node = self.problem.dag.table(number, &orders, &nodes);
+        self.kinks.push((node, call.span));
         let unit = (derivative.is_none() && !unit.symbol.is_empty()).then(|| Rc::new(unit));
         Value { node, dimension, unit, span: call.span, flaw }
     }

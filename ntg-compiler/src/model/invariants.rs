@@ -8,7 +8,7 @@
 
 mod junctions;
 mod motion;
-mod number;
+pub(super) mod number;
 mod sample;
 mod surface;
 

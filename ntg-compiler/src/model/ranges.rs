@@ -3,7 +3,8 @@
 //! Takes nodes of the graph, gives bounds by interval arithmetic; none where something in an expression has none. Parameters
 //! have none, since who sets them may change them.
 
-use super::problem::{At, Domain, Duration, Leaf, Part, PhaseAt, Problem, Start};
+use super::covered;
+use super::problem::{At, Constraint, Domain, Duration, Leaf, Part, PhaseAt, Problem, Start};
 use crate::expr::{Binary, Fold, InputId, Map, Node, NodeId, Unary};
 use ntg_structure::{TableExtrapolation, TableMethod};
 
@@ -27,14 +28,15 @@ impl Ranges {
     pub(super) fn within(problem: &Problem) -> Self {
         let mut ranges = Self::default();
         let number = |end: Option<NodeId>| end.and_then(|end| problem.dag.is_constant(end));
+        let both = |own: &Constraint| number(own.bounds.lower).zip(number(own.bounds.upper));
+        ranges.outputs = covered::ranges(problem).into_iter().collect();
         for own in &problem.constraints {
-            if let (Domain::Path(_, Part::WHOLE), Node::Input(input)) = (&own.domain, problem.dag.node(own.body))
-                && let Leaf::Flat { phase, at: At::Here, output, order: 0, .. } = problem.leaves.leaf(*input)
-                && let (Some(lower), Some(upper)) = (number(own.bounds.lower), number(own.bounds.upper))
+            if let Domain::Path(phase, Part::WHOLE) = &own.domain
+                && let Some((lower, upper)) = both(own)
+                && moves_along(problem, own.body, phase)
             {
-                // Of members with bounds of their own the widest count.
-                let known = ranges.outputs.entry((phase.phase, *output)).or_insert((lower, upper));
-                *known = (known.0.min(lower), known.1.max(upper));
+                let known = ranges.known.entry(own.body).or_insert(Some((lower, upper)));
+                *known = known.map(|known| (known.0.max(lower), known.1.min(upper)));
             }
         }
         for (place, variable) in problem.variables.iter().enumerate() {
@@ -102,11 +104,21 @@ impl Ranges {
         match problem.leaves.leaf(input) {
             Leaf::Tau => Some((0.0, 1.0)),
             Leaf::Time(at) => clock(problem, at),
+            // Limits along a phase count at its ends too: a mesh without points there leaves them to within what it misses.
             Leaf::Flat { phase, output, order: 0, .. } => self.outputs.get(&(phase.phase, *output)).copied(),
             Leaf::Variable { variable, .. } => self.variables.get(variable).copied(),
             _ => None,
         }
     }
+}
+
+/// Whether an expression has outputs at the points of a phase, so that what holds there holds wherever it is evaluated.
+fn moves_along(problem: &Problem, node: NodeId, along: &PhaseAt) -> bool {
+    problem
+        .dag
+        .inputs_of(&[node])
+        .into_iter()
+        .any(|input| matches!(problem.leaves.leaf(input), Leaf::Flat { phase, at: At::Here, .. } if phase == along))
 }
 
 fn product(a: Range, b: Range) -> Range {

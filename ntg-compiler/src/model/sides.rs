@@ -3,15 +3,15 @@
 //! Takes constraints with one bound; in integrals helpers stand for their corners (`epigraph.rs`). Elsewhere, where the
 //! bound limits a corner on the side of its corner, as in `max(a, b) <= c`, the constraint has a member for each side of
 //! it: `a <= c` and `b <= c`. That is exact at every point, needs no convexity, and no gradient jumps.
-//! Corners inside sums over an index stay: they have two sides for each member.
+//! A sum over an index is written out for it (`unrolled.rs`).
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
 use super::problem::{Domain, Form, Leaf, Loop};
 use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
 
-/// Most members of the sides of one constraint, beyond which its corners stay: two sides each of four corners. A choice.
-const MOST_SIDES: i64 = 16;
+/// Most members of the sides of one constraint, beyond which its corners stay: two sides each of six corners. A choice.
+const MOST_SIDES: i64 = 64;
 
 /// How deep expressions are looked into; deeper corners stay.
 const MAX_DEPTH: usize = 500;
@@ -116,7 +116,10 @@ impl Elaborator<'_> {
                 let (mut members, mut open) = (vec![], vec![node]);
                 while let Some(node) = open.pop() {
                     match *self.problem.dag.node(node) {
-                        Node::Binary(own, a, b) if own == op => open.extend([b, a]),
+                        Node::Binary(own, a, b) if own == op => {
+                            sides.treated.push(node);
+                            open.extend([b, a]);
+                        }
                         _ => members.push(self.side(pass, sides, node, growing, depth + 1)),
                     }
                 }
@@ -132,6 +135,32 @@ impl Elaborator<'_> {
                     _ => node,
                 }
             }
+            Node::Reduce { fold: Fold::Sum, body, .. } => match self.unrolled(node, MOST_SIDES.ilog2().into()) {
+                Some(sum) => {
+                    self.corners_found(pass, sum);
+                    let smooth = self.side(pass, sides, sum, growing, depth + 1);
+                    if smooth == sum {
+                        node
+                    } else {
+                        sides.treated.extend(self.below(&[body]).into_iter().filter(|node| pass.has_corners(*node)));
+                        smooth
+                    }
+                }
+                None => node,
+            },
+            Node::Select { .. } if pass.branches.contains_key(&node) => {
+                let sum = pass.branches[&node];
+                let smooth = self.side(pass, sides, sum, growing, depth + 1);
+                if smooth == sum { node } else { smooth }
+            }
+            Node::Table { .. } => match self.lines_pushed(pass, node, growing) {
+                Some(lines) => {
+                    let lines: Vec<NodeId> =
+                        lines.into_iter().map(|line| self.side(pass, sides, line, growing, depth + 1)).collect();
+                    self.choice(sides, &lines)
+                }
+                None => self.below_sides(pass, sides, (node, &own), growing, depth + 1),
+            },
             _ => self.below_sides(pass, sides, (node, &own), growing, depth + 1),
         };
         if one != node {
@@ -143,6 +172,9 @@ impl Elaborator<'_> {
 
     /// One of several nodes, by a new index.
     fn choice(&mut self, sides: &mut Sides, members: &[NodeId]) -> NodeId {
+        if let [only] = members {
+            return *only;
+        }
         let count = members.len() as i64;
         let over = self.new_index(Form::number(1), Form::number(count));
         let index = self.leaf(Leaf::Index(Form::index(over.index)));

@@ -4,7 +4,8 @@
 //! made of such by sums, products, quotients, extremes; and what stays above 0 by its range. Of a parameter its default decides; it is then written down,
 //! since who sets it may change that.
 
-use super::problem::{At, Bounds, Domain, Leaf, Part, Problem, Start};
+use super::covered;
+use super::problem::{Bounds, Leaf, Problem, Start};
 use super::ranges::Ranges;
 use crate::expr::{Binary, InputId, Map, Node, NodeId, Set, Unary};
 
@@ -31,16 +32,13 @@ impl Signs {
     /// The signs of a problem whose constraints are known.
     pub(super) fn of(problem: &Problem) -> Self {
         let mut signs = Self::default();
-        for constraint in &problem.constraints {
-            if let (Domain::Path(_, Part::WHOLE), Node::Input(input)) =
-                (&constraint.domain, problem.dag.node(constraint.body))
-                && let Leaf::Flat { phase, at: At::Here, output, index: None, order: 0 } = problem.leaves.leaf(*input)
-                && is_above(problem, &constraint.bounds)
-            {
-                signs.limited.insert((phase.phase, *output));
-                let lower = constraint.bounds.lower.and_then(|lower| problem.dag.is_constant(lower));
+        for limit in covered::limits(problem) {
+            let bounds = &limit.constraint.bounds;
+            if limit.is_single && is_above(problem, bounds) {
+                signs.limited.insert(limit.output);
+                let lower = bounds.lower.and_then(|lower| problem.dag.is_constant(lower));
                 if lower.is_some_and(|lower| lower > 0.0) {
-                    signs.away.insert((phase.phase, *output));
+                    signs.away.insert(limit.output);
                 }
             }
         }

@@ -3,6 +3,7 @@
 //! Takes the sum, gives its limit: that of a constraint on the same root or sum, or what the bounds of all outputs in it
 //! leave. What holds along a whole phase counts, and what is given before the solve.
 
+use super::covered;
 use super::problem::{At, Constraint, Domain, Leaf, Part, Problem};
 use crate::expr::{Binary, Dag, Fold, Map, Node, NodeId, Unary};
 
@@ -29,6 +30,8 @@ impl Widths {
                 widths.add(problem, constraint);
             }
         }
+        let ranges = covered::ranges(problem).into_iter();
+        widths.outputs = ranges.map(|(output, (lower, upper))| (output, lower.abs().max(upper.abs()))).collect();
         widths
     }
 
@@ -38,15 +41,7 @@ impl Widths {
             Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) => {
                 self.roots.insert(constraint.body, upper);
             }
-            Node::Input(input) => {
-                let Leaf::Flat { phase, at: At::Here, output, order: 0, .. } = problem.leaves.leaf(input) else {
-                    return;
-                };
-                let ends = [constraint.bounds.lower, Some(upper)];
-                let [Some(lower), Some(upper)] = ends.map(|end| problem.dag.is_constant(end?)) else { return };
-                let most = self.outputs.entry((phase.phase, *output)).or_insert(f64::INFINITY);
-                *most = most.min(lower.abs().max(upper.abs()));
-            }
+            Node::Input(_) => {}
             _ => {
                 self.sums.insert(constraint.body, upper);
             }

@@ -19,6 +19,10 @@ const LEAST_RATE: f64 = 1e-3;
 /// size. A choice: what a limit varies by may be next to nothing there, and no overshoot is large beside the limit.
 const LEAST_RANGE: f64 = 3e-4;
 
+/// A slope that keeps its sign and varies by no more than this factor makes a term of a row that is posed in another form than it
+/// is written in as good as linear. A choice: by the width of a cone (18.4) the slope is 1 at the bound and 1/2 far within it.
+const BENT: f64 = 3.0;
+
 /// A limit with two sides has the size of what the side varies by that varies by less, and at least this part of the other
 /// size. A choice: the points may not see a hill, and what is missed by 3e-5 of all is no hill.
 const LEAST_SIDE: f64 = 3e-3;
@@ -76,14 +80,14 @@ pub(super) fn with_side(whole: f64, side: f64) -> f64 {
     side.clamp(LEAST_SIDE * whole, whole)
 }
 
-/// The least and largest value of each term of each relation of a block.
+/// The least and largest value of each term of each relation of a block, and of its slope.
 struct Ranges {
     /// The first relation of the block.
     first: usize,
     /// How many terms each has.
     terms: usize,
-    /// By relation, from the first on, and term.
-    ranges: Vec<(f64, f64)>,
+    /// By relation, from the first on, and term: value and slope.
+    ranges: Vec<[(f64, f64); 2]>,
 }
 
 impl Ranges {
@@ -97,18 +101,26 @@ impl Ranges {
         };
         let (first, terms) = (own().min().unwrap_or(0), block.jacobian.len());
         let count = own().max().map_or(0, |last| last + 1 - first);
-        Self { first, terms, ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); count * terms] }
+        Self { first, terms, ranges: vec![[(f64::INFINITY, f64::NEG_INFINITY); 2]; count * terms] }
     }
 
-    fn add(&mut self, (relation, term): (usize, usize), value: f64) {
-        let range = &mut self.ranges[(relation - self.first) * self.terms + term];
-        *range = (range.0.min(value), range.1.max(value));
+    fn add(&mut self, (relation, term): (usize, usize), (value, slope): (f64, f64)) {
+        let ranges = &mut self.ranges[(relation - self.first) * self.terms + term];
+        for (range, own) in ranges.iter_mut().zip([value, slope]) {
+            *range = (range.0.min(own), range.1.max(own));
+        }
     }
 
-    /// Raises the variations of relations to those of these terms.
-    fn raise(&self, all: &mut [Terms]) {
+    /// Raises the variations of relations to those of these terms, of which a curved one counts where it is nearly linear.
+    fn raise(&self, all: &mut [Terms], is_linear: impl Fn(usize) -> bool) {
         for (own, ranges) in all[self.first..].iter_mut().zip(self.ranges.chunks_exact(self.terms.max(1))) {
-            own.variation = ranges.iter().fold(own.variation, |most, (low, high)| most.max(high - low));
+            for (term, [(low, high), (flat, steep)]) in ranges.iter().enumerate() {
+                if is_linear(term)
+                    || flat * steep > 0.0 && flat.abs().max(steep.abs()) <= BENT * flat.abs().min(steep.abs())
+                {
+                    own.variation = own.variation.max(high - low);
+                }
+            }
         }
     }
 }
@@ -121,7 +133,9 @@ impl Sizes {
         let relations = &nlp.elements.relations;
         let scale = nlp.grown_sizes(&outcome.x);
         let mut terms = vec![Terms::default(); relations.count()];
-        let groups = &nlp.model.structure.groups;
+        let (groups, shown) = (&nlp.model.structure.groups, nlp.model.structure.constraints_shown());
+        let mut is_posed = vec![false; relations.count()];
+        relations.of_constraints().for_each(|(c, _, relation)| is_posed[relation] = shown.get(c) == Some(&true));
         let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
         for (batch, (block, values)) in blocks {
             let group = &groups[batch.group];
@@ -168,9 +182,10 @@ impl Sizes {
                             own.least = own.least.max((slope * LEAST_RATE * typical).abs());
                         }
                         (false, true) => {
-                            ranges.add((relation, entry), slope * value);
+                            ranges.add((relation, entry), (slope * value, slope));
                             rest[row] -= slope * value;
                         }
+                        (false, false) if is_posed[relation] => ranges.add((relation, entry), (slope * value, slope)),
                         (false, false) => {}
                     }
                 }
@@ -181,7 +196,7 @@ impl Sizes {
                     (*low, *high) = (low.min(*rest), high.max(*rest));
                 }
             }
-            ranges.raise(&mut terms);
+            ranges.raise(&mut terms, |entry| kinds[block.jacobian[entry].1].1);
         }
         let bounds = nlp.limits.row_lower.iter().zip(&nlp.limits.row_upper);
         for ((relation, value), (lower, upper)) in relations.of_row.iter().zip(&at.rows).zip(bounds) {

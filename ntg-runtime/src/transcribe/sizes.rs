@@ -150,6 +150,36 @@ impl Transcription<'_> {
             balance.curvature = self.curvatures(x, balance);
             balance.propagate(&[Balance::balanced, Balance::curved, Balance::partly_balanced]);
         }
+        if balance.size.contains(&None) {
+            self.size_beside(x, at, balance);
+        }
+    }
+
+    /// Sizes of what stands in constraints in which everything else has no slope at the point, as `s` does in `s >= F * v` at rest:
+    /// that by which these vary on the way to the point beside (5.8b).
+    fn size_beside(&self, x: &[f64], at: &Evaluation, balance: &mut Balance) {
+        let sizes: Vec<f64> = balance.group.iter().map(|group| balance.size[*group].unwrap_or(0.0)).collect();
+        let mut near = x.to_vec();
+        beside(x, &self.limits, &sizes, &mut near);
+        let (mut workspace, mut there) = self.workspace();
+        if self.values(&near, &mut workspace, &mut there).is_err() {
+            return;
+        }
+        let mut change = vec![0.0_f64; balance.groups.len()];
+        for ((constraint, here), there) in balance.constraint_of.iter().zip(&at.rows).zip(&there.rows) {
+            let own = (there - here).abs();
+            change[*constraint] = change[*constraint].max(if own.is_finite() { own } else { 0.0 });
+        }
+        let found: Sizes = balance
+            .sizes_by(|group| {
+                let alone =
+                    balance.constraints[group].iter().filter(|(constraint, _)| balance.groups[*constraint].len() == 1);
+                let sizes = alone.map(|&(constraint, slope)| change[constraint] / slope);
+                sizes.filter(|size| size.is_normal()).reduce(f64::min)
+            })
+            .collect();
+        found.into_iter().for_each(|(group, size)| balance.size[group] = Some(size));
+        balance.propagate(&[Balance::balanced]);
     }
 
     /// The size of the objective by its slopes and known sizes. What is stationary at the point but for rounding, as a sum of

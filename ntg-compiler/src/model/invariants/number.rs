@@ -98,7 +98,7 @@ impl Number {
 }
 
 /// Bits that depend on all bits (splitmix64; G. Steele, D. Lea, C. Flood, Fast splittable pseudorandom number generators).
-pub(super) fn mixed(seed: u64) -> u64 {
+pub(in crate::model) fn mixed(seed: u64) -> u64 {
     let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -106,7 +106,7 @@ pub(super) fn mixed(seed: u64) -> u64 {
 }
 
 /// A number from 0 to 1.
-pub(super) fn fraction(seed: u64) -> f64 {
+pub(in crate::model) fn fraction(seed: u64) -> f64 {
     (mixed(seed) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
