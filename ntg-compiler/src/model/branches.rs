@@ -106,7 +106,7 @@ fn values<const N: usize>(dag: &Dag, nodes: [NodeId; N], seed: u64) -> Option<[f
         let own = mixed(mixed(seed) ^ u64::from(input.0));
         let size = 0.5 + fraction(own);
         // Half of all points have positive values alone, at which roots have values.
-        if seed % 2 == 0 || mixed(own) & 1 == 0 { size } else { -size }
+        if seed.is_multiple_of(2) || mixed(own) & 1 == 0 { size } else { -size }
     };
     // A function of its arguments that is not known is a number that depends on them alone.
     let table = |table: u32, args: &[f64], derivative: &[u8]| -> f64 {

@@ -48,7 +48,7 @@ impl<'a> Elaborator<'a> {
         at: &[Form],
         span: Span,
     ) -> Value {
-        let mut chosen: Vec<(Decision, Value)> = Vec::new();
+        let mut chosen: Vec<(Decision, Span, Value)> = Vec::new();
         let mut last: Option<&'a Expr> = Some(&conditional.otherwise);
         for branch in &conditional.branches {
             match self.decide(cx, branch) {
@@ -60,25 +60,29 @@ impl<'a> Elaborator<'a> {
                 Decision::Open(open) => return self.open(OpenIndex { span, ..open }),
                 decision => {
                     let value = self.element_or_zero(cx, &branch.value, at);
-                    chosen.push((decision, value));
+                    chosen.push((decision, branch.span, value));
                 }
             }
         }
         let value = last.map(|expr| self.element_or_zero(cx, expr, at));
         let Some(mut value) = value else { return self.poison(span) };
-        for (decision, then) in chosen.into_iter().rev() {
-            value = self.either(decision, then, value);
+        for (decision, span, then) in chosen.into_iter().rev() {
+            value = self.either((decision, span), then, value);
         }
         value.at(span)
     }
 
-    /// One value or the other.
-    fn either(&mut self, decision: Decision, then: Value, otherwise: Value) -> Value {
+    /// One value or the other, by a branch that is written at a place.
+    fn either(&mut self, (decision, span): (Decision, Span), then: Value, otherwise: Value) -> Value {
         let dag = &mut self.problem.dag;
         let (a, b) = (then.node, otherwise.node);
         let mut flaw = None;
         let node = match decision {
-            Decision::Sharp(condition) => dag.select(condition, a, b),
+            Decision::Sharp(condition) => {
+                let node = dag.select(condition, a, b);
+                self.kinks.push((node, span));
+                node
+            }
             Decision::Smooth(weight) => {
                 // Each branch has its own mask, so that it counts for nothing where its weight is 0.
                 let (zero, one) = (dag.constant(0.0), dag.constant(1.0));

@@ -34,7 +34,17 @@ fn a_corner_that_is_gone_is_not_noted() {
     assert_eq!(said("input u; let f = abs(u); minimize integral(f); trajectory { f <= 1; }"), [""; 0]);
     assert_eq!(said("input u; minimize integral(u^2); temporal { integral(abs(u)) <= 1; }"), [""; 0]);
     assert_eq!(said("input u; minimize integral(abs(u - sin(3 * t)));"), [""; 0]);
+    assert_eq!(said("input u; minimize integral(abs(u * v) + max(0, x^2 - v));"), [""; 0]);
+    assert_eq!(said("input u; minimize integral(if u * v >= 0 { 2 * u * v } else { u * v });"), [""; 0]);
+    assert_eq!(
+        said("input u; minimize integral(if u <= 0 { 0.6 * (2 + sin(t)) * u } else { (2 + sin(t)) * u });"),
+        [""; 0]
+    );
+    assert_eq!(said("table f(p) = linear { 0: 0; 1: 1; 2: 3; } input u in 0 .. 2; minimize integral(f(u));"), [""; 0]);
     assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) >= 1; }"), [NOTE]);
+    // Branches that do not meet, and those that are met by the larger slope below.
+    assert_eq!(said("input u; minimize integral(if u >= 0 { u } else { 1 });").len(), 1);
+    assert_eq!(said("input u in -1 .. 1; minimize integral(if u >= 0 { u } else { 2 * u });").len(), 1);
     assert_eq!(said("input u; minimize integral(u^2); trajectory { (1 + u) * abs(u) <= 1; }"), [NOTE]);
     assert_eq!(said("input u in -1 .. 1; maximize integral(abs(u));"), [NOTE]);
 }
