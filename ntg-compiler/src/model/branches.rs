@@ -1,18 +1,17 @@
 //! Conditions whose branches meet, `if p >= 0 { a * p } else { b * p }`, as corners (docs/maths.md, section 18).
 //!
 //! Takes a condition `g >= 0` on what is solved for whose branches differ by a multiple of `g`, gives
-//! `otherwise + k * max(0, g)` with `k` given before the solve. Whether they do is decided at points with pseudo-random values: a
-//! difference that is not 0 is as small as rounding at all of them with a probability that is as good as 0.
+//! `otherwise + k * max(0, g)` with `k` given before the solve. Whether they do is decided at points with pseudo-random values, as
+//! for invariants: what a condition or a table within a branch says depends on its arguments alone there, so that no value is missed.
 
 use super::elaborator::Elaborator;
-use super::invariants::number::{fraction, mixed};
+use super::invariants::number::{Number, fraction, mixed, table};
 use super::unknowns::is_given;
-use crate::expr::{Binary, Dag, InputId, Map, Node, NodeId, eval, gradient};
+use crate::expr::{Binary, Dag, Environment, InputId, Map, Node, NodeId, eval_in, gradient};
 
-/// How many points decide.
-const POINTS: u64 = 6;
-/// The rounding of formulas, relative to their largest part. A law: 1e4 operations lose no more.
-const ROUNDING: f64 = 1e4 * f64::EPSILON;
+/// How many points decide, each for both branches of conditions. A choice: a difference that is not 0 vanishes at one of them with a
+/// probability of about 1e-14.
+const POINTS: u64 = 3;
 
 impl Elaborator<'_> {
     /// What stands for conditions whose branches meet, of all nodes below some.
@@ -85,33 +84,51 @@ impl Elaborator<'_> {
 
 /// The quotient of two nodes at a point.
 fn multiple(dag: &mut Dag, node: NodeId, of: NodeId) -> Option<NodeId> {
-    let [node, of] = values(dag, [node, of], POINTS)?;
-    let quotient = node / of;
+    let quotient = dag.div(node, of);
+    let quotient = Draw { seed: POINTS, is_turned: false }.value(dag, quotient)?.value;
     quotient.is_normal().then(|| dag.constant(quotient))
 }
 
 /// Whether a node is the sum of two others at all points.
-fn is_sum(dag: &Dag, sum: NodeId, [a, b]: [NodeId; 2]) -> bool {
-    (0..POINTS).all(|seed| {
-        values(dag, [sum, a, b], seed).is_some_and(|[sum, a, b]| {
-            let size = sum.abs().max(a.abs()).max(b.abs());
-            size.is_finite() && (sum - a - b).abs() <= ROUNDING * size
-        })
-    })
+fn is_sum(dag: &mut Dag, sum: NodeId, [a, b]: [NodeId; 2]) -> bool {
+    let rest = dag.sub(sum, a);
+    let rest = dag.sub(rest, b);
+    let draws = (0..POINTS).flat_map(|seed| [false, true].map(|is_turned| Draw { seed, is_turned }));
+    draws.into_iter().all(|mut draw| draw.value(dag, rest).is_some_and(Number::vanishes))
 }
 
-/// The values of nodes at a point; none where they have sums over an index.
-fn values<const N: usize>(dag: &Dag, nodes: [NodeId; N], seed: u64) -> Option<[f64; N]> {
-    let at = |input: InputId| {
-        let own = mixed(mixed(seed) ^ u64::from(input.0));
+/// A point with pseudo-random values.
+struct Draw {
+    seed: u64,
+    /// Whether conditions take the other branches.
+    is_turned: bool,
+}
+
+impl Draw {
+    /// The value of a node; none where it has sums over an index.
+    fn value(&mut self, dag: &Dag, node: NodeId) -> Option<Number> {
+        Some(eval_in(dag, &[node], self).ok()?[0])
+    }
+}
+
+impl Environment<Number> for Draw {
+    fn input(&mut self, input: InputId) -> Number {
+        let own = mixed(mixed(self.seed) ^ u64::from(input.0));
         let size = 0.5 + fraction(own);
         // Half of all points have positive values alone, at which roots have values.
-        if seed.is_multiple_of(2) || mixed(own) & 1 == 0 { size } else { -size }
-    };
-    // A function of its arguments that is not known is a number that depends on them alone.
-    let table = |table: u32, args: &[f64], derivative: &[u8]| -> f64 {
-        let orders = derivative.iter().fold(mixed(u64::from(table)), |seed, order| mixed(seed ^ u64::from(*order)));
-        0.5 + fraction(args.iter().fold(orders, |seed, arg| mixed(seed ^ arg.to_bits())))
-    };
-    eval(dag, &nodes, at, table).ok()?.try_into().ok()
+        let is_positive = self.seed.is_multiple_of(2) || mixed(own) & 1 == 0;
+        Number::new(if is_positive { size } else { -size }).turned(self.is_turned)
+    }
+
+    fn table(&mut self, number: u32, args: &[Number], derivative: &[u8]) -> Option<Number> {
+        Some(table(number, args, derivative))
+    }
+
+    fn range(&mut self, _: u32) -> Option<Vec<i64>> {
+        None
+    }
+
+    fn bind(&mut self, _: u32, _: Option<i64>) -> Option<i64> {
+        None
+    }
 }

@@ -44,6 +44,10 @@ fn a_corner_that_is_gone_is_not_noted() {
     assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) >= 1; }"), [NOTE]);
     // Branches that do not meet, and those that are met by the larger slope below.
     assert_eq!(said("input u; minimize integral(if u >= 0 { u } else { 1 });").len(), 1);
+    // Beyond 3 it is another function, which no point near 1 tells.
+    assert!(!said("input u; minimize integral(if u >= 0 { u * max(v, 3) / 3 } else { 0 });").is_empty());
+    assert!(!said("input u; minimize integral(if u >= 0 { if v >= 3 { 5 } else { u } } else { 0 });").is_empty());
+    assert!(!said("input u; minimize integral(if u >= 0 { u + exp(-1000 * v^2) } else { 0 });").is_empty());
     assert_eq!(said("input u in -1 .. 1; minimize integral(if u >= 0 { u } else { 2 * u });").len(), 1);
     assert_eq!(said("input u; minimize integral(u^2); trajectory { (1 + u) * abs(u) <= 1; }"), [NOTE]);
     assert_eq!(said("input u in -1 .. 1; maximize integral(abs(u));"), [NOTE]);

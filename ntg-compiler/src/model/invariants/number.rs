@@ -9,8 +9,8 @@ use crate::expr::{Binary, Scalar, Unary};
 
 /// A value, what rounding may have changed it by, and the size of its terms.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Number {
-    pub(super) value: f64,
+pub(in crate::model) struct Number {
+    pub(in crate::model) value: f64,
     pub(super) error: f64,
     pub(super) size: f64,
     /// Made of constants and indices alone: conditions on it are decided.
@@ -33,7 +33,7 @@ const ULPS: f64 = 4.0;
 
 impl Number {
     /// A number with the rounding of its last digit.
-    pub(super) fn new(value: f64) -> Self {
+    pub(in crate::model) fn new(value: f64) -> Self {
         Self { value, error: f64::EPSILON * value.abs(), size: value.abs(), is_exact: false, is_turned: false }
     }
 
@@ -44,7 +44,7 @@ impl Number {
     }
 
     /// The same where conditions take the other branch.
-    pub(super) fn turned(self, is_turned: bool) -> Self {
+    pub(in crate::model) fn turned(self, is_turned: bool) -> Self {
         Self { is_turned, ..self }
     }
 
@@ -59,7 +59,7 @@ impl Number {
     }
 
     /// Whether it is 0 but for rounding; a sum that rounding leaves no digits is not.
-    pub(super) fn vanishes(self) -> bool {
+    pub(in crate::model) fn vanishes(self) -> bool {
         self.value.abs() <= SAFETY * self.error && self.error <= LEAST_DIGITS * self.size.max(f64::MIN_POSITIVE)
     }
 
@@ -191,7 +191,7 @@ impl Scalar for Number {
 }
 
 /// A table has no formula here.
-pub(super) fn table(table: u32, arguments: &[Number], derivative: &[u8]) -> Number {
+pub(in crate::model) fn table(table: u32, arguments: &[Number], derivative: &[u8]) -> Number {
     let seed = derivative.iter().fold(mixed(u64::from(table)), |seed, order| mixed(seed ^ u64::from(*order)));
     Number::opaque(seed, arguments)
 }
