@@ -68,14 +68,14 @@ fn a_corner_is_worth_what_its_rows_by_hand_are() {
     // What is minimised, the rows of `s` in its place, and the lets.
     let cases = [
         ("max(0, 3 - (x - 5)^2 / 4 - y)", "s >= 0; s >= 3 - (x - 5)^2 / 4 - y;", ""),
-        ("max(exp(-((x - 5)^2 + y^2) / 4), 0.1)", "s >= 0.1; s >= exp(-((x - 5)^2 + y^2) / 4);", ""),
-        ("abs(x * vy - y * vx - 1)", "s >= x * vy - y * vx - 1; s >= 1 - x * vy + y * vx;", ""),
+        ("max(exp(-((x - 5)^2 + (y + 1)^2) / 4), 0.1)", "s >= 0.1; s >= exp(-((x - 5)^2 + (y + 1)^2) / 4);", ""),
+        ("abs(vx * (1 + 0.1 * y) - 1)", "s >= vx * (1 + 0.1 * y) - 1; s >= 1 - vx * (1 + 0.1 * y);", ""),
         ("norm((vx - wx, vy - wy))", &format!("s >= 0; s^2 >= {SUM};"), WIND),
         ("hypot(vx - wx, vy - wy)", &format!("s >= 0; s^2 >= {SUM};"), WIND),
         (&format!("sqrt({SUM})"), &format!("s >= 0; s^2 >= {SUM};"), WIND),
     ];
     for (corner, rows, lets) in cases {
-        for (points, intervals) in [(2, 20), (3, 40)] {
+        for (points, intervals) in [(3, 40), (4, 32)] {
             let plane = |input: &str, cost: &str, rows: &str| {
                 solved(&format!(
                     "problem Plane {{
@@ -88,7 +88,7 @@ fn a_corner_is_worth_what_its_rows_by_hand_are() {
                 ))
             };
             let by_hand = plane("input s;", "s", &format!("trajectory {{ {rows} }}"));
-            close(plane("", corner, ""), by_hand, 2e-5);
+            close(plane("", corner, ""), by_hand, 1e-5);
         }
     }
 }
@@ -133,6 +133,7 @@ fn branches_that_meet_are_a_corner() {
     let cart = |work: &str| {
         solved(&format!(
             "problem Cart {{
+                param out = 2; param back = 0.5;
                 duration T = 6 [s]; state x [m], v [m/s]; input F in -1 .. 1 [N]; collocation gauss(points = 3, intervals = 24);
                 minimize integral({work}) / 1 [J];
                 dynamics {{ der(x) == v; 1 [kg] * der(v) == F; }}
@@ -143,6 +144,9 @@ fn branches_that_meet_are_a_corner() {
     close(cart("if F * v >= 0 [W] { F * v } else { 0 [W] }"), 0.5, 1e-6);
     close(cart("if F * v <= 0 [W] { -F * v } else { F * v }"), 1.0, 1e-6);
     close(cart("if 0 [W] <= v * F { 2 * F * v } else { 0.5 * F * v }"), 0.75, 1e-6);
+    // By parameters, whose defaults say which branch is the steeper one.
+    close(cart("if F * v >= 0 [W] { out * F * v } else { back * F * v }"), 0.75, 1e-6);
+    close(cart("if F * v >= 0 [W] { F * v / (out - 1) } else { back * v * F }"), 0.25, 1e-6);
 
     // Energy that is sold for less than it is bought for, at a price by the hour.
     let grid = |cost: &str| {
@@ -159,6 +163,11 @@ fn branches_that_meet_are_a_corner() {
     close(grid("if p >= 0 { price * p } else { 0.6 * price * p }"), known, 1e-7);
     close(grid("price * (if p >= 0 { p } else { 0.6 * p })"), known, 1e-7);
     close(grid("0.6 * price * (if p <= 0 { p } else { p / 0.6 })"), known, 1e-7);
+    // Three branches, in any order, and nested in either.
+    let known = grid("max(0.1 * p, 0.3 * p, 0.6 * p - 0.6)");
+    close(grid("if p <= 0 { 0.1 * p } else if p <= 2 { 0.3 * p } else { 0.6 * p - 0.6 }"), known, 1e-7);
+    close(grid("if p >= 2 { 0.6 * p - 0.6 } else if p >= 0 { 0.3 * p } else { 0.1 * p }"), known, 1e-7);
+    close(grid("if p >= 0 { if p >= 2 { 0.6 * p - 0.6 } else { 0.3 * p } } else { 0.1 * p }"), known, 1e-7);
 }
 
 /// A sum of magnitudes over an index, limited: thrusters on one supply. It was infeasible.
@@ -180,4 +189,38 @@ fn a_limit_on_a_sum_of_magnitudes() {
     close(thrusters(3, halves), thrusters(3, written_out), 1e-6);
     // Six of them are as good as the best: 64 sides.
     assert!(thrusters(6, "sum(i in 1 .. 6, abs(u[i])) <= 0.6") <= thrusters(3, written_out) + 1e-6);
+}
+
+/// What a corner needs to know is found: lines of a table over a corner, an index as a weight, a price that vanishes by the clock
+/// beside an input without bounds, a bound of one side.
+#[test]
+fn what_stands_around_a_corner() {
+    let cart = |rest: &str| {
+        solved(&format!(
+            "problem Cart {{
+                duration T = 4; state x, v; collocation gauss(points = 3, intervals = 16);
+                dynamics {{ der(x) == v; der(v) == 2 * u[1] + u[2] - 0.3; }} input u[2];
+                table price(t) = linear {{ 0: 1; 1: 0; 2: 0; 3: 1; 4: 1; }}
+                table loss(i) = linear(extrapolate = linear) {{ 0: 0; 1: 0.5; 2: 3; }}
+                table heat(i) = linear {{ 0: 0.2; 1: 0.7; 2: 3; }}
+                initial {{ x == 0; v == 0; }} final {{ x == 3; v == 0; }} {rest}
+            }}"
+        ))
+    };
+    let cases = [
+        ("loss(abs(u[1]) + abs(u[2]))", "loss(s)", "s >= abs(u[1]) + abs(u[2]);"),
+        ("sum(i in 1 .. 2, i * abs(u[i]))", "s", "s >= abs(u[1]) + 2 * abs(u[2]);"),
+        ("price(t) * abs(u[1]) + abs(u[2])", "price(t) * s + abs(u[2])", "s >= abs(u[1]);"),
+        ("loss(u[1]^2 + u[2]^2)", "s", "s >= 0.5 * (u[1]^2 + u[2]^2); s >= 2.5 * (u[1]^2 + u[2]^2) - 2;"),
+    ];
+    for (corner, by_hand, rows) in cases {
+        let left = cart(&format!("minimize integral({corner} + 0.1 * (u[1]^2 + u[2]^2));"));
+        let right = cart(&format!(
+            "minimize integral({by_hand} + 0.1 * (u[1]^2 + u[2]^2)); input s in 0 .. 9; trajectory {{ {rows} }}"
+        ));
+        close(left, right, 1e-6);
+    }
+    let lossy = |bounds: &str| cart(&format!("minimize integral(heat(u[1]) + u[2]^2); trajectory {{ {bounds} }}"));
+    close(lossy("u[1] <= 2; u[2] <= 9;"), lossy("u in -9 .. 2;"), 1e-6);
+    close(lossy("u[1] >= -9; u[1] <= 2; u[2] <= 9;"), lossy("u in -9 .. 2;"), 1e-6);
 }

@@ -6,51 +6,100 @@
 
 use super::elaborator::Elaborator;
 use super::invariants::number::{Number, fraction, mixed, table};
+use super::problem::{Form, Leaf, Problem};
 use super::unknowns::is_given;
-use crate::expr::{Binary, Dag, Environment, InputId, Map, Node, NodeId, eval_in, gradient};
+use crate::expr::{Binary, Dag, Environment, InputId, Map, Node, NodeId, Set, eval, eval_in, gradient};
 
 /// How many points decide, each for both branches of conditions. A choice: a difference that is not 0 vanishes at one of them with a
 /// probability of about 1e-14.
 const POINTS: u64 = 3;
 
+/// A condition whose branches meet.
+#[derive(Clone, Copy)]
+pub(super) struct Meeting {
+    /// One branch and `k * max(0, g)`.
+    pub(super) sum: NodeId,
+    /// What is known not to be negative by the defaults of parameters alone: `k` or `-k`.
+    pub(super) factor: Option<NodeId>,
+}
+
 impl Elaborator<'_> {
     /// What stands for conditions whose branches meet, of all nodes below some.
-    pub(super) fn branches_that_meet(&mut self, nodes: &[NodeId]) -> Map<NodeId, NodeId> {
+    pub(super) fn branches_that_meet(&mut self, nodes: &[NodeId]) -> Map<NodeId, Meeting> {
         let mut found = Map::default();
         for node in nodes {
-            if let Some(sum) = self.as_largest(*node) {
-                found.insert(*node, sum);
+            if let Some(meeting) = self.as_largest(*node) {
+                found.insert(*node, meeting);
             }
         }
         found
     }
 
-    fn as_largest(&mut self, node: NodeId) -> Option<NodeId> {
+    fn as_largest(&mut self, node: NodeId) -> Option<Meeting> {
         let Node::Select { condition, then, otherwise } = *self.problem.dag.node(node) else { return None };
+        let (beyond, before) = self.sides_of(condition)?;
+        self.meeting((then, otherwise), beyond).or_else(|| self.meeting((otherwise, then), before))
+    }
+
+    /// What is not negative where a condition on what is solved for holds, and where it does not.
+    fn sides_of(&mut self, condition: NodeId) -> Option<(NodeId, NodeId)> {
         let Node::Binary(Binary::LessEq, lesser, greater) = *self.problem.dag.node(condition) else { return None };
         if is_given(&self.problem, condition) {
             return None;
         }
         let dag = &mut self.problem.dag;
-        let beyond = dag.sub(greater, lesser);
-        let difference = dag.sub(then, otherwise);
-        let factor = match self.given_factor([then, otherwise], beyond) {
+        Some((dag.sub(greater, lesser), dag.sub(lesser, greater)))
+    }
+
+    /// `otherwise + k * max(0, g)`, where `then` is the value for `g >= 0`, and that is equal to it there.
+    fn meeting(&mut self, (then, otherwise): (NodeId, NodeId), beyond: NodeId) -> Option<Meeting> {
+        let near = self.branch_within(otherwise, beyond);
+        let factor = match self.given_factor([then, near], beyond) {
             Some(factor) => factor,
-            None => multiple(&mut self.problem.dag, difference, beyond)?,
+            None => {
+                let dag = &mut self.problem.dag;
+                let difference = dag.sub(then, near);
+                multiple(dag, difference, beyond)?
+            }
         };
         let dag = &mut self.problem.dag;
         let line = dag.mul(factor, beyond);
-        if !is_sum(dag, then, [otherwise, line]) {
+        if !is_sum(dag, then, [near, line]) {
             return None;
         }
         let zero = dag.constant(0.0);
         let corner = dag.max(zero, beyond);
+        let by_default = by_defaults(&self.problem, factor);
+        let dag = &mut self.problem.dag;
+        let Some(value) = by_default.filter(|_| dag.is_constant(factor).is_none()) else {
+            let corner = dag.mul(factor, corner);
+            return Some(Meeting { sum: dag.add(otherwise, corner), factor: None });
+        };
+        let is_negative = value < 0.0;
+        let factor = if is_negative { dag.neg(factor) } else { factor };
         let corner = dag.mul(factor, corner);
-        Some(dag.add(otherwise, corner))
+        let sum = if is_negative { dag.sub(otherwise, corner) } else { dag.add(otherwise, corner) };
+        Some(Meeting { sum, factor: Some(factor) })
     }
 
-    /// By what the slopes of two branches by one of the unknowns differ, over that of a third node, where it is given. What is a
-    /// number, or a multiple of one of these slopes, is written as that, so that its sign is seen: `p - 0.6 * p` is `0.4 * p`.
+    /// The branch that conditions within a node take wherever another node is not negative; the node itself where that is not known.
+    fn branch_within(&mut self, mut node: NodeId, beyond: NodeId) -> NodeId {
+        while let Node::Select { condition, then, otherwise } = *self.problem.dag.node(node) {
+            let Some((holds, fails)) = self.sides_of(condition) else { return node };
+            node = if follows(&mut self.problem.dag, beyond, holds) {
+                then
+            } else if follows(&mut self.problem.dag, beyond, fails) {
+                otherwise
+            } else {
+                return node;
+            };
+        }
+        node
+    }
+
+    /// By what the slopes of two branches by one of the unknowns differ, over that of a third node, as if it did not hang on unknowns.
+    /// What is a number, or a multiple of one of these slopes, is written as that, so that its sign is seen: `p - 0.6 * p` is
+    /// `0.4 * p`.
     fn given_factor(&mut self, branches: [NodeId; 2], beyond: NodeId) -> Option<NodeId> {
         let inputs = self.problem.dag.inputs_of(&[beyond]);
         let unknown = inputs.into_iter().find(|input| {
@@ -59,9 +108,20 @@ impl Elaborator<'_> {
         })?;
         let dag = &mut self.problem.dag;
         let slope = |dag: &mut Dag, node: NodeId| Some(gradient(dag, node, &[unknown]).ok()?[0]);
-        let along = slope(dag, beyond)?;
-        let [then, otherwise] = branches.map(|branch| slope(dag, branch));
-        let slopes = [then?, otherwise?];
+        let slopes = [slope(dag, beyond)?, slope(dag, branches[0])?, slope(dag, branches[1])?];
+        // `v` of `2 * F * v` and of `F * v` has no part in their quotient: any number stands for it.
+        let inputs = self.problem.dag.inputs_of(&slopes);
+        let unknown: Set<InputId> = inputs
+            .into_iter()
+            .filter(|input| {
+                let node = self.problem.dag.input(*input);
+                !is_given(&self.problem, node)
+            })
+            .collect();
+        let dag = &mut self.problem.dag;
+        let one = dag.constant(1.0);
+        let slopes = dag.substitute(&slopes, |input| unknown.contains(&input).then_some(one));
+        let (along, slopes) = (slopes[0], [slopes[1], slopes[2]]);
         let difference = dag.sub(slopes[0], slopes[1]);
         let factor = dag.div(difference, along);
         if !is_given(&self.problem, factor) {
@@ -72,7 +132,7 @@ impl Elaborator<'_> {
             return factor.is_normal().then(|| dag.constant(factor));
         }
         let quotients = slopes.map(|slope| dag.div(slope, along));
-        let of_one = [dag.constant(1.0)].into_iter().chain(quotients).find_map(|own| {
+        let of_one = [one].into_iter().chain(quotients).find_map(|own| {
             let times = multiple(dag, factor, own)?;
             let product = dag.mul(times, own);
             let zero = dag.constant(0.0);
@@ -80,6 +140,39 @@ impl Elaborator<'_> {
         });
         Some(of_one.unwrap_or(factor))
     }
+}
+
+/// The value of a node of parameters alone by their defaults, where it is not 0.
+fn by_defaults(problem: &Problem, node: NodeId) -> Option<f64> {
+    let value = |input: InputId| match problem.leaves.leaf(input) {
+        Leaf::Parameter { parameter, index } => {
+            let place = index.as_ref().map_or(Some(1), Form::as_number)?;
+            problem.parameters[*parameter].value.get(usize::try_from(place - 1).ok()?).copied()
+        }
+        _ => None,
+    };
+    let found = eval(&problem.dag, &[node], |input| value(input).unwrap_or(f64::NAN), |_, _, _| f64::NAN).ok()?[0];
+    found.is_normal().then_some(found)
+}
+
+/// Whether a second node is a multiple of a first one and a number more, neither of them negative: it is not negative where the first
+/// one is not.
+fn follows(dag: &mut Dag, first: NodeId, second: NodeId) -> bool {
+    let values = [POINTS, POINTS + 1].map(|seed| {
+        let mut draw = Draw { seed, is_turned: false };
+        Some((draw.value(dag, first)?.value, draw.value(dag, second)?.value))
+    });
+    let [Some((a, b)), Some((c, d))] = values else { return false };
+    let factor = (d - b) / (c - a);
+    let constant = b - factor * a;
+    // A number that is rounding of 0 is 0.
+    let constant = if constant.abs() <= 1e-12 * b.abs() { 0.0 } else { constant };
+    if !(factor > 0.0 && constant >= 0.0) {
+        return false;
+    }
+    let [factor, constant] = [factor, constant].map(|number| dag.constant(number));
+    let line = dag.mul(factor, first);
+    is_sum(dag, second, [line, constant])
 }
 
 /// The quotient of two nodes at a point.

@@ -8,6 +8,7 @@
 
 use ntg_structure::Block;
 
+use super::branches::Meeting;
 use super::elaborator::Elaborator;
 use super::monotone::Push;
 use super::piecewise::Lines;
@@ -43,7 +44,7 @@ pub(super) struct Corners {
     /// Tables that are convex or concave, by their lines.
     pub(super) tables: Map<NodeId, Lines>, // Looked up, never iterated.
     /// What stands for conditions whose branches meet.
-    pub(super) branches: Map<NodeId, NodeId>, // Looked up, never iterated.
+    pub(super) branches: Map<NodeId, Meeting>, // Looked up, never iterated.
     /// Corners that are none in what is made of them.
     pub(super) smoothed: Set<NodeId>, // Asked, never iterated.
     done: Map<(NodeId, bool, Site), NodeId>, // Looked up, never iterated.
@@ -78,7 +79,7 @@ impl Elaborator<'_> {
         let mut ranges = Ranges::within(&self.problem);
         let all = self.below(&bodies);
         let branches = self.branches_that_meet(&all);
-        let bodies: Vec<NodeId> = bodies.into_iter().chain(branches.values().copied()).collect();
+        let bodies: Vec<NodeId> = bodies.into_iter().chain(branches.values().map(|own| own.sum)).collect();
         let tables = self.tables_of_lines(&mut ranges, &bodies);
         let mut pass = Corners {
             signs: Signs::of(&self.problem),
@@ -94,6 +95,8 @@ impl Elaborator<'_> {
             helpers: 0,
             span: Span::default(),
         };
+        let factors: Vec<NodeId> = pass.branches.values().filter_map(|own| own.factor).collect();
+        factors.into_iter().for_each(|factor| pass.signs.assume(factor));
         self.corners_limited(&mut pass);
         for term in 0..self.problem.objective.len() {
             let own = &self.problem.objective[term];
@@ -150,7 +153,7 @@ impl Elaborator<'_> {
 
     fn with_corners(
         &mut self,
-        (tables, branches): (&Map<NodeId, Lines>, &Map<NodeId, NodeId>),
+        (tables, branches): (&Map<NodeId, Lines>, &Map<NodeId, Meeting>),
         bodies: &[NodeId],
     ) -> Set<NodeId> {
         let mut within = Set::default();
@@ -171,14 +174,20 @@ impl Elaborator<'_> {
         within
     }
 
+    /// Whether there are no corners in a node.
+    pub(super) fn has_none(&self, pass: &Corners, node: NodeId) -> bool {
+        !self.below(&[node]).into_iter().any(|node| pass.has_corners(node))
+    }
+
     /// Takes in a node that was made later.
     pub(super) fn corners_found(&mut self, pass: &mut Corners, node: NodeId) {
         let all = self.below(&[node]);
         let branches = self.branches_that_meet(&all);
-        let bodies: Vec<NodeId> = branches.values().copied().chain([node]).collect();
+        let bodies: Vec<NodeId> = branches.values().map(|own| own.sum).chain([node]).collect();
         let tables = self.tables_of_lines(&mut pass.ranges, &bodies);
         pass.within.extend(self.with_corners((&tables, &branches), &bodies));
         pass.tables.extend(tables);
+        branches.values().filter_map(|own| own.factor).for_each(|factor| pass.signs.assume(factor));
         pass.branches.extend(branches);
     }
 
@@ -187,8 +196,9 @@ impl Elaborator<'_> {
         let has = match *self.problem.dag.node(node) {
             Node::Unary(Unary::Abs, _) | Node::Binary(Binary::Min | Binary::Max, ..) => true,
             Node::Reduce { fold: Fold::Min | Fold::Max, .. } => true,
-            Node::Unary(Unary::Sqrt, sum) => squares(&self.problem.dag, sum).is_some(),
-            // A given side is a width, by which the root is smooth.
+            // What is given is a width, by which the root is smooth.
+            Node::Unary(Unary::Sqrt, sum) => squares(&self.problem.dag, sum)
+                .is_some_and(|squared| squared.into_iter().all(|side| !is_given(&self.problem, side))),
             Node::Binary(Binary::Hypot, a, b) => [a, b].into_iter().all(|side| !is_given(&self.problem, side)),
             _ => false,
         };
@@ -210,9 +220,9 @@ impl Elaborator<'_> {
         if let Some(known) = pass.done.get(&key) {
             return *known;
         }
-        let by_branches = pass.branches.get(&node).copied().and_then(|sum| {
-            let smooth = self.smooth(pass, sum, (site, growing), depth + 1);
-            (smooth != sum).then_some(smooth)
+        let by_branches = pass.branches.get(&node).copied().and_then(|own| {
+            let smooth = self.smooth(pass, own.sum, (site, growing), depth + 1);
+            self.has_none(pass, smooth).then_some(smooth)
         });
         let smooth = match by_branches.or_else(|| self.helper(pass, node, (site, growing), depth)) {
             Some(smooth) => {
@@ -289,6 +299,23 @@ impl Elaborator<'_> {
             return;
         }
         let zero = self.problem.dag.constant(0.0);
+        let mut slopes: Vec<(Span, NodeId)> = pass
+            .branches
+            .iter()
+            .filter(|(node, _)| pass.treated.contains(node))
+            .filter_map(|(node, own)| {
+                let written = self.kinks.iter().find(|(kink, _)| kink == node).map(|(_, span)| *span);
+                Some((written.unwrap_or(pass.span), own.factor?))
+            })
+            .collect();
+        slopes.sort_by_key(|(span, factor)| (span.start, span.end, *factor));
+        for (span, factor) in slopes {
+            let name = format!("{} keeps its steeper branch", self.text(span));
+            self.hold(Domain::Mission, vec![], (factor, Bounds { lower: Some(zero), upper: None }), span);
+            if let Some(row) = self.problem.constraints.last_mut() {
+                row.name = Some(name);
+            }
+        }
         for parameter in &pass.signs.relied {
             let declared = &self.problem.parameters[*parameter];
             let (name, unit, count) = (declared.name.clone(), declared.unit.clone(), declared.value.len());

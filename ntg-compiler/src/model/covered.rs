@@ -1,6 +1,6 @@
 //! Which members of outputs constraints hold for: of an array a limit on one element says nothing of the others.
 
-use super::problem::{At, Constraint, Domain, Form, Leaf, Loop, Part, Problem};
+use super::problem::{At, Bounds, Constraint, Domain, Form, Leaf, Loop, Part, Problem};
 use crate::expr::{Node, NodeId};
 
 /// A limit on an output itself, along a whole phase.
@@ -51,14 +51,14 @@ fn members(form: &Form, loops: &[Loop]) -> Option<(i64, i64)> {
     Some((over.first.as_number()?, over.last.as_number()?))
 }
 
-/// Between which numbers outputs stay, by phase and place, where limits say so for all their members.
+/// Between which numbers outputs stay, by phase and place, where limits say so for all their members; one of both may be infinite.
 pub(super) fn ranges(problem: &Problem) -> Vec<((usize, usize), (f64, f64))> {
     let number = |end: Option<NodeId>| end.and_then(|end| problem.dag.is_constant(end));
     let mut limits: Vec<(Limit<'_>, (f64, f64))> = vec![];
     for limit in self::limits(problem) {
-        if let Some(range) = number(limit.constraint.bounds.lower).zip(number(limit.constraint.bounds.upper)) {
-            limits.push((limit, range));
-        }
+        let Bounds { lower, upper } = limit.constraint.bounds;
+        let range = (number(lower).unwrap_or(f64::NEG_INFINITY), number(upper).unwrap_or(f64::INFINITY));
+        limits.push((limit, range));
     }
     limits.sort_by_key(|(limit, _)| (limit.output, limit.members));
     let mut ranges = vec![];

@@ -32,9 +32,7 @@ impl Elaborator<'_> {
         depth: usize,
     ) -> Option<NodeId> {
         let limit = match site.floats {
-            true => {
-                Some(pass.ranges.of(&self.problem, corner).map(|(least, most)| if growing { most } else { least })?)
-            }
+            true => pass.ranges.of(&self.problem, corner).map(|(least, most)| if growing { most } else { least }),
             false => None,
         };
         let against = self.against(pass, corner, (site, growing), depth)?;

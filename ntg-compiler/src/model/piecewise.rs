@@ -19,7 +19,7 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// By how much a number is lost in adding and multiplying a few, relative to the largest. A law.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Most lines of a table for which helpers stand; one of more stays as it is. A guess: its cost is not measured yet.
+/// Most lines of a table for which helpers stand; one of more stays as it is. A choice: for 100 points so many rows take seconds.
 const MOST_LINES: usize = 1000;
 
 /// `value + slope * (argument - node)`.
@@ -143,12 +143,12 @@ impl Elaborator<'_> {
     pub(super) fn lines_of(&self, ranges: &mut Ranges, node: NodeId) -> Option<Lines> {
         let Node::Table { table, derivative, args } = self.problem.dag.node(node) else { return None };
         let ([argument], [0]) = (args.as_slice(), derivative.as_slice()) else { return None };
-        let range = ranges.of(&self.problem, *argument);
+        let range = ranges.of_argument(&self.problem, *argument);
         Lines::of(self.problem.tables.get(*table as usize)?, range)
     }
 
     /// A node for each line of a table that is pushed down onto the largest of them, or up to the least.
-    pub(super) fn lines_pushed(&mut self, pass: &Corners, table: NodeId, growing: bool) -> Option<Vec<NodeId>> {
+    pub(super) fn lines_pushed(&mut self, pass: &mut Corners, table: NodeId, growing: bool) -> Option<Vec<NodeId>> {
         let Node::Table { args, .. } = self.problem.dag.node(table) else { return None };
         let argument = args[0];
         let lines = pass.tables.get(&table)?;
@@ -157,13 +157,20 @@ impl Elaborator<'_> {
             return None;
         }
         let dag = &mut self.problem.dag;
-        let along = lines.iter().map(|line| {
-            let (slope, node, value) = (dag.constant(line.slope), dag.constant(line.node), dag.constant(line.value));
-            let beyond = dag.sub(argument, node);
-            let rise = dag.mul(slope, beyond);
-            dag.add(rise, value)
-        });
-        Some(along.collect())
+        let along: Vec<NodeId> = lines
+            .iter()
+            .map(|line| {
+                let (slope, node, value) =
+                    (dag.constant(line.slope), dag.constant(line.node), dag.constant(line.value));
+                let beyond = dag.sub(argument, node);
+                let rise = dag.mul(slope, beyond);
+                dag.add(rise, value)
+            })
+            .collect();
+        if pass.has_corners(argument) {
+            along.iter().for_each(|line| self.corners_found(pass, *line));
+        }
+        Some(along)
     }
 
     /// Whether a node is the value of a piecewise linear table, or its slope, at what is solved for.

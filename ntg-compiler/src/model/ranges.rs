@@ -4,7 +4,7 @@
 //! have none, since who sets them may change them.
 
 use super::covered;
-use super::problem::{At, Constraint, Domain, Duration, Leaf, Part, PhaseAt, Problem, Start};
+use super::problem::{At, Constraint, Domain, Duration, Form, IndexId, Leaf, Part, PhaseAt, Problem, Start};
 use crate::expr::{Binary, Fold, InputId, Map, Node, NodeId, Unary};
 use ntg_structure::{TableExtrapolation, TableMethod};
 
@@ -21,12 +21,41 @@ pub(super) struct Ranges {
     /// Of outputs by phase and place, and of variables.
     outputs: Map<(usize, usize), Range>, // Looked up, never iterated.
     variables: Map<usize, Range>,      // Looked up, never iterated.
+    indices: Map<IndexId, (i64, i64)>, // Looked up, never iterated.
 }
 
 impl Ranges {
+    /// Ranges of indices with ends that are numbers alone.
+    pub(super) fn of_indices(problem: &Problem) -> Self {
+        let of_constraints = problem.constraints.iter().flat_map(|own| &own.loops);
+        let of_terms = problem.objective.iter().flat_map(|own| &own.loops);
+        let mut ranges = Self::default();
+        for over in problem.ranges.iter().chain(of_constraints).chain(of_terms) {
+            if let Some(ends) = over.first.as_number().zip(over.last.as_number()) {
+                ranges.indices.insert(over.index, ends);
+            }
+        }
+        ranges
+    }
+
+    /// Takes a node to stay above 0.
+    pub(super) fn assume_above(&mut self, node: NodeId) {
+        self.known.insert(node, Some((f64::MIN_POSITIVE, f64::MAX)));
+    }
+
+    fn index(&self, form: &Form) -> Option<Range> {
+        let mut range = (form.constant as f64, form.constant as f64);
+        for (index, factor) in &form.terms {
+            let (first, last) = self.indices.get(index)?;
+            let ends = [first, last].map(|end| *factor as f64 * *end as f64);
+            range = (range.0 + ends[0].min(ends[1]), range.1 + ends[0].max(ends[1]));
+        }
+        Some(range)
+    }
+
     /// Ranges where all outputs and variables are within those of their bounds that are numbers.
     pub(super) fn within(problem: &Problem) -> Self {
-        let mut ranges = Self::default();
+        let mut ranges = Self::of_indices(problem);
         let number = |end: Option<NodeId>| end.and_then(|end| problem.dag.is_constant(end));
         let both = |own: &Constraint| number(own.bounds.lower).zip(number(own.bounds.upper));
         ranges.outputs = covered::ranges(problem).into_iter().collect();
@@ -45,6 +74,22 @@ impl Ranges {
             }
         }
         ranges
+    }
+
+    /// The range of an argument, of which one end may be infinite where it is an output.
+    pub(super) fn of_argument(&mut self, problem: &Problem, node: NodeId) -> Option<Range> {
+        match problem.dag.node(node) {
+            Node::Input(input) => self.output(problem, *input).or_else(|| self.of(problem, node)),
+            _ => self.of(problem, node),
+        }
+    }
+
+    fn output(&self, problem: &Problem, input: InputId) -> Option<Range> {
+        match problem.leaves.leaf(input) {
+            // Limits along a phase count at its ends too: a mesh without points there leaves them to within what it misses.
+            Leaf::Flat { phase, output, order: 0, .. } => self.outputs.get(&(phase.phase, *output)).copied(),
+            _ => None,
+        }
     }
 
     /// The range of a node, if it has one.
@@ -104,8 +149,8 @@ impl Ranges {
         match problem.leaves.leaf(input) {
             Leaf::Tau => Some((0.0, 1.0)),
             Leaf::Time(at) => clock(problem, at),
-            // Limits along a phase count at its ends too: a mesh without points there leaves them to within what it misses.
-            Leaf::Flat { phase, output, order: 0, .. } => self.outputs.get(&(phase.phase, *output)).copied(),
+            Leaf::Flat { .. } => self.output(problem, input).filter(|(a, b)| a.is_finite() && b.is_finite()),
+            Leaf::Index(form) => self.index(form),
             Leaf::Variable { variable, .. } => self.variables.get(variable).copied(),
             _ => None,
         }

@@ -138,21 +138,18 @@ impl Elaborator<'_> {
             Node::Reduce { fold: Fold::Sum, body, .. } => match self.unrolled(node, MOST_SIDES.ilog2().into()) {
                 Some(sum) => {
                     self.corners_found(pass, sum);
-                    let smooth = self.side(pass, sides, sum, growing, depth + 1);
-                    if smooth == sum {
-                        node
-                    } else {
+                    let smooth = self.other_side(pass, sides, (node, sum), growing, depth);
+                    if smooth != node {
                         sides.treated.extend(self.below(&[body]).into_iter().filter(|node| pass.has_corners(*node)));
-                        smooth
                     }
+                    smooth
                 }
                 None => node,
             },
-            Node::Select { .. } if pass.branches.contains_key(&node) => {
-                let sum = pass.branches[&node];
-                let smooth = self.side(pass, sides, sum, growing, depth + 1);
-                if smooth == sum { node } else { smooth }
-            }
+            Node::Select { .. } => match pass.branches.get(&node).copied() {
+                Some(own) => self.other_side(pass, sides, (node, own.sum), growing, depth),
+                None => self.below_sides(pass, sides, (node, &own), growing, depth + 1),
+            },
             Node::Table { .. } => match self.lines_pushed(pass, node, growing) {
                 Some(lines) => {
                     let lines: Vec<NodeId> =
@@ -168,6 +165,24 @@ impl Elaborator<'_> {
         }
         sides.done.insert((node, growing), one);
         one
+    }
+
+    /// A node in another form, in which one side stands for each corner; the node itself where that leaves corners.
+    fn other_side(
+        &mut self,
+        pass: &mut Corners,
+        sides: &mut Sides,
+        (node, form): (NodeId, NodeId),
+        growing: bool,
+        depth: usize,
+    ) -> NodeId {
+        let before = (sides.loops.len(), sides.count, sides.treated.len());
+        let smooth = self.side(pass, sides, form, growing, depth + 1);
+        if self.has_none(pass, smooth) {
+            return smooth;
+        }
+        sides.forget(before);
+        node
     }
 
     /// One of several nodes, by a new index.

@@ -31,7 +31,7 @@ const MAX_DEPTH: usize = 500;
 impl Signs {
     /// The signs of a problem whose constraints are known.
     pub(super) fn of(problem: &Problem) -> Self {
-        let mut signs = Self::default();
+        let mut signs = Self { ranges: Ranges::of_indices(problem), ..Self::default() };
         for limit in covered::limits(problem) {
             let bounds = &limit.constraint.bounds;
             if limit.is_single && is_above(problem, bounds) {
@@ -43,6 +43,12 @@ impl Signs {
             }
         }
         signs
+    }
+
+    /// Takes a node to stay above 0, which is held by a row.
+    pub(super) fn assume(&mut self, node: NodeId) {
+        self.known.insert(node, Some(vec![]));
+        self.ranges.assume_above(node);
     }
 
     /// Whether a node is known not to be negative.

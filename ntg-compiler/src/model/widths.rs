@@ -31,7 +31,8 @@ impl Widths {
             }
         }
         let ranges = covered::ranges(problem).into_iter();
-        widths.outputs = ranges.map(|(output, (lower, upper))| (output, lower.abs().max(upper.abs()))).collect();
+        let widest = ranges.map(|(output, (lower, upper))| (output, lower.abs().max(upper.abs())));
+        widths.outputs = widest.filter(|(_, width)| width.is_finite()).collect();
         widths
     }
 

@@ -44,6 +44,11 @@ fn a_corner_that_is_gone_is_not_noted() {
     assert_eq!(said("input u; minimize integral(u^2); trajectory { abs(u) >= 1; }"), [NOTE]);
     // Branches that do not meet, and those that are met by the larger slope below.
     assert_eq!(said("input u; minimize integral(if u >= 0 { u } else { 1 });").len(), 1);
+    // A corner within that is pushed away from its corner is left.
+    assert!(
+        !said("input u[3]; minimize integral(u[1]^2); trajectory { sum(i in 1 .. 3, abs(u[i]) - abs(v)) <= 1; }")
+            .is_empty()
+    );
     // Beyond 3 it is another function, which no point near 1 tells.
     assert!(!said("input u; minimize integral(if u >= 0 { u * max(v, 3) / 3 } else { 0 });").is_empty());
     assert!(!said("input u; minimize integral(if u >= 0 { if v >= 3 { 5 } else { u } } else { 0 });").is_empty());
