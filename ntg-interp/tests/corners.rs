@@ -271,7 +271,7 @@ fn a_weight_of_corners_that_stay_may_be_below_0() {
              minimize integral(u^2) + integral(abs(u)); trajectory {{ w * ({sides}) <= 9; }} }}"
         )
     };
-    let many = "abs(u) + abs(v) + abs(x) + abs(u - v) + abs(u + v)";
+    let many = "abs(u) + abs(v) + abs(x) + abs(u - v) + abs(u + v) + abs(u - x) + abs(u + x)";
     for (sides, is_set) in [("abs(u) + abs(v)", false), (many, true)] {
         let mut problem = compiled(&text(sides));
         problem.assign("w", "-1").expect("a parameter");
