@@ -278,3 +278,28 @@ fn a_weight_of_corners_that_stay_may_be_below_0() {
         assert_eq!(solve(&problem, &Settings::default()).is_ok(), is_set, "{sides}");
     }
 }
+
+/// Of a difference of parameters the defaults say that it is not negative; who sets them otherwise is told, wherever it is a weight.
+#[test]
+fn a_difference_of_parameters_that_is_a_weight_must_stay_positive() {
+    for cost in [
+        "if u >= 0 { buy * u } else { sell * u }",
+        "if u <= 0 { sell * u } else { buy * u }",
+        "sell * u + (buy - sell) * max(0, u)",
+        "(buy - sell) * abs(u)",
+        // The first condition is no corner: the weight of the other term is held all the same.
+        "(if v >= 0 { buy * v } else { sell }) + (buy - sell) * abs(u)",
+    ] {
+        let text = format!(
+            "problem P {{ {BLOCK} param buy = 0.3; param sell = 0.1; collocation gauss(points = 3, intervals = 12); \
+             minimize integral({cost} + 0.1 * u^2); }}"
+        );
+        let mut problem = compiled(&text);
+        assert!(solve(&problem, &Settings::default()).is_ok(), "{cost}");
+        problem.assign("sell", "0.2").expect("a parameter");
+        assert!(solve(&problem, &Settings::default()).is_ok(), "{cost}");
+        problem.assign("sell", "0.4").expect("a parameter");
+        let refused = solve(&problem, &Settings::default()).expect_err(cost).to_string();
+        assert!(refused.contains("a weight of a corner, made of") && refused.contains("sell"), "{cost}: {refused}");
+    }
+}

@@ -6,36 +6,29 @@
 
 use super::elaborator::Elaborator;
 use super::invariants::number::{Number, fraction, mixed, table};
-use super::problem::{Form, Leaf, Problem};
-use super::unknowns::is_given;
-use crate::expr::{Binary, Dag, Environment, InputId, Map, Node, NodeId, Set, eval, eval_in, gradient};
+use super::signs::by_defaults;
+use super::unknowns::{is_given, is_given_leaf};
+use crate::expr::{Binary, Dag, Environment, InputId, Map, Node, NodeId, eval_in, gradient};
 
 /// How many points decide, each for both branches of conditions. A choice: a difference that is not 0 vanishes at one of them with a
 /// probability of about 1e-14.
 const POINTS: u64 = 3;
-
-/// A condition whose branches meet.
-#[derive(Clone, Copy)]
-pub(super) struct Meeting {
-    /// One branch and `k * max(0, g)`.
-    pub(super) sum: NodeId,
-    /// What is known not to be negative by the defaults of parameters alone: `k` or `-k`.
-    pub(super) factor: Option<NodeId>,
-}
+/// What is so small beside what it is the difference of is rounding of 0. A law: values of a few operations are known to 1e-15.
+const ROUNDING: f64 = 1e-12;
 
 impl Elaborator<'_> {
     /// What stands for conditions whose branches meet, of all nodes below some.
-    pub(super) fn branches_that_meet(&mut self, nodes: &[NodeId]) -> Map<NodeId, Meeting> {
+    pub(super) fn branches_that_meet(&mut self, nodes: &[NodeId]) -> Map<NodeId, NodeId> {
         let mut found = Map::default();
         for node in nodes {
-            if let Some(meeting) = self.as_largest(*node) {
-                found.insert(*node, meeting);
+            if let Some(sum) = self.as_corner(*node) {
+                found.insert(*node, sum);
             }
         }
         found
     }
 
-    fn as_largest(&mut self, node: NodeId) -> Option<Meeting> {
+    fn as_corner(&mut self, node: NodeId) -> Option<NodeId> {
         let Node::Select { condition, then, otherwise } = *self.problem.dag.node(node) else { return None };
         let (beyond, before) = self.sides_of(condition)?;
         self.meeting((then, otherwise), beyond).or_else(|| self.meeting((otherwise, then), before))
@@ -51,17 +44,11 @@ impl Elaborator<'_> {
         Some((dag.sub(greater, lesser), dag.sub(lesser, greater)))
     }
 
-    /// `otherwise + k * max(0, g)`, where `then` is the value for `g >= 0`, and that is equal to it there.
-    fn meeting(&mut self, (then, otherwise): (NodeId, NodeId), beyond: NodeId) -> Option<Meeting> {
+    /// `otherwise + k * max(0, g)`, where `then` is the value for `g >= 0`, and that is equal to it there. By defaults of parameters `k`
+    /// is not negative, or `-k` is, which is taken away then.
+    fn meeting(&mut self, (then, otherwise): (NodeId, NodeId), beyond: NodeId) -> Option<NodeId> {
         let near = self.branch_within(otherwise, beyond);
-        let factor = match self.given_factor([then, near], beyond) {
-            Some(factor) => factor,
-            None => {
-                let dag = &mut self.problem.dag;
-                let difference = dag.sub(then, near);
-                multiple(dag, difference, beyond)?
-            }
-        };
+        let factor = self.given_factor([then, near], beyond)?;
         let dag = &mut self.problem.dag;
         let line = dag.mul(factor, beyond);
         if !is_sum(dag, then, [near, line]) {
@@ -69,17 +56,15 @@ impl Elaborator<'_> {
         }
         let zero = dag.constant(0.0);
         let corner = dag.max(zero, beyond);
-        let by_default = by_defaults(&self.problem, factor);
-        let dag = &mut self.problem.dag;
-        let Some(value) = by_default.filter(|_| dag.is_constant(factor).is_none()) else {
+        if by_defaults(&self.problem, factor, 0).is_some_and(|value| value < 0.0) {
+            let factor = self.given_factor([near, then], beyond)?;
+            let dag = &mut self.problem.dag;
             let corner = dag.mul(factor, corner);
-            return Some(Meeting { sum: dag.add(otherwise, corner), factor: None });
-        };
-        let is_negative = value < 0.0;
-        let factor = if is_negative { dag.neg(factor) } else { factor };
+            return Some(dag.sub(otherwise, corner));
+        }
+        let dag = &mut self.problem.dag;
         let corner = dag.mul(factor, corner);
-        let sum = if is_negative { dag.sub(otherwise, corner) } else { dag.add(otherwise, corner) };
-        Some(Meeting { sum, factor: Some(factor) })
+        Some(dag.add(otherwise, corner))
     }
 
     /// The branch that conditions within a node take wherever another node is not negative; the node itself where that is not known.
@@ -101,33 +86,18 @@ impl Elaborator<'_> {
     /// What is a number, or a multiple of one of these slopes, is written as that, so that its sign is seen: `p - 0.6 * p` is
     /// `0.4 * p`.
     fn given_factor(&mut self, branches: [NodeId; 2], beyond: NodeId) -> Option<NodeId> {
-        let inputs = self.problem.dag.inputs_of(&[beyond]);
-        let unknown = inputs.into_iter().find(|input| {
-            let node = self.problem.dag.input(*input);
-            !is_given(&self.problem, node)
-        })?;
+        let unknown = *self.unknowns(&[beyond]).first()?;
         let dag = &mut self.problem.dag;
         let slope = |dag: &mut Dag, node: NodeId| Some(gradient(dag, node, &[unknown]).ok()?[0]);
         let slopes = [slope(dag, beyond)?, slope(dag, branches[0])?, slope(dag, branches[1])?];
         // `v` of `2 * F * v` and of `F * v` has no part in their quotient: any number stands for it.
-        let inputs = self.problem.dag.inputs_of(&slopes);
-        let unknown: Set<InputId> = inputs
-            .into_iter()
-            .filter(|input| {
-                let node = self.problem.dag.input(*input);
-                !is_given(&self.problem, node)
-            })
-            .collect();
+        let unknown = self.unknowns(&slopes);
         let dag = &mut self.problem.dag;
         let one = dag.constant(1.0);
         let slopes = dag.substitute(&slopes, |input| unknown.contains(&input).then_some(one));
         let (along, slopes) = (slopes[0], [slopes[1], slopes[2]]);
         let difference = dag.sub(slopes[0], slopes[1]);
         let factor = dag.div(difference, along);
-        if !is_given(&self.problem, factor) {
-            return None;
-        }
-        let dag = &mut self.problem.dag;
         if let Some(factor) = dag.is_constant(factor) {
             return factor.is_normal().then(|| dag.constant(factor));
         }
@@ -140,19 +110,12 @@ impl Elaborator<'_> {
         });
         Some(of_one.unwrap_or(factor))
     }
-}
 
-/// The value of a node of parameters alone by their defaults, where it is not 0.
-fn by_defaults(problem: &Problem, node: NodeId) -> Option<f64> {
-    let value = |input: InputId| match problem.leaves.leaf(input) {
-        Leaf::Parameter { parameter, index } => {
-            let place = index.as_ref().map_or(Some(1), Form::as_number)?;
-            problem.parameters[*parameter].value.get(usize::try_from(place - 1).ok()?).copied()
-        }
-        _ => None,
-    };
-    let found = eval(&problem.dag, &[node], |input| value(input).unwrap_or(f64::NAN), |_, _, _| f64::NAN).ok()?[0];
-    found.is_normal().then_some(found)
+    /// What is solved for in some nodes.
+    fn unknowns(&self, nodes: &[NodeId]) -> Vec<InputId> {
+        let inputs = self.problem.dag.inputs_of(nodes).into_iter();
+        inputs.filter(|input| !is_given_leaf(&self.problem, self.problem.leaves.leaf(*input))).collect()
+    }
 }
 
 /// Whether a second node is a multiple of a first one and a number more, neither of them negative: it is not negative where the first
@@ -165,8 +128,7 @@ fn follows(dag: &mut Dag, first: NodeId, second: NodeId) -> bool {
     let [Some((a, b)), Some((c, d))] = values else { return false };
     let factor = (d - b) / (c - a);
     let constant = b - factor * a;
-    // A number that is rounding of 0 is 0.
-    let constant = if constant.abs() <= 1e-12 * b.abs() { 0.0 } else { constant };
+    let constant = if constant.abs() <= ROUNDING * b.abs() { 0.0 } else { constant };
     if !(factor > 0.0 && constant >= 0.0) {
         return false;
     }

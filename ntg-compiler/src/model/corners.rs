@@ -8,13 +8,12 @@
 
 use ntg_structure::Block;
 
-use super::branches::Meeting;
 use super::elaborator::Elaborator;
 use super::monotone::Push;
 use super::piecewise::Lines;
 use super::problem::{Bounds, Constraint, Domain, Form, Imposed, Leaf, Loop, PhaseAt};
 use super::ranges::Ranges;
-use super::signs::Signs;
+use super::signs::{Relied, Signs};
 use super::smoothed;
 use super::unknowns::is_given;
 use super::widths::Widths;
@@ -44,7 +43,7 @@ pub(super) struct Corners {
     /// Tables that are convex or concave, by their lines.
     pub(super) tables: Map<NodeId, Lines>, // Looked up, never iterated.
     /// What stands for conditions whose branches meet.
-    pub(super) branches: Map<NodeId, Meeting>, // Looked up, never iterated.
+    pub(super) branches: Map<NodeId, NodeId>, // Looked up, never iterated.
     /// Corners that are none in what is made of them.
     pub(super) smoothed: Set<NodeId>, // Asked, never iterated.
     done: Map<(NodeId, bool, Site), NodeId>, // Looked up, never iterated.
@@ -79,7 +78,7 @@ impl Elaborator<'_> {
         let mut ranges = Ranges::within(&self.problem);
         let all = self.below(&bodies);
         let branches = self.branches_that_meet(&all);
-        let bodies: Vec<NodeId> = bodies.into_iter().chain(branches.values().map(|own| own.sum)).collect();
+        let bodies: Vec<NodeId> = bodies.into_iter().chain(branches.values().copied()).collect();
         let tables = self.tables_of_lines(&mut ranges, &bodies);
         let mut pass = Corners {
             signs: Signs::of(&self.problem),
@@ -95,8 +94,6 @@ impl Elaborator<'_> {
             helpers: 0,
             span: Span::default(),
         };
-        let factors: Vec<NodeId> = pass.branches.values().filter_map(|own| own.factor).collect();
-        factors.into_iter().for_each(|factor| pass.signs.assume(factor));
         self.corners_limited(&mut pass);
         for term in 0..self.problem.objective.len() {
             let own = &self.problem.objective[term];
@@ -153,7 +150,7 @@ impl Elaborator<'_> {
 
     fn with_corners(
         &mut self,
-        (tables, branches): (&Map<NodeId, Lines>, &Map<NodeId, Meeting>),
+        (tables, branches): (&Map<NodeId, Lines>, &Map<NodeId, NodeId>),
         bodies: &[NodeId],
     ) -> Set<NodeId> {
         let mut within = Set::default();
@@ -183,11 +180,10 @@ impl Elaborator<'_> {
     pub(super) fn corners_found(&mut self, pass: &mut Corners, node: NodeId) {
         let all = self.below(&[node]);
         let branches = self.branches_that_meet(&all);
-        let bodies: Vec<NodeId> = branches.values().map(|own| own.sum).chain([node]).collect();
+        let bodies: Vec<NodeId> = branches.values().copied().chain([node]).collect();
         let tables = self.tables_of_lines(&mut pass.ranges, &bodies);
         pass.within.extend(self.with_corners((&tables, &branches), &bodies));
         pass.tables.extend(tables);
-        branches.values().filter_map(|own| own.factor).for_each(|factor| pass.signs.assume(factor));
         pass.branches.extend(branches);
     }
 
@@ -220,8 +216,8 @@ impl Elaborator<'_> {
         if let Some(known) = pass.done.get(&key) {
             return *known;
         }
-        let by_branches = pass.branches.get(&node).copied().and_then(|own| {
-            let smooth = self.smooth(pass, own.sum, (site, growing), depth + 1);
+        let by_branches = pass.branches.get(&node).copied().and_then(|sum| {
+            let smooth = self.smooth(pass, sum, (site, growing), depth + 1);
             self.has_none(pass, smooth).then_some(smooth)
         });
         let smooth = match by_branches.or_else(|| self.helper(pass, node, (site, growing), depth)) {
@@ -299,24 +295,14 @@ impl Elaborator<'_> {
             return;
         }
         let zero = self.problem.dag.constant(0.0);
-        let mut slopes: Vec<(Span, NodeId)> = pass
-            .branches
-            .iter()
-            .filter(|(node, _)| pass.treated.contains(node))
-            .filter_map(|(node, own)| {
-                let written = self.kinks.iter().find(|(kink, _)| kink == node).map(|(_, span)| *span);
-                Some((written.unwrap_or(pass.span), own.factor?))
-            })
-            .collect();
-        slopes.sort_by_key(|(span, factor)| (span.start, span.end, *factor));
-        for (span, factor) in slopes {
-            let name = format!("{} keeps its steeper branch", self.text(span));
-            self.hold(Domain::Mission, vec![], (factor, Bounds { lower: Some(zero), upper: None }), span);
-            if let Some(row) = self.problem.constraints.last_mut() {
-                row.name = Some(name);
-            }
-        }
-        for parameter in &pass.signs.relied {
+        for relied in &pass.signs.relied {
+            let parameter = match relied {
+                Relied::Parameter(parameter) => parameter,
+                Relied::Difference(node) => {
+                    self.difference_held(*node);
+                    continue;
+                }
+            };
             let declared = &self.problem.parameters[*parameter];
             let (name, unit, count) = (declared.name.clone(), declared.unit.clone(), declared.value.len());
             let over = declared.array.then(|| self.new_index(Form::number(1), Form::number(count as i64)));
@@ -335,6 +321,26 @@ impl Elaborator<'_> {
                 body,
                 bounds: Bounds { lower: Some(zero), upper: None },
             });
+        }
+    }
+
+    /// A row that holds a difference of parameters above 0.
+    fn difference_held(&mut self, node: NodeId) {
+        let inputs = self.problem.dag.inputs_of(&[node]).into_iter();
+        let parameters = inputs.filter_map(|input| match self.problem.leaves.leaf(input) {
+            Leaf::Parameter { parameter, .. } => Some(*parameter),
+            _ => None,
+        });
+        let parameters: Vec<usize> = parameters.collect();
+        let Some(first) = parameters.first() else { return };
+        let span = self.parameters[*first].0.span;
+        let names: Vec<&str> =
+            parameters.iter().map(|parameter| &self.problem.parameters[*parameter].name[..]).collect();
+        let name = format!("a weight of a corner, made of {}, >= 0", names.join(", "));
+        let zero = self.problem.dag.constant(0.0);
+        self.hold(Domain::Mission, vec![], (node, Bounds { lower: Some(zero), upper: None }), span);
+        if let Some(row) = self.problem.constraints.last_mut() {
+            row.name = Some(name);
         }
     }
 

@@ -38,11 +38,6 @@ impl Ranges {
         ranges
     }
 
-    /// Takes a node to stay above 0.
-    pub(super) fn assume_above(&mut self, node: NodeId) {
-        self.known.insert(node, Some((f64::MIN_POSITIVE, f64::MAX)));
-    }
-
     fn index(&self, form: &Form) -> Option<Range> {
         let mut range = (form.constant as f64, form.constant as f64);
         for (index, factor) in &form.terms {

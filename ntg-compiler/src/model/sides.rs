@@ -147,7 +147,7 @@ impl Elaborator<'_> {
                 None => node,
             },
             Node::Select { .. } => match pass.branches.get(&node).copied() {
-                Some(own) => self.other_side(pass, sides, (node, own.sum), growing, depth),
+                Some(sum) => self.other_side(pass, sides, (node, sum), growing, depth),
                 None => self.below_sides(pass, sides, (node, &own), growing, depth + 1),
             },
             Node::Table { .. } => match self.lines_pushed(pass, node, growing) {

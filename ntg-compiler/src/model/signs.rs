@@ -1,16 +1,23 @@
 //! Which expressions are never negative, whatever the unknowns are.
 //!
 //! Takes nodes of the graph, says for which of them that is known: squares, roots, exponentials, durations, and what is
-//! made of such by sums, products, quotients, extremes; and what stays above 0 by its range. Of a parameter its default decides; it is then written down,
-//! since who sets it may change that.
+//! made of such by sums, products, quotients, extremes; and what stays above 0 by its range. Of a parameter its default decides, and of a difference of parameters theirs; that is
+//! then written down, since who sets them may change it.
 
 use super::covered;
-use super::problem::{Bounds, Leaf, Problem, Start};
+use super::problem::{Bounds, Form, Leaf, Problem, Start};
 use super::ranges::Ranges;
-use crate::expr::{Binary, InputId, Map, Node, NodeId, Set, Unary};
+use crate::expr::{Binary, InputId, Map, Node, NodeId, Scalar, Set, Unary};
 
-/// Of what is never negative: the parameters that decide it.
-type Known = Option<Vec<usize>>;
+/// What the defaults of parameters say, and a row must hold: that a parameter is not negative, or a difference of parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Relied {
+    Parameter(usize),
+    Difference(NodeId),
+}
+
+/// Of what is never negative: what that relies on.
+type Known = Option<Vec<Relied>>;
 
 /// What is known of signs, found once for each node.
 #[derive(Default)]
@@ -21,12 +28,15 @@ pub(super) struct Signs {
     limited: Set<(usize, usize)>, // Asked, never iterated.
     /// Those whose limits leave nothing below a number above 0.
     away: Set<(usize, usize)>, // Asked, never iterated.
-    /// The parameters that must not become negative, for what was asked to stay true.
-    pub(super) relied: Vec<usize>,
+    /// What must not become negative, for what was asked to stay true.
+    pub(super) relied: Vec<Relied>,
 }
 
 /// How deep expressions are looked into: far above what people write, and no danger to the stack.
 const MAX_DEPTH: usize = 500;
+
+/// How deep what is made of parameters is evaluated. A choice: a weight has a few operations.
+const MAX_DEFAULTS: usize = 20;
 
 impl Signs {
     /// The signs of a problem whose constraints are known.
@@ -45,16 +55,10 @@ impl Signs {
         signs
     }
 
-    /// Takes a node to stay above 0, which is held by a row.
-    pub(super) fn assume(&mut self, node: NodeId) {
-        self.known.insert(node, Some(vec![]));
-        self.ranges.assume_above(node);
-    }
-
     /// Whether a node is known not to be negative.
     pub(super) fn is_positive(&mut self, problem: &Problem, node: NodeId) -> bool {
-        let Some(parameters) = self.look(problem, node, 0) else { return false };
-        let new: Vec<usize> = parameters.into_iter().filter(|one| !self.relied.contains(one)).collect();
+        let Some(relied) = self.look(problem, node, 0) else { return false };
+        let new: Vec<Relied> = relied.into_iter().filter(|one| !self.relied.contains(one)).collect();
         self.relied.extend(new);
         true
     }
@@ -81,6 +85,7 @@ impl Signs {
                 self.is_away(problem, above, depth + 1) && self.look(problem, other, depth + 1).is_some()
             }),
             Node::Binary(Binary::Pow, a, _) => own(a),
+            Node::Binary(Binary::Sub, ..) => by_defaults(problem, node, 0).is_some_and(|value| value > 0.0),
             Node::Select { then, otherwise, .. } => own(then) && own(otherwise),
             Node::Reduce { body, .. } => own(body),
             _ => false,
@@ -130,7 +135,11 @@ impl Signs {
             _ => None,
         };
         let mut is_above = || self.ranges.of(problem, node).is_some_and(|(least, _)| least >= 0.0);
-        let known = known.or_else(|| is_above().then(Vec::new));
+        let known = known.or_else(|| is_above().then(Vec::new)).or_else(|| {
+            let is_difference = matches!(problem.dag.node(node), Node::Binary(Binary::Sub, ..));
+            let value = is_difference.then(|| by_defaults(problem, node, 0)).flatten();
+            value.filter(|value| *value > 0.0).map(|_| vec![Relied::Difference(node)])
+        });
         self.known.insert(node, known.clone());
         known
     }
@@ -139,7 +148,7 @@ impl Signs {
         let is_positive = match problem.leaves.leaf(input) {
             Leaf::Parameter { parameter, .. } => {
                 let values = &problem.parameters[*parameter].value;
-                return values.iter().all(|value| *value >= 0.0).then(|| vec![*parameter]);
+                return values.iter().all(|value| *value >= 0.0).then(|| vec![Relied::Parameter(*parameter)]);
             }
             Leaf::Integral { integrand, .. } => return self.look(problem, *integrand, depth + 1),
             Leaf::Duration(_) | Leaf::Tau => true,
@@ -153,6 +162,26 @@ impl Signs {
             _ => false,
         };
         is_positive.then(Vec::new)
+    }
+}
+
+/// The value of a node of parameters and numbers by the defaults of the parameters.
+pub(super) fn by_defaults(problem: &Problem, node: NodeId, depth: usize) -> Option<f64> {
+    let own = |x: NodeId| by_defaults(problem, x, depth + 1);
+    match *problem.dag.node(node) {
+        _ if depth > MAX_DEFAULTS => None,
+        Node::Const(number) => Some(number.value()),
+        Node::Input(input) => match problem.leaves.leaf(input) {
+            Leaf::Parameter { parameter, index } => {
+                let place = index.as_ref().map_or(Some(1), Form::as_number)?;
+                problem.parameters[*parameter].value.get(usize::try_from(place - 1).ok()?).copied()
+            }
+            _ => None,
+        },
+        Node::Unary(op, x) => Some(f64::unary(op, &own(x)?)),
+        Node::Binary(op, a, b) => Some(f64::binary(op, &own(a)?, &own(b)?)),
+        Node::Powi(x, n) => Some(f64::integer_power(&own(x)?, n)),
+        _ => None,
     }
 }
 

@@ -18,7 +18,8 @@ pub(super) fn is_affine(problem: &Problem, node: NodeId) -> bool {
     degree(problem, node) == Degree::Linear
 }
 
-fn is_given_leaf(problem: &Problem, leaf: &Leaf) -> bool {
+/// Whether a leaf is given before the solve.
+pub(super) fn is_given_leaf(problem: &Problem, leaf: &Leaf) -> bool {
     match leaf {
         Leaf::Parameter { .. } | Leaf::Index(_) | Leaf::Tau => true,
         Leaf::Time(at) | Leaf::Start(at) => is_clock_given(problem, at.phase),
