@@ -189,6 +189,7 @@ structs! {
     Place { line: u32 = 0, column: u32 = 0, text: Text = "" }
     Places { first: i64, instants: List<Instant> }
     Reduction { op: ReduceOp, over: Loop, body: Call }
+    Relaxation { sides: List<usize>, exact: List<usize>, is_exact: bool }
     Shared { phase: usize, output: usize, until: List<f64> }
     Spline { order: usize, smoothness: usize, breakpoints: Breakpoints }
     Structure {
@@ -210,6 +211,7 @@ structs! {
         shown: List<Group> = &[],
         arguments: List<Arguments> = &[],
         corners: List<Place> = &[],
+        relaxations: List<Relaxation> = &[],
         terms: List<Term> = &[],
         measurements: List<Measurement> = &[],
         constraints: List<Constraint> = &[],

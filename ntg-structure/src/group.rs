@@ -140,6 +140,18 @@ pub struct Term {
     pub unit: Unit,
 }
 
+/// A corner of an equation for which a helper stands: a number for each point beside the corner, or at it (docs/maths.md,
+/// equation 18.6).
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
+pub struct Relaxation {
+    /// The constraints, by number, that hold the helper beside the corner.
+    pub sides: Vec<usize>,
+    /// The constraints, by number, that hold it at the corner.
+    pub exact: Vec<usize>,
+    /// Whether `exact` is posed, in place of `sides`.
+    pub is_exact: bool,
+}
+
 /// Measured values with their standard deviations: half the sum of squared ratios is part of a term of the objective
 /// (docs/maths.md, section 17).
 #[derive(Clone, Debug, PartialEq)]

@@ -24,7 +24,7 @@ mod part;
 mod quantity;
 
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
-pub use group::{Angle, Arguments, Block, Constraint, Domain, Group, Integral, Measurement, Named, Row, Term};
+pub use group::{Angle, Arguments, Block, Constraint, Domain, Group, Integral, Measurement, Named, Relaxation, Row, Term};
 pub use guess::{Continuation, Guess, GuessKind, GuessScope};
 pub use index::{Affine, Family, Grid, Loop};
 pub use kernel::{Degree, Kernel};
@@ -75,6 +75,8 @@ pub struct Structure {
     pub arguments: Vec<Arguments>,
     /// Where a gradient may jump in what is solved.
     pub corners: Vec<Place>,
+    /// Corners of equations for which helpers stand.
+    pub relaxations: Vec<Relaxation>,
     /// Terms of the objective, for reports.
     pub terms: Vec<Term>,
     /// What was measured: parts of terms whose residuals are reported.

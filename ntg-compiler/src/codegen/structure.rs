@@ -28,6 +28,7 @@ pub(super) fn structure(structure: &Structure) -> TokenStream {
         ("shown", quote! { Group }, entries(&structure.shown)),
         ("arguments", quote! { Arguments }, entries(&structure.arguments)),
         ("corners", quote! { Place }, entries(&structure.corners)),
+        ("relaxations", quote! { Relaxation }, entries(&structure.relaxations)),
         ("terms", quote! { Term }, entries(&structure.terms)),
         ("measurements", quote! { Measurement }, entries(&structure.measurements)),
         ("constraints", quote! { Constraint }, entries(&structure.constraints)),

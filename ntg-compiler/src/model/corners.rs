@@ -32,6 +32,14 @@ pub(super) struct Site {
     pub(super) floats: bool,
 }
 
+/// A helper, and what it stands for.
+pub(super) struct Made {
+    pub(super) helper: NodeId,
+    pub(super) corner: NodeId,
+    pub(super) site: Site,
+    pub(super) span: Span,
+}
+
 /// The pass's state.
 pub(super) struct Corners {
     pub(super) signs: Signs,
@@ -52,6 +60,10 @@ pub(super) struct Corners {
     /// The choices between the tip of a cone and the rest of it, which are no corners.
     pub(super) tips: Set<NodeId>, // Asked, never iterated.
     pub(super) helpers: usize,
+    /// All helpers, in their order.
+    pub(super) made: Vec<Made>,
+    /// Where corners of equations stand for which there are helpers.
+    pub(super) relaxed: Vec<Span>,
     /// The term in hand.
     pub(super) span: Span,
 }
@@ -92,6 +104,8 @@ impl Elaborator<'_> {
             treated: Set::default(),
             tips: Set::default(),
             helpers: 0,
+            made: vec![],
+            relaxed: vec![],
             span: Span::default(),
         };
         self.corners_limited(&mut pass);
@@ -106,10 +120,12 @@ impl Elaborator<'_> {
                 (own.body, own.written) = (smooth, Some(body));
             }
         }
+        self.corners_relaxed(&mut pass);
         self.weights_held(&pass);
         let (left, smoothed) = self.corners_left(&pass.tips);
         self.unnoted((&pass, &smoothed), &left);
-        let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();
+        let places = left.iter().filter_map(|node| self.problem.origin.get(node).copied());
+        let mut spans: Vec<Span> = places.chain(pass.relaxed).collect();
         spans.sort_by_key(|span| (span.start, span.end));
         spans.dedup();
         self.problem.corners = spans;
@@ -344,10 +360,12 @@ impl Elaborator<'_> {
         }
     }
 
-    /// The corners in what is solved, and those that are none because a factor vanishes where they are; of what is only shown
+    /// The corners in what is solved, but for rows that hold helpers at them, and those that are none because a factor vanishes where they are; of what is only shown
     /// there are these too.
     fn corners_left(&mut self, tips: &Set<NodeId>) -> (Vec<NodeId>, Set<NodeId>) {
-        let bodies = self.problem.constraints.iter().map(|constraint| constraint.body);
+        let held: Set<usize> = self.problem.relaxations.iter().flat_map(|own| own.exact.iter().copied()).collect();
+        let constraints = self.problem.constraints.iter().enumerate();
+        let bodies = constraints.filter(|(number, _)| !held.contains(number)).map(|(_, constraint)| constraint.body);
         let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();
         let all = self.below(&bodies);
         let kinks: Set<NodeId> = expr::kinks(&self.problem.dag, &all).into_iter().collect();

@@ -7,7 +7,7 @@
 
 use ntg_structure::{Block, Unit};
 
-use super::corners::{Corners, Site, squares};
+use super::corners::{Corners, Made, Site, squares};
 use super::elaborator::Elaborator;
 use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, Variable};
 use super::unknowns::{is_affine, is_given};
@@ -45,6 +45,7 @@ impl Elaborator<'_> {
         }
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
         let helper = self.helper_leaf(pass, corner, site, span)?;
+        pass.made.push(Made { helper, corner, site: site.clone(), span });
         let zero = self.problem.dag.constant(0.0);
         let above = |node| (node, Bounds { lower: Some(zero), upper: None });
         match against {
@@ -208,7 +209,7 @@ impl Elaborator<'_> {
     }
 
     /// A row that holds a helper at its place.
-    fn hold_helper(&mut self, site: &Site, loops: Vec<Loop>, row: (NodeId, Bounds), span: Span) {
+    pub(super) fn hold_helper(&mut self, site: &Site, loops: Vec<Loop>, row: (NodeId, Bounds), span: Span) {
         let domain = site.along.as_ref().map_or(Domain::Mission, |at| Domain::Path(at.clone(), Part::WHOLE));
         self.hold(domain, site.loops.iter().cloned().chain(loops).collect(), row, span);
     }

@@ -71,6 +71,7 @@ mod quantities;
 mod ranges;
 mod rates;
 mod reductions;
+mod relaxed;
 mod rename;
 mod repeat;
 mod resting;

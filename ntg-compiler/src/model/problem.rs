@@ -5,7 +5,7 @@
 //! with `program`. Arrays, loops, phases and agents are families: an index is a [`Form`] in
 //! [`IndexId`]s, and whoever holds an expression also holds the [`Loop`]s that bind its indices.
 
-use ntg_structure::{Block, Grid, Independent, Parameter, Shared, Spline, Table, Unit};
+use ntg_structure::{Block, Grid, Independent, Parameter, Relaxation, Shared, Spline, Table, Unit};
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Dag, InputId, Map, NodeId};
@@ -465,6 +465,8 @@ pub struct Problem {
     pub constraints: Vec<Constraint>,
     /// Where a gradient may jump in the objective or a constraint.
     pub corners: Vec<Span>,
+    /// Corners of equations for which helpers stand.
+    pub relaxations: Vec<Relaxation>,
     /// Named expressions.
     pub named: Vec<Named>,
     /// Guesses, in the order of the spec.

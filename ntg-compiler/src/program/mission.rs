@@ -29,6 +29,7 @@ pub(super) fn structure(lowering: &mut Lowering<'_>) -> Structure {
     };
     structure.terms = terms(lowering);
     structure.corners = lowering.problem.corners.iter().map(|span| lowering.place(*span)).collect();
+    structure.relaxations.clone_from(&lowering.problem.relaxations);
     structure.constraints = constraints(lowering);
     structure.norms = norms(&lowering.problem);
     structure.angles = angles(&lowering.problem);

@@ -200,6 +200,7 @@ fn with_mesh(mut full: Structure, own: &Structure) -> Result<Structure, SetupErr
     }
     full.parameters.clone_from(&own.parameters);
     full.tables.clone_from(&own.tables);
+    full.relaxations.clone_from(&own.relaxations);
     Ok(full)
 }
 

@@ -16,6 +16,7 @@ mod coarse_start;
 mod continuation;
 mod fallback;
 mod feasible_guess;
+mod relaxation;
 mod session;
 mod simulated_start;
 mod solve;

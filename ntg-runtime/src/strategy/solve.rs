@@ -15,6 +15,7 @@ use crate::solution::Solution;
 use crate::status::Status as InWords;
 use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Multipliers, Nlp, Outcome, Start, Status};
+use ntg_structure::Structure;
 use std::time::Instant;
 
 /// Most iterations of an attempt from the last solution, where a second one may follow. A fit: ten thousand steps of each
@@ -40,12 +41,17 @@ pub struct Tracked {
 }
 
 impl Session {
-    /// Solves a problem from a guess, by continuation where it says so.
-    pub(crate) fn solve(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
+    /// Solves a problem that is posed in one way from a guess, by continuation where it says so. Comes with the numbers of the
+    /// relaxations that leave a gap.
+    pub(super) fn solve_posed(
+        &mut self,
+        task: Task<'_>,
+        mut structure: Structure,
+        settings: &Settings,
+    ) -> Result<(Report, Vec<usize>), Error> {
         let began = Instant::now();
         let (mut budget, rough) = (Budget::new(settings), settings.rough());
         let Task { problem, guess } = task;
-        let mut structure = self.structure_of(problem);
         let steps = steps(&structure);
         let mut history: Vec<StepReport> = vec![];
         let mut last: Option<Outcome> = None;
@@ -111,12 +117,13 @@ impl Session {
             }
             history.push(record(&nlp, step, &outcome, step_began));
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
+                let open = nlp.open_relaxations(&outcome.x);
                 let mut report = self.report(nlp, outcome, history, settings)?;
                 report.singular = at_guess;
                 report.guess_was_better(is_guess_better);
                 self.structure = Some(structure);
                 report.seconds = began.elapsed().as_secs_f64();
-                return Ok(report);
+                return Ok((report, open));
             }
             self.kept = Some(nlp.keep());
             // A step that failed has still moved; the next one may recover from there.
@@ -184,7 +191,8 @@ impl Session {
         last: &Solution,
         settings: &Settings,
     ) -> Result<(Transcription<'p>, Outcome), Error> {
-        let structure = self.structure_of(problem);
+        let mut structure = self.structure_of(problem);
+        structure.relaxations.clone_from(&last.structure().relaxations);
         let mut nlp = self.program(problem, &structure)?;
         self.structure = Some(structure);
         let first = start(&nlp, Some(&Guess::from(last)))?;
@@ -200,7 +208,10 @@ impl Session {
             rows = carried(&last.inner, &nlp);
             Start::Warm(Multipliers { rows: &rows, ..own })
         };
-        let once = self.solve_measured(&mut nlp, FirstPoint { x: &first, from }, settings);
+        let mut once = self.solve_measured(&mut nlp, FirstPoint { x: &first, from }, settings);
+        if once.status.has_solution() && !nlp.open_relaxations(&once.x).is_empty() {
+            once.status = Status::StepTooSmall;
+        }
         Ok((nlp, once))
     }
 }

@@ -34,6 +34,7 @@ pub(crate) mod points;
 mod range_maps;
 mod reduce;
 pub(crate) mod relations;
+pub(crate) mod relaxed;
 mod repeated;
 pub(crate) mod rows;
 mod scale;
@@ -323,10 +324,13 @@ fn angles(structure: &Structure, layout: &Layout) -> Vec<(u32, f64)> {
     each.flat_map(|(radian, coefficients)| coefficients.iter().map(move |variable| (*variable, radian))).collect()
 }
 
-/// Bounds without sizes, and without those of rows that boundary conditions meet.
+/// Bounds without sizes, and without those of rows that boundary conditions meet, and of relaxations that are not posed.
 fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f64)], &[usize])) -> Limits {
     let (mut row_lower, mut row_upper) = (elements.lower.clone(), elements.upper.clone());
     for &row in met {
+        (row_lower[row], row_upper[row]) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    for row in relaxed::not_posed(structure, &elements.rows) {
         (row_lower[row], row_upper[row]) = (f64::NEG_INFINITY, f64::INFINITY);
     }
     let is_norm = |row: &RowInfo| matches!(row.kind, RowKind::Constraint(c) if structure.norms.contains(&c));
