@@ -189,7 +189,14 @@ structs! {
     Place { line: u32 = 0, column: u32 = 0, text: Text = "" }
     Places { first: i64, instants: List<Instant> }
     Reduction { op: ReduceOp, over: Loop, body: Call }
-    Relaxation { sides: List<usize>, exact: List<usize>, is_exact: bool }
+    Relaxation {
+        equation: usize,
+        other: usize,
+        sides: List<usize>,
+        parked: List<usize>,
+        exact_first: bool,
+        is_exact: bool
+    }
     Shared { phase: usize, output: usize, until: List<f64> }
     Spline { order: usize, smoothness: usize, breakpoints: Breakpoints }
     Structure {

@@ -140,15 +140,21 @@ pub struct Term {
     pub unit: Unit,
 }
 
-/// A corner of an equation for which a helper stands: a number for each point beside the corner, or at it (docs/maths.md,
-/// equation 18.6).
+/// An equation with corners for which helpers stand, numbers beside the corners (docs/maths.md, equation 18.6): it has one form
+/// with the helpers and one as it is written, of which one is posed. All constraints are given by their numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Relaxation {
-    /// The constraints, by number, that hold the helper beside the corner.
+    /// The form that is posed, as the constraint of the spec.
+    pub equation: usize,
+    /// The form that is not posed.
+    pub other: usize,
+    /// What holds the helpers beside the corners.
     pub sides: Vec<usize>,
-    /// The constraints, by number, that hold it at the corner.
-    pub exact: Vec<usize>,
-    /// Whether `exact` is posed, in place of `sides`.
+    /// What holds them at 0 where the equation is posed as it is written.
+    pub parked: Vec<usize>,
+    /// Whether a solver poses it first as it is written: inputs have no part in the corners, and nothing holds a trajectory there.
+    pub exact_first: bool,
+    /// Whether it is posed as it is written.
     pub is_exact: bool,
 }
 

@@ -24,7 +24,9 @@ mod part;
 mod quantity;
 
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
-pub use group::{Angle, Arguments, Block, Constraint, Domain, Group, Integral, Measurement, Named, Relaxation, Row, Term};
+pub use group::{
+    Angle, Arguments, Block, Constraint, Domain, Group, Integral, Measurement, Named, Relaxation, Row, Term,
+};
 pub use guess::{Continuation, Guess, GuessKind, GuessScope};
 pub use index::{Affine, Family, Grid, Loop};
 pub use kernel::{Degree, Kernel};
@@ -75,7 +77,7 @@ pub struct Structure {
     pub arguments: Vec<Arguments>,
     /// Where a gradient may jump in what is solved.
     pub corners: Vec<Place>,
-    /// Corners of equations for which helpers stand.
+    /// Equations with corners for which helpers stand.
     pub relaxations: Vec<Relaxation>,
     /// Terms of the objective, for reports.
     pub terms: Vec<Term>,
@@ -107,6 +109,35 @@ impl Structure {
     pub fn set_parameter(&mut self, parameter: usize, value: &[f64]) {
         self.parameters[parameter].value.clear();
         self.parameters[parameter].value.extend_from_slice(value);
+    }
+
+    /// Poses an equation with corners as it is written, or with helpers.
+    ///
+    /// # Panics
+    /// There is no such relaxation.
+    pub fn pose(&mut self, relaxation: usize, is_exact: bool) {
+        let own = &mut self.relaxations[relaxation];
+        if std::mem::replace(&mut own.is_exact, is_exact) == is_exact {
+            return;
+        }
+        let (one, other) = (own.equation, own.other);
+        for row in self.groups.iter_mut().flat_map(|group| &mut group.rows) {
+            if let Row::Constraint { constraint, .. } | Row::Part { constraint, .. } = row {
+                *constraint = match *constraint {
+                    own if own == one => other,
+                    own if own == other => one,
+                    own => own,
+                };
+            }
+        }
+    }
+
+    /// Whether a constraint is posed: all are but those of relaxations that hold in the other form.
+    pub fn is_posed(&self, constraint: usize) -> bool {
+        self.relaxations.iter().all(|own| {
+            let left_out = if own.is_exact { &own.sides } else { &own.parked };
+            constraint != own.other && !left_out.contains(&constraint)
+        })
     }
 
     /// A group by its number: those of `groups`, then those of `shown`.

@@ -32,10 +32,9 @@ pub(super) struct Site {
     pub(super) floats: bool,
 }
 
-/// A helper, and what it stands for.
+/// A helper, and where it stands.
 pub(super) struct Made {
     pub(super) helper: NodeId,
-    pub(super) corner: NodeId,
     pub(super) site: Site,
     pub(super) span: Span,
 }
@@ -360,10 +359,10 @@ impl Elaborator<'_> {
         }
     }
 
-    /// The corners in what is solved, but for rows that hold helpers at them, and those that are none because a factor vanishes where they are; of what is only shown
+    /// The corners in what is solved, but for equations for which there is a form with helpers, and those that are none because a factor vanishes where they are; of what is only shown
     /// there are these too.
     fn corners_left(&mut self, tips: &Set<NodeId>) -> (Vec<NodeId>, Set<NodeId>) {
-        let held: Set<usize> = self.problem.relaxations.iter().flat_map(|own| own.exact.iter().copied()).collect();
+        let held: Set<usize> = self.problem.relaxations.iter().map(|own| own.other).collect();
         let constraints = self.problem.constraints.iter().enumerate();
         let bodies = constraints.filter(|(number, _)| !held.contains(number)).map(|(_, constraint)| constraint.body);
         let bodies: Vec<NodeId> = bodies.chain(self.problem.objective.iter().map(|term| term.body)).collect();

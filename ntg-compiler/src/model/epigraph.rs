@@ -45,7 +45,7 @@ impl Elaborator<'_> {
         }
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
         let helper = self.helper_leaf(pass, corner, site, span)?;
-        pass.made.push(Made { helper, corner, site: site.clone(), span });
+        pass.made.push(Made { helper, site: site.clone(), span });
         let zero = self.problem.dag.constant(0.0);
         let above = |node| (node, Bounds { lower: Some(zero), upper: None });
         match against {

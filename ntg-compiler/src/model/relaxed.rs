@@ -1,47 +1,88 @@
 //! Corners in equations, `der(m) == -c * norm(F)` (docs/maths.md, equation 18.6).
 //!
-//! Takes equations that hold all along a phase, and those of the whole mission; a helper stands for each corner that is a
-//! summand in them, or a factor of one, held on the convex side of the corner alone. Whether the solution has it at the
-//! corner is seen when it is known: each [`Relaxation`] has the rows that hold the helper beside its corner, and those that
-//! hold it at the corner, of which a solver poses the ones or the others. Signs decide nothing here.
+//! Takes equations that hold all along a phase, and those of the whole mission. In another form of each a helper stands for
+//! each corner that is a summand, or a factor of one, and is held on the convex side of the corner alone. Whether the solution
+//! has it at the corner is seen when it is known: a solver poses the one form or the other ([`Relaxation`]). Signs decide
+//! nothing here.
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
-use super::problem::{Bounds, Domain, Imposed, Leaf, Part};
+use super::problem::{Bounds, Constraint, Domain, Imposed, Leaf, Part};
 use super::unknowns::is_given;
 use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
-use ntg_structure::Relaxation;
+use ntg_structure::{Block, Relaxation};
 
 /// How deep equations are looked into; deeper corners stay.
 const MAX_DEPTH: usize = 500;
 
-/// The helpers that stand for corners of equations.
-type Known = Map<(NodeId, Site), NodeId>; // Looked up, never iterated.
+/// What is known of one equation.
+struct Known<'o> {
+    /// The helpers that stand for its corners.
+    helpers: Map<(NodeId, Site), NodeId>, // Looked up, never iterated.
+    /// The constraints that hold them beside their corners, by number.
+    sides: Vec<usize>,
+    /// Whether inputs have no part in the corners.
+    has_states_alone: bool,
+    orders: &'o Orders,
+}
+
+/// The highest derivative of each output in all that is solved, by phase and output.
+type Orders = Map<(usize, usize), usize>; // Looked up, never iterated.
 
 impl Elaborator<'_> {
-    /// Takes the corners out of equations.
+    /// Gives equations with corners a form without.
     pub(super) fn corners_relaxed(&mut self, pass: &mut Corners) {
-        let mut known = Known::default();
+        let mut orders = Orders::default();
+        let bodies: Vec<NodeId> = self.problem.constraints.iter().map(|own| own.body).collect();
+        for (place, order) in self.outputs_in(&bodies) {
+            let highest = orders.entry(place).or_insert(0);
+            *highest = order.max(*highest);
+        }
         for number in 0..self.problem.constraints.len() {
             let own = &self.problem.constraints[number];
             let is_equation = own.bounds.lower.is_some() && own.bounds.lower == own.bounds.upper;
-            if !is_equation || own.imposed != Imposed::Everywhere || !pass.has_corners(own.body) {
-                continue;
-            }
-            let along = match &own.domain {
-                Domain::Path(phase, part) if *part == Part::WHOLE => Some(phase.clone()),
-                Domain::Mission => None,
-                _ => continue,
-            };
-            let (body, site) = (own.body, Site { loops: own.loops.clone(), along, floats: false });
-            pass.span = own.span;
-            let relaxed = self.relaxed(pass, &mut known, (body, false), &site, 0);
-            if relaxed != body {
-                self.origin(relaxed, pass.span);
-                let own = &mut self.problem.constraints[number];
-                (own.body, own.written) = (relaxed, Some(body));
+            if is_equation && own.imposed == Imposed::Everywhere && pass.has_corners(own.body) {
+                self.equation_relaxed(pass, &orders, number);
             }
         }
+    }
+
+    fn equation_relaxed(&mut self, pass: &mut Corners, orders: &Orders, number: usize) {
+        let own = self.problem.constraints[number].clone();
+        let along = match &own.domain {
+            Domain::Path(phase, part) if *part == Part::WHOLE => Some(phase.clone()),
+            Domain::Mission => None,
+            _ => return,
+        };
+        let site = Site { loops: own.loops.clone(), along, floats: false };
+        pass.span = own.span;
+        let made = pass.made.len();
+        let mut known = Known { helpers: Map::default(), sides: vec![], has_states_alone: true, orders };
+        let relaxed = self.relaxed(pass, &mut known, (own.body, false), &site, 0);
+        if relaxed == own.body {
+            return;
+        }
+        self.origin(relaxed, own.span);
+        let zero = self.problem.dag.constant(0.0);
+        let at_zero = Bounds { lower: Some(zero), upper: Some(zero) };
+        let first = self.problem.constraints.len();
+        for made in pass.made.split_off(made) {
+            self.hold_helper(&made.site, vec![], (made.helper, at_zero.clone()), made.span);
+            pass.relaxed.push(made.span);
+        }
+        let other = self.problem.constraints.len();
+        let as_written = Constraint { name: None, block: Block::Corner, written: None, ..own.clone() };
+        self.problem.constraints.push(as_written);
+        let equation = &mut self.problem.constraints[number];
+        (equation.body, equation.written) = (relaxed, Some(own.body));
+        self.problem.relaxations.push(Relaxation {
+            equation: number,
+            other,
+            sides: known.sides,
+            parked: (first..other).collect(),
+            exact_first: known.has_states_alone,
+            is_exact: false,
+        });
     }
 
     /// An equation's node in which helpers stand for corners; `is_multiplied` says whether it is multiplied by what is solved
@@ -49,7 +90,7 @@ impl Elaborator<'_> {
     fn relaxed(
         &mut self,
         pass: &mut Corners,
-        known: &mut Known,
+        known: &mut Known<'_>,
         (node, is_multiplied): (NodeId, bool),
         site: &Site,
         depth: usize,
@@ -57,7 +98,7 @@ impl Elaborator<'_> {
         if depth > MAX_DEPTH || !pass.has_corners(node) || pass.smoothed.contains(&node) {
             return node;
         }
-        if let Some(helper) = known.get(&(node, site.clone())) {
+        if let Some(helper) = known.helpers.get(&(node, site.clone())) {
             return *helper;
         }
         if let Some(sum) = pass.branches.get(&node).copied() {
@@ -79,7 +120,8 @@ impl Elaborator<'_> {
                 for (at, operand) in operands.iter().enumerate() {
                     let is_divisor = at > 0 && matches!(own, Node::Binary(Binary::Div, ..));
                     let others = operands.iter().enumerate().filter(|(other, _)| *other != at);
-                    let by_unknown = is_product && others.into_iter().any(|(_, other)| !is_given(&self.problem, *other));
+                    let by_unknown =
+                        is_product && others.into_iter().any(|(_, other)| !is_given(&self.problem, *other));
                     let image = match is_divisor {
                         true => *operand,
                         false => self.relaxed(pass, known, (*operand, is_multiplied || by_unknown), &inner, depth + 1),
@@ -98,34 +140,45 @@ impl Elaborator<'_> {
             },
             // What a distance is a factor of seldom vanishes with it: gravitation, a spring.
             Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if is_multiplied => node,
-            _ => {
-                let helper = self.relaxation(pass, (node, site), depth);
-                known.extend(helper.map(|helper| ((node, site.clone()), helper)));
-                helper.unwrap_or(node)
-            }
+            _ => self.held_beside(pass, known, node, (site, depth)).unwrap_or(node),
         }
     }
 
-    /// A helper beside a corner with the rows that hold it there; none where nothing is known of the corner's sides.
-    fn relaxation(&mut self, pass: &mut Corners, (corner, site): (NodeId, &Site), depth: usize) -> Option<NodeId> {
-        let (before, helpers) = (self.problem.constraints.len(), pass.made.len());
+    /// A helper that is held beside a corner; none where nothing is known of the corner's sides.
+    fn held_beside(
+        &mut self,
+        pass: &mut Corners,
+        known: &mut Known<'_>,
+        corner: NodeId,
+        (site, depth): (&Site, usize),
+    ) -> Option<NodeId> {
         if !self.has_one_corner(pass, corner) {
             return None;
         }
-        let found = [true, false].into_iter().find_map(|growing| self.helper(pass, corner, (site, growing), depth))?;
-        pass.treated.insert(corner);
-        let sides = (before..self.problem.constraints.len()).collect();
         let first = self.problem.constraints.len();
-        let zero = self.problem.dag.constant(0.0);
-        for made in pass.made.split_off(helpers) {
-            let body = self.problem.dag.sub(made.helper, made.corner);
-            let equal = Bounds { lower: Some(zero), upper: Some(zero) };
-            self.hold_helper(&made.site, vec![], (body, equal), made.span);
-            pass.relaxed.push(made.span);
-        }
-        let exact = (first..self.problem.constraints.len()).collect();
-        self.problem.relaxations.push(Relaxation { sides, exact, is_exact: false });
-        Some(found)
+        let helper = [true, false].into_iter().find_map(|growing| self.helper(pass, corner, (site, growing), depth))?;
+        pass.treated.insert(corner);
+        known.sides.extend(first..self.problem.constraints.len());
+        known.has_states_alone &= self.has_states_alone(known.orders, corner);
+        known.helpers.insert((corner, site.clone()), helper);
+        Some(helper)
+    }
+
+    /// Whether a corner is made of outputs whose derivatives stand in equations, and of no others.
+    fn has_states_alone(&self, orders: &Orders, corner: NodeId) -> bool {
+        let mut outputs = self.outputs_in(&[corner]).into_iter().peekable();
+        outputs.peek().is_some() && outputs.all(|(place, order)| orders.get(&place).is_some_and(|own| order < *own))
+    }
+
+    /// The outputs in some nodes and in their integrands, by phase and output, with the order of the derivative.
+    fn outputs_in(&self, nodes: &[NodeId]) -> Vec<((usize, usize), usize)> {
+        let all = self.below(nodes);
+        let leaves = self.problem.dag.inputs_of(&all).into_iter().map(|input| self.problem.leaves.leaf(input));
+        let outputs = leaves.filter_map(|leaf| match leaf {
+            Leaf::Flat { phase, output, order, .. } => Some(((phase.phase, *output), *order)),
+            _ => None,
+        });
+        outputs.collect()
     }
 
     /// Whether the sides of a corner have no corners; `max(a, max(b, c))` is one with three sides.

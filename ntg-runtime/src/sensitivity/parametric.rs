@@ -200,7 +200,9 @@ fn with_mesh(mut full: Structure, own: &Structure) -> Result<Structure, SetupErr
     }
     full.parameters.clone_from(&own.parameters);
     full.tables.clone_from(&own.tables);
-    full.relaxations.clone_from(&own.relaxations);
+    for (number, solved) in own.relaxations.iter().enumerate() {
+        full.pose(number, solved.is_exact);
+    }
     Ok(full)
 }
 

@@ -3,10 +3,18 @@
 use super::budget::Budget;
 use super::session::{Session, Task};
 use crate::error::Error;
+use crate::problem::Problem;
 use crate::report::Report;
 use crate::settings::Settings;
 use crate::status::Status;
+use ntg_structure::Relaxation;
 use std::time::Instant;
+
+/// Helpers that miss their corners by less, as a part of the largest, are on their way to them. A choice.
+const NEARLY: f64 = 1e-3;
+/// The part of the tolerance to which a solve goes on then. A law: by (18.2) the helper misses its corner by the root of what its
+/// row does.
+const CLOSER: f64 = 1e-3;
 
 impl Session {
     /// Solves a problem from a guess, with helpers beside the corners of its equations as long as they end at them.
@@ -16,24 +24,74 @@ impl Session {
         if structure.relaxations.is_empty() {
             return Ok(self.solve_posed(task, structure, settings)?.0);
         }
-        structure.relaxations.iter_mut().for_each(|own| own.is_exact = false);
         let mut budget = Budget::new(settings);
+        let tried = ways(&structure.relaxations);
+        // Each in few iterations, then each in many.
+        let mut ways = tried.iter().chain(&tried).cloned().enumerate().peekable();
+        let (mut number, mut way) = ways.next().expect("there is one at least");
         loop {
-            let is_relaxed = structure.relaxations.iter().any(|own| !own.is_exact);
-            let limited = if is_relaxed { budget.attempt() } else { budget.rest() };
-            let (mut report, open) =
-                self.solve_posed(task, structure.clone(), limited.as_ref().unwrap_or(settings))?;
+            way.iter().enumerate().for_each(|(number, is_exact)| structure.pose(number, *is_exact));
+            let limited = match (number < tried.len(), ways.peek()) {
+                (true, _) => budget.near(),
+                (false, Some(_)) => budget.attempt(),
+                (false, None) => budget.rest(),
+            };
+            let limited = limited.as_ref().unwrap_or(settings);
+            let (mut report, open) = self.solve_posed(task, structure.clone(), limited)?;
             budget.spend(report.iterations);
             report.iterations = budget.spent();
             report.seconds = began.elapsed().as_secs_f64();
             let is_solved = report.has_solution();
             let is_stopped = matches!(report.status, Status::Cancelled | Status::TimeLimit);
-            if !is_relaxed || is_stopped || (is_solved && open.is_empty()) || budget.rest().is_none() {
+            if is_stopped || (is_solved && open.is_empty()) || budget.rest().is_none() {
                 return Ok(report);
             }
-            for (number, own) in structure.relaxations.iter_mut().enumerate() {
-                own.is_exact |= !is_solved || open.contains(&number);
+            if is_solved
+                && open.iter().all(|(_, missed)| *missed < NEARLY)
+                && let Some(tight) = self.closer(task.problem, &report, &budget)?
+            {
+                budget.spend(tight.iterations);
+                return Ok(Report { iterations: budget.spent(), seconds: began.elapsed().as_secs_f64(), ..tight });
+            }
+            if is_solved {
+                open.into_iter().for_each(|(number, _)| way[number] = true);
+            } else if let Some(next) = ways.next() {
+                (number, way) = next;
+            } else {
+                return Ok(report);
             }
         }
+    }
+
+    /// The solution that a solution is near whose equations are missed by little as they are written: closer to the bounds.
+    fn closer(&mut self, problem: &dyn Problem, report: &Report, budget: &Budget<'_>) -> Result<Option<Report>, Error> {
+        let Some(rest) = budget.near() else { return Ok(None) };
+        let settings = Settings { tolerance: CLOSER * rest.tolerance, ..rest };
+        self.solve_again(problem, &report.solution, &settings)
+    }
+}
+
+/// What is tried in turn: which relaxations are exact.
+fn ways(relaxations: &[Relaxation]) -> Vec<Vec<bool>> {
+    let mut ways: Vec<Vec<bool>> = vec![relaxations.iter().map(|own| own.exact_first).collect()];
+    for is_exact in [false, true] {
+        let way = vec![is_exact; relaxations.len()];
+        if !ways.contains(&way) {
+            ways.push(way);
+        }
+    }
+    ways
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_of_states_are_exact_first() {
+        let of = |exact_first: bool| Relaxation { exact_first, ..Relaxation::default() };
+        assert_eq!(ways(&[of(false)]), [[false], [true]]);
+        assert_eq!(ways(&[of(true)]), [[true], [false]]);
+        assert_eq!(ways(&[of(true), of(false)]), [[true, false], [false, false], [true, true]]);
     }
 }

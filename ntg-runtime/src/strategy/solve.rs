@@ -41,14 +41,14 @@ pub struct Tracked {
 }
 
 impl Session {
-    /// Solves a problem that is posed in one way from a guess, by continuation where it says so. Comes with the numbers of the
-    /// relaxations that leave a gap.
+    /// Solves a problem that is posed in one way from a guess, by continuation where it says so. Comes with the
+    /// relaxations whose equations are missed as they are written, and by how much.
     pub(super) fn solve_posed(
         &mut self,
         task: Task<'_>,
         mut structure: Structure,
         settings: &Settings,
-    ) -> Result<(Report, Vec<usize>), Error> {
+    ) -> Result<(Report, Vec<(usize, f64)>), Error> {
         let began = Instant::now();
         let (mut budget, rough) = (Budget::new(settings), settings.rough());
         let Task { problem, guess } = task;
@@ -192,7 +192,9 @@ impl Session {
         settings: &Settings,
     ) -> Result<(Transcription<'p>, Outcome), Error> {
         let mut structure = self.structure_of(problem);
-        structure.relaxations.clone_from(&last.structure().relaxations);
+        for (number, solved) in last.structure().relaxations.iter().enumerate() {
+            structure.pose(number, solved.is_exact);
+        }
         let mut nlp = self.program(problem, &structure)?;
         self.structure = Some(structure);
         let first = start(&nlp, Some(&Guess::from(last)))?;

@@ -181,8 +181,7 @@ impl<'p> Transcription<'p> {
         let decided = contradictions::decided(&frame, &self.elements, &bounds)?;
         self.linear = decided.system;
         let Limits { alike, angles, .. } = std::mem::take(&mut self.limits);
-        self.limits =
-            Limits { alike, angles, ..limits(&self.model.structure, &self.elements, (&bounds, &decided.met)) };
+        self.limits = Limits { alike, angles, ..limits(&model.structure, &self.elements, (&bounds, &decided.met)) };
         self.limits.definitions = self.elements.definitions(&self.model.layout, &self.limits);
         self.model = Arc::new(model);
         self.find_durations();
@@ -324,13 +323,10 @@ fn angles(structure: &Structure, layout: &Layout) -> Vec<(u32, f64)> {
     each.flat_map(|(radian, coefficients)| coefficients.iter().map(move |variable| (*variable, radian))).collect()
 }
 
-/// Bounds without sizes, and without those of rows that boundary conditions meet, and of relaxations that are not posed.
+/// Bounds without sizes, and without those of rows that boundary conditions meet.
 fn limits(structure: &Structure, elements: &Elements, (bounds, met): (&[(f64, f64)], &[usize])) -> Limits {
     let (mut row_lower, mut row_upper) = (elements.lower.clone(), elements.upper.clone());
     for &row in met {
-        (row_lower[row], row_upper[row]) = (f64::NEG_INFINITY, f64::INFINITY);
-    }
-    for row in relaxed::not_posed(structure, &elements.rows) {
         (row_lower[row], row_upper[row]) = (f64::NEG_INFINITY, f64::INFINITY);
     }
     let is_norm = |row: &RowInfo| matches!(row.kind, RowKind::Constraint(c) if structure.norms.contains(&c));

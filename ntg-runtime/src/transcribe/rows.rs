@@ -49,7 +49,7 @@ impl RowInfo {
 /// Lower and upper bound.
 pub(crate) type Pair = (f64, f64);
 
-/// Bounds of every row of a group at given indices; rows that are no constraints have none.
+/// Bounds of every row of a group at given indices; rows that are no constraints have none, and those that are not posed.
 pub(crate) fn group_bounds(frame: &Frame, group: &Group, indices: &[i64]) -> Result<Vec<Pair>, SetupError> {
     let numbers = match &group.bounds {
         Some(call) => frame.numbers(call, indices, Point::NONE)?,
@@ -58,7 +58,7 @@ pub(crate) fn group_bounds(frame: &Frame, group: &Group, indices: &[i64]) -> Res
     let mut bounds = vec![];
     for row in &group.rows {
         bounds.push(match row {
-            Row::Constraint { constraint, lower, upper } => {
+            Row::Constraint { constraint, lower, upper } if frame.structure.is_posed(*constraint) => {
                 let declared = &frame.structure.constraints[*constraint];
                 let pair = pick(&numbers, *lower, *upper)?;
                 check(pair, || constraint_words(declared, indices), &declared.unit, &declared.place)?

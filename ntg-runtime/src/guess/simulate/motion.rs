@@ -30,7 +30,8 @@ pub(super) struct Member<'a> {
 impl<'a> Member<'a> {
     /// The member of a group at a site; none where that has no equality.
     pub(super) fn new(frame: &Frame<'a>, group: &'a Group, site: Site) -> Option<Self> {
-        let equal = |row: &Row| matches!(row, Row::Constraint { lower: Some(l), upper: Some(u), .. } if l == u);
+        let posed = |constraint: usize| frame.structure.is_posed(constraint);
+        let equal = |row: &Row| matches!(row, Row::Constraint { constraint, lower: Some(l), upper: Some(u) } if l == u && posed(*constraint));
         if !group.rows.iter().any(equal) {
             return None;
         }
