@@ -11,6 +11,7 @@ use ntg_export::nl::{Files, Order, Solution, write};
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::{Guess, start};
 use ntg_runtime::nlp::Nlp;
+use ntg_runtime::problem::WithStructure;
 use ntg_runtime::settings::Settings;
 use ntg_runtime::status::Bounded;
 use ntg_runtime::transcribe::{SetupError, Transcription};
@@ -112,6 +113,11 @@ impl Problem {
 }
 
 impl Read {
+    /// The problem without helpers in its equations: what another solver finds is a solution of these.
+    fn as_written(&self) -> WithStructure<'_> {
+        WithStructure::new(&self.problem).edited(ntg_structure::Structure::pose_as_written)
+    }
+
     fn said(&self, error: SetupError) -> String {
         setup::words(&error.into(), &self.source)
     }
@@ -129,7 +135,8 @@ pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
     }
     paths.iter().try_for_each(|path| crate::write::may_write(path, arguments.force))?;
     let read = arguments.problem.read()?;
-    let nlp = Transcription::new(&read.problem).map_err(|error| read.said(error))?;
+    let problem = read.as_written();
+    let nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
     let first = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
     let expressions = Expressions::new(&read.program, &nlp).map_err(|error| error.to_string())?;
     let Files { nl, row, col } = write(&expressions, &Order::of(&expressions), &first);
@@ -148,7 +155,8 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         return Err(format!("--tolerance {tolerance}: a positive number"));
     }
     let read = arguments.problem.read()?;
-    let mut nlp = Transcription::new(&read.problem).map_err(|error| read.said(error))?;
+    let problem = read.as_written();
+    let mut nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
     let (found, is_interpolated) = point(&arguments.point, &read, &nlp)?;
     let sizes_from = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
     nlp.set_scales(&sizes_from, &Settings::default()).map_err(|error| read.said(error))?;

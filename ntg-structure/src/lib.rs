@@ -132,6 +132,11 @@ impl Structure {
         }
     }
 
+    /// Poses all equations as they are written.
+    pub fn pose_as_written(&mut self) {
+        (0..self.relaxations.len()).for_each(|number| self.pose(number, true));
+    }
+
     /// Whether a constraint is posed: all are but those of relaxations that hold in the other form.
     pub fn is_posed(&self, constraint: usize) -> bool {
         self.relaxations.iter().all(|own| {

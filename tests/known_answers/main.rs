@@ -12,6 +12,7 @@ mod curved_corners;
 mod data;
 mod degenerate;
 mod durations;
+mod equation_corners;
 mod estimates;
 mod fine_meshes;
 mod flat_limits;

@@ -42,6 +42,7 @@ fn a_solver_finds_to_the_bit_what_a_fresh_solve_finds_whatever_it_solved_before(
         (Shipped::spec("multi_vehicle_simultaneous"), "v_max", [0.25, 0.24, 0.25, 0.25]),
         (Shipped::text(RACE), "long", [4.0, 2.0, 3.0, 4.0]),
         (Shipped::text(RACE), "far", [1.0, 2.0, 2.0, 1.0]),
+        (Shipped::text(super::equation_corners::WAY), "l", [6.0, 5.0, 6.5, 6.0]),
     ];
     for (shipped, parameter, values) in cases {
         let mut solver = shipped.solver();

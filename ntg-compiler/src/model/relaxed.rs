@@ -152,7 +152,7 @@ impl Elaborator<'_> {
         corner: NodeId,
         (site, depth): (&Site, usize),
     ) -> Option<NodeId> {
-        if !self.has_one_corner(pass, corner) {
+        if self.is_kept_away(corner) || !self.has_one_corner(pass, corner) {
             return None;
         }
         let first = self.problem.constraints.len();
@@ -162,6 +162,14 @@ impl Elaborator<'_> {
         known.has_states_alone &= self.has_states_alone(known.orders, corner);
         known.helpers.insert((corner, site.clone()), helper);
         Some(helper)
+    }
+
+    /// Whether a limit keeps a corner at 0 away from it: the least magnitude of a thrust.
+    fn is_kept_away(&self, corner: NodeId) -> bool {
+        self.problem.constraints.iter().any(|own| {
+            let least = own.bounds.lower.and_then(|lower| self.problem.dag.is_constant(lower));
+            own.body == corner && least.is_some_and(|least| least > 0.0)
+        })
     }
 
     /// Whether a corner is made of outputs whose derivatives stand in equations, and of no others.

@@ -271,6 +271,15 @@ impl Report {
         self
     }
 
+    /// The report of a solution that meets what was posed, and not what was asked, when a limit was reached.
+    pub(crate) fn ended(mut self, limit: Status) -> Self {
+        if self.has_solution() {
+            self.advice = limit.advice().to_owned();
+            self.status = limit;
+        }
+        self
+    }
+
     /// Phases and their times.
     pub fn phases(&self) -> Vec<PhaseTimes> {
         self.solution.phases()

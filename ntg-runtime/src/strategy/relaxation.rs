@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use crate::report::Report;
 use crate::settings::Settings;
 use crate::status::Status;
-use ntg_structure::Relaxation;
+use ntg_structure::Structure;
 use std::time::Instant;
 
 /// Helpers that miss their corners by less, as a part of the largest, are on their way to them. A choice.
@@ -25,7 +25,7 @@ impl Session {
             return Ok(self.solve_posed(task, structure, settings)?.0);
         }
         let mut budget = Budget::new(settings);
-        let tried = ways(&structure.relaxations);
+        let tried = ways(&structure);
         // Each in few iterations, then each in many.
         let mut ways = tried.iter().chain(&tried).cloned().enumerate().peekable();
         let (mut number, mut way) = ways.next().expect("there is one at least");
@@ -43,8 +43,12 @@ impl Session {
             report.seconds = began.elapsed().as_secs_f64();
             let is_solved = report.has_solution();
             let is_stopped = matches!(report.status, Status::Cancelled | Status::TimeLimit);
-            if is_stopped || (is_solved && open.is_empty()) || budget.rest().is_none() {
+            if is_stopped || (is_solved && open.is_empty()) {
                 return Ok(report);
+            }
+            if budget.rest().is_none() {
+                let is_late = budget.reached() == ntg_nlp::Status::TimeLimit;
+                return Ok(report.ended(if is_late { Status::TimeLimit } else { Status::IterationLimit }));
             }
             if is_solved
                 && open.iter().all(|(_, missed)| *missed < NEARLY)
@@ -71,11 +75,14 @@ impl Session {
     }
 }
 
-/// What is tried in turn: which relaxations are exact.
-fn ways(relaxations: &[Relaxation]) -> Vec<Vec<bool>> {
-    let mut ways: Vec<Vec<bool>> = vec![relaxations.iter().map(|own| own.exact_first).collect()];
+/// What is tried in turn: which equations are posed as they are written. Where nothing is minimised nothing pushes a helper to its
+/// corner.
+fn ways(structure: &Structure) -> Vec<Vec<bool>> {
+    let is_pushed = !structure.terms.is_empty();
+    let first = structure.relaxations.iter().map(|own| own.exact_first || !is_pushed).collect();
+    let mut ways: Vec<Vec<bool>> = vec![first];
     for is_exact in [false, true] {
-        let way = vec![is_exact; relaxations.len()];
+        let way = vec![is_exact; structure.relaxations.len()];
         if !ways.contains(&way) {
             ways.push(way);
         }
@@ -86,12 +93,24 @@ fn ways(relaxations: &[Relaxation]) -> Vec<Vec<bool>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ntg_structure::{Place, Relaxation, Term, Unit};
+
+    fn structure(exact_first: &[bool]) -> Structure {
+        let own = |exact_first: &bool| Relaxation { exact_first: *exact_first, ..Relaxation::default() };
+        let term = Term { name: None, place: Place::default(), unit: Unit::default() };
+        Structure { relaxations: exact_first.iter().map(own).collect(), terms: vec![term], ..Structure::default() }
+    }
 
     #[test]
     fn corners_of_states_are_exact_first() {
-        let of = |exact_first: bool| Relaxation { exact_first, ..Relaxation::default() };
-        assert_eq!(ways(&[of(false)]), [[false], [true]]);
-        assert_eq!(ways(&[of(true)]), [[true], [false]]);
-        assert_eq!(ways(&[of(true), of(false)]), [[true, false], [false, false], [true, true]]);
+        assert_eq!(ways(&structure(&[false])), [[false], [true]]);
+        assert_eq!(ways(&structure(&[true])), [[true], [false]]);
+        assert_eq!(ways(&structure(&[true, false])), [[true, false], [false, false], [true, true]]);
+    }
+
+    #[test]
+    fn where_nothing_is_minimised_all_are_exact_first() {
+        let motion = Structure { terms: vec![], ..structure(&[false, true]) };
+        assert_eq!(ways(&motion), [[true, true], [false, false]]);
     }
 }

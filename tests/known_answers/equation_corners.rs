@@ -1,0 +1,217 @@
+//! Corners in equations: fuel, batteries with losses, work, wear; and equations whose corners nothing pushes to.
+//! Answers are closed forms, the same problems with what stands for the corner written out, and with the corner in what is
+//! minimised.
+
+use ntg::prelude::*;
+
+use crate::support::{Shipped, close};
+
+/// Solves a spec within so many iterations; gives its report.
+#[track_caller]
+fn solved(text: &str, within: usize) -> Report {
+    let report = Shipped::text(text).solver().solve().expect("it can be set up");
+    assert_eq!(report.status, Status::Solved, "{text}: {report}");
+    assert!(report.iterations <= within, "{text}: {}", report.iterations);
+    report
+}
+
+/// A cart goes 4 m in 6 s from rest to rest.
+fn cart(states: &str, (points, intervals): (usize, usize), rest: &str) -> String {
+    format!(
+        "problem Cart {{
+            duration T = 6; state x, v, {states}; collocation gauss(points = {points}, intervals = {intervals}, inequalities = points);
+            {rest}
+            initial {{ x == 0; v == 0; }} final {{ x == 4; v == 0; }}
+        }}"
+    )
+}
+
+const MESHES: [(usize, usize); 3] = [(2, 15), (3, 24), (4, 40)];
+
+/// A state whose rate is the corner is the integral of the corner, point for point.
+#[test]
+fn what_is_counted_by_a_state_is_worth_its_integral() {
+    for corner in ["abs(F)", "max(0, F * v)", "max(-0.5 * F, 2 * F)", "if F >= 0 { 2 * F } else { -F }"] {
+        for mesh in MESHES {
+            let by_state = solved(
+                &cart(
+                    "E",
+                    mesh,
+                    &format!(
+                        "input F in -1 .. 1; minimize final(E); dynamics {{ der(x) == v; der(v) == F; der(E) == {corner}; }} \
+                         initial {{ E == 0; }}"
+                    ),
+                ),
+                60,
+            );
+            let rest = format!(
+                "input F in -1 .. 1; minimize integral({corner}); dynamics {{ der(x) == v; der(v) == F; der(z) == 0; }} \
+                 initial {{ z == 0; }}"
+            );
+            let by_integral = solved(&cart("z", mesh, &rest), 60);
+            close(by_state.objective, by_integral.objective, 1e-6);
+        }
+    }
+}
+
+/// The mass that is left, by a thrust in a line and in a plane, with the helper of the compiler and by hand.
+#[test]
+fn the_fuel_of_a_mass_is_worth_what_its_rows_by_hand_are() {
+    for mesh in MESHES {
+        let line = |input: &str, rate: &str, rows: &str| {
+            let rest = format!(
+                "input F in -1 .. 1{input}; maximize final(m);
+                 dynamics {{ der(x) == v; der(v) == F / m; der(m) == -0.1 * {rate}; }} trajectory {{ {rows} }} initial {{ m == 1; }}"
+            );
+            solved(&cart("m", mesh, &rest), 100).objective
+        };
+        close(line("", "abs(F)", ""), line(", s", "s", "s >= F; s >= -F;"), 1e-6);
+        let plane = |input: &str, rate: &str, rows: &str| {
+            let rest = format!(
+                "state y, w; input F[2] in -1 .. 1{input}; maximize final(m);
+                 dynamics {{ der(x) == v; der(v) == F[1] / m; der(y) == w; der(w) == F[2] / m; der(m) == -0.1 * {rate}; }}
+                 trajectory {{ {rows} }} initial {{ y == 0; w == 0; m == 1; }} final {{ y == 2; w == 0; }}"
+            );
+            solved(&cart("m", mesh, &rest), 150).objective
+        };
+        close(plane("", "norm(F)", ""), plane(", s in 0 .. 2", "s", "s^2 >= F[1]^2 + F[2]^2;"), 1e-6);
+    }
+}
+
+/// A battery that loses a tenth each way, bought for by a tariff of the day.
+fn battery(power: &str, energy: &str, rate: &str, intervals: usize) -> String {
+    format!(
+        "problem Battery {{
+            duration T = 24 [h]; state E [{energy}] in 0 .. 10 [kW*h]; input p [{power}] in -4 .. 4 [kW];
+            collocation gauss(points = 3, intervals = {intervals});
+            let price = 0.25 + 0.12 * sin(2 * pi * (t - 13 [h]) / 24 [h]); minimize integral(price * p) / 1 [kW*h];
+            dynamics {{ der(E) == {rate}; }} initial {{ E == 2 [kW*h]; }} final {{ E == 2 [kW*h]; }}
+        }}"
+    )
+}
+
+/// Units, and how the corner is written, change nothing.
+#[test]
+fn a_battery_with_losses_is_the_same_in_all_units_and_forms() {
+    for intervals in [24, 50] {
+        let plain = solved(&battery("kW", "kW*h", "min(0.9 * p, p / 0.9)", intervals), 60);
+        for (power, energy) in [("W", "J"), ("MW", "kW*h"), ("mW", "GJ")] {
+            let other = solved(&battery(power, energy, "min(0.9 * p, p / 0.9)", intervals), 90);
+            close(other.objective, plain.objective, 1e-6);
+        }
+        for rate in ["if p >= 0 { 0.9 * p } else { p / 0.9 }", "0.9 * max(p, 0) + min(p, 0) / 0.9"] {
+            close(solved(&battery("kW", "kW*h", rate, intervals), 60).objective, plain.objective, 1e-6);
+        }
+    }
+}
+
+/// Where nothing pushes the helper, the equation is posed as it is written: wear that is allowed for anyway (the least effort is
+/// 12 * 16 / 216), the length of a straight way, and of one that must be longer than straight; a drop that falls to the ground.
+#[test]
+fn an_equation_whose_corner_nothing_pushes_to_is_met_as_it_is_written() {
+    for mesh in MESHES {
+        let wear = cart(
+            "d",
+            mesh,
+            "input F; minimize integral(F^2); dynamics { der(x) == v; der(v) == F; der(d) == abs(F); } initial { d == 0; } \
+             final { d <= 2; }",
+        );
+        let report = solved(&wear, 100);
+        close(report.objective, 8.0 / 9.0, 1e-6);
+        let (points, intervals) = mesh;
+        for (more, effort, length) in [("", 6.25, 5.0), ("s == 6;", 9.0, 6.0)] {
+            let report = solved(
+                &format!(
+                    "problem Way {{
+                        duration T = 4; state x, y, s; input u[2]; collocation gauss(points = {points}, intervals = {intervals});
+                        minimize integral(dot(u, u)); dynamics {{ der(x) == u[1]; der(y) == u[2]; der(s) == norm(u); }}
+                        initial {{ x == 0; y == 0; s == 0; }} final {{ x == 3; y == 4; {more} }}
+                    }}"
+                ),
+                60,
+            );
+            close(report.objective, effort, 1e-6);
+            close(report.solution.output("s").expect("it is one").at(4.0), length, 1e-6);
+        }
+    }
+}
+
+/// The least time with a thrust that takes from the mass: a helper would throw mass away. Full thrust to t = 2, then full brakes:
+/// T = 3.2, v = -5 log(1 - t / 5) up to there.
+#[test]
+fn no_helper_throws_mass_away() {
+    for (points, intervals) in [(3, 40), (3, 64)] {
+        let report = solved(
+            &format!(
+                "problem Hurry {{
+                    duration T in 0.5 .. 20; state x, v, m; input F in -1 .. 1; collocation gauss(points = {points}, intervals = {intervals});
+                    minimize T; dynamics {{ der(x) == v; der(v) == F / m; der(m) == -0.2 * abs(F); }}
+                    initial {{ x == 0; v == 0; m == 1; }} final {{ x == 4; v == 0; }}
+                }}"
+            ),
+            250,
+        );
+        close(report.objective, 3.2, 1e-6);
+    }
+}
+
+/// A budget that is spent exactly, and a variable that is what an integral is.
+#[test]
+fn equations_of_the_whole_mission_are_as_the_limits_are() {
+    for mesh in MESHES {
+        let of = |rest: &str| {
+            let rest = format!(
+                "input F in -1 .. 1; {rest} dynamics {{ der(x) == v; der(v) == F; der(z) == 0; }} initial {{ z == 0; }}"
+            );
+            solved(&cart("z", mesh, &rest), 60).objective
+        };
+        let spent = of("minimize integral(F^2); temporal { integral(abs(F)) == 1.8; }");
+        close(spent, of("minimize integral(F^2); temporal { integral(abs(F)) <= 1.8; }"), 1e-6);
+        let known = of("variable B; minimize B; temporal { B == integral(abs(F)); }");
+        close(known, of("minimize integral(abs(F));"), 1e-6);
+    }
+}
+
+/// A way in a plane whose length is counted, and is more than that of a line.
+pub(super) const WAY: &str = "problem Way {
+    param l = 6; duration T = 4; state x, y, s; input u[2]; collocation gauss(points = 3, intervals = 10);
+    minimize integral(dot(u, u)); dynamics { der(x) == u[1]; der(y) == u[2]; der(s) == norm(u); }
+    initial { x == 0; y == 0; s == 0; } final { x == 3; y == 4; s == l; }
+}";
+
+/// A solve that stops before the equations are met as they are written has no solution.
+#[test]
+fn no_solution_is_told_where_iterations_end_before_the_equations_are_met() {
+    let all = solved(WAY, 60).iterations;
+    for most in 1..all {
+        let mut solver = Shipped::text(WAY).solver();
+        solver.settings.max_iterations = most;
+        let report = solver.solve().expect("it can be set up");
+        assert!(!report.has_solution(), "{most}: {report}");
+    }
+}
+
+/// Solutions follow parameters in either form, from the last one and anew, and their derivatives are those of the objective: the
+/// effort is l^2 / T, what a battery is worth has no closed form.
+#[test]
+fn solutions_and_derivatives_follow_parameters_in_both_forms() {
+    let battery = battery("kW", "kW*h", "min(r * p, p / r)", 24).replacen("duration", "param r = 0.9; duration", 1);
+    for (text, name, values) in [(WAY, "l", [6.0, 6.3]), (&battery, "r", [0.9, 0.905])] {
+        let mut solver = Shipped::text(text).solver();
+        let mut found = vec![];
+        for value in values {
+            Shipped::set(&mut solver, name, value);
+            let report = solver.solve().expect("it can be set up");
+            assert_eq!(report.status, Status::Solved, "{report}");
+            let slope = report.sensitivity(&solver.problem).expect("it has one").objective().values[0];
+            found.push((report.objective, slope));
+        }
+        let [(first, slope_before), (last, slope_after)] = found[..] else { panic!("two solves") };
+        close((last - first) / (values[1] - values[0]), 0.5 * (slope_before + slope_after), 1e-2);
+        Shipped::set(&mut solver, name, values[0]);
+        let back = solver.resolve().expect("it can be set up");
+        assert_eq!(back.status, Status::Solved, "{back}");
+        close(back.objective, first, 1e-6);
+    }
+    close(solved(WAY, 60).objective, 9.0, 1e-6);
+}
