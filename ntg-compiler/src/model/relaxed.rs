@@ -98,9 +98,6 @@ impl Elaborator<'_> {
         if depth > MAX_DEPTH || !pass.has_corners(node) || pass.smoothed.contains(&node) {
             return node;
         }
-        if let Some(helper) = known.helpers.get(&(node, site.clone())) {
-            return *helper;
-        }
         if let Some(sum) = pass.branches.get(&node).copied() {
             let relaxed = self.relaxed(pass, known, (sum, is_multiplied), site, depth + 1);
             return if self.has_none(pass, relaxed) { relaxed } else { node };
@@ -140,8 +137,39 @@ impl Elaborator<'_> {
             },
             // What a distance is a factor of seldom vanishes with it: gravitation, a spring.
             Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if is_multiplied => node,
-            _ => self.held_beside(pass, known, node, (site, depth)).unwrap_or(node),
+            _ => self.in_place_of(pass, known, node, (site, depth)).unwrap_or(node),
         }
+    }
+
+    /// What stands for a corner; none where nothing is known of its sides. The greater and the lesser of two values are half their
+    /// sum and half of how far they are apart, for which there is one helper: of `0.9 * max(p, 0) + min(p, 0) / 0.9` and
+    /// `0.9 * max(p, 0) - max(-p, 0) / 0.9` either corner alone would be pushed away from its tip.
+    fn in_place_of(
+        &mut self,
+        pass: &mut Corners,
+        known: &mut Known<'_>,
+        corner: NodeId,
+        at: (&Site, usize),
+    ) -> Option<NodeId> {
+        let (a, b, is_greater) = match *self.problem.dag.node(corner) {
+            Node::Binary(op @ (Binary::Max | Binary::Min), a, b) => (a, b, op == Binary::Max),
+            _ => return self.held_beside(pass, known, corner, at),
+        };
+        if pass.has_corners(a) || pass.has_corners(b) {
+            return self.held_beside(pass, known, corner, at);
+        }
+        let dag = &mut self.problem.dag;
+        let (apart, sum) = (dag.sub(a, b), dag.add(a, b));
+        let apart = dag.unary(Unary::Abs, apart);
+        if let Some(span) = self.problem.origin.get(&corner).copied() {
+            self.origin(apart, span);
+        }
+        let helper = self.held_beside(pass, known, apart, at)?;
+        pass.treated.insert(corner);
+        let dag = &mut self.problem.dag;
+        let twice = if is_greater { dag.add(sum, helper) } else { dag.sub(sum, helper) };
+        let half = dag.constant(0.5);
+        Some(dag.mul(half, twice))
     }
 
     /// A helper that is held beside a corner; none where nothing is known of the corner's sides.
@@ -152,6 +180,9 @@ impl Elaborator<'_> {
         corner: NodeId,
         (site, depth): (&Site, usize),
     ) -> Option<NodeId> {
+        if let Some(helper) = known.helpers.get(&(corner, site.clone())) {
+            return Some(*helper);
+        }
         if self.is_kept_away(corner) || !self.has_one_corner(pass, corner) {
             return None;
         }
