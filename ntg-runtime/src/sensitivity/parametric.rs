@@ -331,9 +331,13 @@ fn row_limits(nlp: &Transcription, full: &Structure, calls: &mut Calls) -> Resul
             limits.push(Limit { lower: ZERO, upper: ZERO });
             continue;
         };
-        let Row::Constraint { lower, upper, .. } = &group.rows[own] else {
+        let Row::Constraint { constraint, lower, upper } = &group.rows[own] else {
             return Err(SetupError::malformed("a row is made by what is no constraint"));
         };
+        if !full.is_posed(*constraint) {
+            limits.push(Limit { lower: NONE, upper: NONE });
+            continue;
+        }
         let first = match known.entry((number, &row.indices[..])) {
             Entry::Occupied(found) => *found.get(),
             Entry::Vacant(place) => {
