@@ -303,3 +303,44 @@ fn a_difference_of_parameters_that_is_a_weight_must_stay_positive() {
         assert!(refused.contains("a weight of a corner, made of") && refused.contains("sell"), "{cost}: {refused}");
     }
 }
+
+/// An equation with a corner has its own name, value, multipliers and violations in reports, and its helper has none.
+#[test]
+fn an_equation_with_a_corner_is_reported_as_it_is_written() {
+    let report = report(
+        "problem P { duration T = 3; state x, v, E; input u in -1 .. 1; collocation gauss(points = 3, intervals = 12); \
+         minimize final(E); dynamics { der(x) == v; der(v) == u; counted: der(E) == abs(u); } \
+         initial { x == 1; v == 0; E == 0; } final { x == 0; v == 0; } }",
+    );
+    assert!(report.is_solved(), "{report}");
+    let counted = report.constraints.iter().find(|own| own.name == "counted").expect("it is reported");
+    assert!(counted.is_equation);
+    assert!(counted.points.as_ref().is_some_and(|worst| worst.relative < 1e-6), "{counted:?}");
+    // An effort more at any time is worth as much in the end.
+    let multipliers = report.solution.multipliers("counted");
+    assert_eq!(multipliers.len(), 36);
+    for multiplier in multipliers {
+        assert!((multiplier.value.abs() - 1.0).abs() < 1e-6, "{multiplier:?}");
+    }
+    let names: Vec<String> = report.constraints.iter().map(|own| own.name.clone()).collect();
+    assert!(names.iter().all(|name| !name.contains("corner")), "{names:?}");
+    let told = report.to_string();
+    assert!(!told.contains("corner("), "{told}");
+}
+
+/// Which form is posed first: nothing holds a trajectory at a corner of states alone.
+#[test]
+fn equations_whose_corners_are_of_states_alone_are_posed_as_written_first() {
+    let first = |rate: &str| {
+        let problem = compiled(&format!(
+            "problem P {{ duration T = 1; state x, v; input u; dynamics {{ der(x) == v; der(v) == {rate}; }} \
+             collocation gauss(points = 2, intervals = 2); minimize integral(u^2); initial {{ x == 0; v == 0; }} }}"
+        ));
+        problem.structure().relaxations.iter().map(|own| own.exact_first).collect::<Vec<_>>()
+    };
+    assert_eq!(first("u - abs(v)"), [true]);
+    assert_eq!(first("u + max(0, -x)"), [true]);
+    assert_eq!(first("abs(u) - v"), [false]);
+    assert_eq!(first("abs(u * v) + abs(x)"), [false]);
+    assert_eq!(first("u - norm((x, v)) * v"), [false; 0]);
+}

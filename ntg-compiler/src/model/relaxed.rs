@@ -100,7 +100,11 @@ impl Elaborator<'_> {
         }
         if let Some(sum) = pass.branches.get(&node).copied() {
             let relaxed = self.relaxed(pass, known, (sum, is_multiplied), site, depth + 1);
-            return if self.has_none(pass, relaxed) { relaxed } else { node };
+            if !self.has_none(pass, relaxed) {
+                return node;
+            }
+            pass.treated.insert(node);
+            return relaxed;
         }
         let own = self.problem.dag.node(node).clone();
         match own {

@@ -146,3 +146,27 @@ fn a_corner_where_a_factor_vanishes_is_none() {
     let rate = said("input u; minimize integral(u^2); trajectory { der(abs(v) * v) + u <= 9; }");
     assert!(rate.iter().any(|note| note.starts_with("N001")), "{rate:?}");
 }
+
+/// Equations with corners have a form without; what stays is noted.
+#[test]
+fn corners_of_equations_are_gone_but_those_within_others() {
+    let equation =
+        |rate: &str| said(&format!("state m; input u; minimize integral(u^2); dynamics {{ der(m) == {rate}; }}"));
+    for rate in [
+        "-abs(u)",
+        "min(0.9 * u, u / 0.9)",
+        "0.9 * max(u, 0) - max(-u, 0) / 0.9",
+        "if u >= 0 { 0.9 * u } else { u / 0.9 }",
+        "-abs(u) / (1 + m^2) + v * max(0, u * v)",
+        "max(u, v, m)",
+        "-hypot(u, v)",
+        "1 - abs(v)",
+    ] {
+        assert_eq!(equation(rate), [""; 0], "{rate}");
+    }
+    for rate in ["min(1, max(-1, u))", "exp(-abs(u))", "if u >= 0 { 1 } else { u }", "1 / (1 + abs(u))"] {
+        assert!(!equation(rate).is_empty(), "{rate}");
+    }
+    assert_eq!(said("input u; minimize integral(u^2); temporal { integral(abs(u)) == 1; }"), [""; 0]);
+    assert_eq!(said("input u; variable b; minimize b; temporal { b == integral(abs(u)); }"), [""; 0]);
+}
