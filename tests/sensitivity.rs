@@ -121,3 +121,55 @@ fn a_cubic_depends_on_its_parameters_as_on_paper() {
     let predicted = by.predict(&Move { far: 1.01, ..problem }).unwrap_or_else(|error| panic!("{error}"));
     assert!((predicted.output("x").expect("an output").at(2.0) - 0.505).abs() < 1e-9);
 }
+
+/// A spec as a macro makes it, and its text.
+macro_rules! both {
+    ($text:ident, $name:ident { $($spec:tt)* }) => {
+        ntg! { problem $name { $($spec)* } }
+        const $text: &str = concat!("problem ", stringify!($name), " {", stringify!($($spec)*), "}");
+    };
+}
+
+both!(BATTERY, Battery {
+    param r = 0.9;
+    duration T = 24;
+    state e in 0 .. 10;
+    input p in -4 .. 4;
+    collocation gauss(points = 3, intervals = 12);
+    let price = 0.25 + 0.12 * sin(2 * pi * (t - 13) / 24);
+    minimize integral(price * p);
+    dynamics { der(e) == r * max(p, 0) - max(-p, 0) / r; }
+    initial { e == 2; }
+    final { e == 2; }
+});
+
+both!(TANK, Tank {
+    param goal = 2.5;
+    duration T = 10;
+    state h;
+    input q in 0 .. 1;
+    collocation gauss(points = 3, intervals = 8);
+    minimize integral((h - goal)^2 + 0.1 * q^2);
+    dynamics { der(h) == q - max(0, h - 2); }
+    initial { h == 1; }
+});
+
+/// In either form: with helpers, and as they are written.
+#[test]
+fn equations_with_corners_are_those_of_the_interpreter_bit_for_bit() {
+    let compiled = |text: &str| {
+        let compiled = ntg_compiler::compile(&Source::new("test", text), &BesideSpecs).expect("it compiles");
+        Interpreted::new(&compiled.program)
+    };
+    let battery = Battery::default();
+    let solution = battery.solve(&Settings::default()).expect("it can be set up");
+    assert!(!solution.report().solution.structure().relaxations[0].is_exact);
+    let by = solution.report().sensitivity(&battery).unwrap_or_else(|error| panic!("{error}"));
+    assert_same((solution.report(), &by), &compiled(BATTERY));
+
+    let tank = Tank::default();
+    let solution = tank.solve(&Settings::default()).expect("it can be set up");
+    assert!(solution.report().solution.structure().relaxations[0].is_exact);
+    let by = solution.report().sensitivity(&tank).unwrap_or_else(|error| panic!("{error}"));
+    assert_same((solution.report(), &by), &compiled(TANK));
+}
