@@ -194,6 +194,7 @@ structs! {
         other: usize,
         sides: List<usize>,
         parked: List<usize>,
+        corners: List<Place>,
         exact_first: bool,
         is_exact: bool
     }

@@ -140,9 +140,9 @@ pub struct Term {
     pub unit: Unit,
 }
 
-/// An equation with corners for which helpers stand, numbers beside the corners (docs/maths.md, equation 18.6): it has one form
+/// An equation with corners for which helpers stand, numbers beside the corners (docs/maths.md, equation 18.5): it has one form
 /// with the helpers and one as it is written, of which one is posed. All constraints are given by their numbers.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Relaxation {
     /// The form that is posed, as the constraint of the spec.
     pub equation: usize,
@@ -152,6 +152,8 @@ pub struct Relaxation {
     pub sides: Vec<usize>,
     /// What holds them at 0 where the equation is posed as it is written.
     pub parked: Vec<usize>,
+    /// Where the corners are.
+    pub corners: Vec<Place>,
     /// Whether a solver poses it first as it is written: inputs have no part in the corners, and nothing holds a trajectory there.
     pub exact_first: bool,
     /// Whether it is posed as it is written.

@@ -75,7 +75,7 @@ pub struct Structure {
     /// Where tables of limits are evaluated, for reports: between the points, limits are looked at where the arguments pass
     /// nodes.
     pub arguments: Vec<Arguments>,
-    /// Where a gradient may jump in what is solved.
+    /// Where a gradient may jump in what is solved, but for corners of `relaxations`.
     pub corners: Vec<Place>,
     /// Equations with corners for which helpers stand.
     pub relaxations: Vec<Relaxation>,
@@ -135,6 +135,12 @@ impl Structure {
     /// Poses all equations as they are written.
     pub fn pose_as_written(&mut self) {
         (0..self.relaxations.len()).for_each(|number| self.pose(number, true));
+    }
+
+    /// Where a gradient may jump in what is posed.
+    pub fn corners_posed(&self) -> impl Iterator<Item = &Place> {
+        let exact = self.relaxations.iter().filter(|own| own.is_exact);
+        self.corners.iter().chain(exact.flat_map(|own| &own.corners))
     }
 
     /// Whether a constraint is posed: all are but those of relaxations that hold in the other form.

@@ -40,6 +40,7 @@ mod scenarios;
 mod simulations;
 mod sizes;
 mod support;
+mod tips;
 mod unbounded;
 mod unresolved;
 mod vanishing;

@@ -120,7 +120,7 @@ structs! {
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }
     Places { first, instants }
     Reduction { op, over, body }
-    Relaxation { equation, other, sides, parked, exact_first, is_exact }
+    Relaxation { equation, other, sides, parked, corners, exact_first, is_exact }
     Shared { phase, output, until }
     Table { name, doc, axes, unit, values, method, extrapolation, replaceable }
     TableAxis { name, unit, nodes, symmetry }

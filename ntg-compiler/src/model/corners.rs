@@ -61,8 +61,6 @@ pub(super) struct Corners {
     pub(super) helpers: usize,
     /// All helpers, in their order.
     pub(super) made: Vec<Made>,
-    /// Where corners of equations stand for which there are helpers.
-    pub(super) relaxed: Vec<Span>,
     /// The term in hand.
     pub(super) span: Span,
 }
@@ -104,7 +102,6 @@ impl Elaborator<'_> {
             tips: Set::default(),
             helpers: 0,
             made: vec![],
-            relaxed: vec![],
             span: Span::default(),
         };
         self.corners_limited(&mut pass);
@@ -123,8 +120,7 @@ impl Elaborator<'_> {
         self.weights_held(&pass);
         let (left, smoothed) = self.corners_left(&pass.tips);
         self.unnoted((&pass, &smoothed), &left);
-        let places = left.iter().filter_map(|node| self.problem.origin.get(node).copied());
-        let mut spans: Vec<Span> = places.chain(pass.relaxed).collect();
+        let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();
         spans.sort_by_key(|span| (span.start, span.end));
         spans.dedup();
         self.problem.corners = spans;

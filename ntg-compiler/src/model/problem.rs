@@ -5,7 +5,7 @@
 //! with `program`. Arrays, loops, phases and agents are families: an index is a [`Form`] in
 //! [`IndexId`]s, and whoever holds an expression also holds the [`Loop`]s that bind its indices.
 
-use ntg_structure::{Block, Grid, Independent, Parameter, Relaxation, Shared, Spline, Table, Unit};
+use ntg_structure::{Block, Grid, Independent, Parameter, Shared, Spline, Table, Unit};
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Dag, InputId, Map, NodeId};
@@ -303,6 +303,23 @@ pub struct Constraint {
     pub bounds: Bounds,
 }
 
+/// An equation with corners, in its two forms; constraints by their numbers.
+#[derive(Clone, Debug)]
+pub struct Relaxation {
+    /// The form with helpers.
+    pub equation: usize,
+    /// The form as it is written.
+    pub other: usize,
+    /// What holds the helpers beside the corners.
+    pub sides: Vec<usize>,
+    /// What holds them at 0.
+    pub parked: Vec<usize>,
+    /// Where the corners are.
+    pub corners: Vec<Span>,
+    /// Whether inputs have no part in the corners.
+    pub exact_first: bool,
+}
+
 /// A term of the objective, always to be minimised (negated for `maximize`).
 #[derive(Clone, Debug)]
 pub struct Term {
@@ -465,7 +482,7 @@ pub struct Problem {
     pub constraints: Vec<Constraint>,
     /// Where a gradient may jump in the objective or a constraint.
     pub corners: Vec<Span>,
-    /// Corners of equations for which helpers stand.
+    /// Equations with corners for which helpers stand.
     pub relaxations: Vec<Relaxation>,
     /// Named expressions.
     pub named: Vec<Named>,

@@ -1,16 +1,16 @@
-//! Corners in equations, `der(m) == -c * norm(F)` (docs/maths.md, equation 18.6).
+//! Corners in equations, `der(m) == -c * norm(F)` (docs/maths.md, equation 18.5).
 //!
 //! Takes equations that hold all along a phase, and those of the whole mission. In another form of each a helper stands for
 //! each corner that is a summand, or a factor of one, and is held on the convex side of the corner alone. Whether the solution
-//! has it at the corner is seen when it is known: a solver poses the one form or the other ([`Relaxation`]). Signs decide
+//! has it at the corner is seen when it is known: a solver poses the one form or the other (`ntg_structure::Relaxation`). Signs decide
 //! nothing here.
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
-use super::problem::{Bounds, Constraint, Domain, Imposed, Leaf, Part};
+use super::problem::{Bounds, Constraint, Domain, Imposed, Leaf, Part, Relaxation};
 use super::unknowns::is_given;
 use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
-use ntg_structure::{Block, Relaxation};
+use ntg_structure::Block;
 
 /// How deep equations are looked into; deeper corners stay.
 const MAX_DEPTH: usize = 500;
@@ -66,9 +66,10 @@ impl Elaborator<'_> {
         let zero = self.problem.dag.constant(0.0);
         let at_zero = Bounds { lower: Some(zero), upper: Some(zero) };
         let first = self.problem.constraints.len();
+        let mut corners = vec![];
         for made in pass.made.split_off(made) {
             self.hold_helper(&made.site, vec![], (made.helper, at_zero.clone()), made.span);
-            pass.relaxed.push(made.span);
+            corners.push(made.span);
         }
         let other = self.problem.constraints.len();
         let as_written = Constraint { name: None, block: Block::Corner, written: None, ..own.clone() };
@@ -80,8 +81,8 @@ impl Elaborator<'_> {
             other,
             sides: known.sides,
             parked: (first..other).collect(),
+            corners,
             exact_first: known.has_states_alone,
-            is_exact: false,
         });
     }
 

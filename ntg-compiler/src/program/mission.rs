@@ -29,7 +29,7 @@ pub(super) fn structure(lowering: &mut Lowering<'_>) -> Structure {
     };
     structure.terms = terms(lowering);
     structure.corners = lowering.problem.corners.iter().map(|span| lowering.place(*span)).collect();
-    structure.relaxations.clone_from(&lowering.problem.relaxations);
+    structure.relaxations = relaxations(lowering);
     structure.constraints = constraints(lowering);
     structure.norms = norms(&lowering.problem);
     structure.angles = angles(&lowering.problem);
@@ -41,6 +41,20 @@ pub(super) fn structure(lowering: &mut Lowering<'_>) -> Structure {
         .map(|c| out::Continuation { parameter: c.parameter, steps: c.steps.clone() })
         .collect();
     structure
+}
+
+/// All with helpers.
+fn relaxations(lowering: &Lowering<'_>) -> Vec<out::Relaxation> {
+    let relaxation = |own: &crate::model::problem::Relaxation| out::Relaxation {
+        equation: own.equation,
+        other: own.other,
+        sides: own.sides.clone(),
+        parked: own.parked.clone(),
+        corners: own.corners.iter().map(|span| lowering.place(*span)).collect(),
+        exact_first: own.exact_first,
+        is_exact: false,
+    };
+    lowering.problem.relaxations.iter().map(relaxation).collect()
 }
 
 fn terms(lowering: &Lowering<'_>) -> Vec<out::Term> {

@@ -4,17 +4,17 @@ use crate::status::{Crossing, Status, Violation};
 use crate::transcribe::Transcription;
 use ntg_nlp::Outcome;
 use ntg_nlp::status::Bounded;
-use ntg_structure::{Structure, Unit};
+use ntg_structure::{Place, Structure, Unit};
 
-/// What a person may try next; where a solve came to no end, the places at which gradients jump.
+/// What a person may try next; where a solve came to no end or to no minimum, the places at which gradients jump.
 pub(super) fn advice(status: &Status, structure: &Structure) -> String {
     /// More of them are counted only.
     const NAMED: usize = 3;
     let advice = status.advice().to_owned();
     let no_end =
         matches!(status, Status::IterationLimit | Status::TimeLimit | Status::StepTooSmall | Status::Acceptable);
-    let corners = &structure.corners;
-    if !no_end || corners.is_empty() {
+    let corners: Vec<&Place> = structure.corners_posed().collect();
+    if !(no_end || *status == Status::Stationary) || corners.is_empty() {
         return advice;
     }
     let named = corners.iter().take(NAMED).map(|place| format!("`{}` (line {})", place.text, place.line));
@@ -22,7 +22,14 @@ pub(super) fn advice(status: &Status, structure: &Structure) -> String {
     if let Some(more) = corners.len().checked_sub(NAMED).filter(|more| *more > 0) {
         named.push(format!("{more} more"));
     }
-    format!("{advice} Gradients jump at {}: a smooth form may be needed there.", named.join(", "))
+    let named = named.join(", ");
+    match no_end {
+        true => format!("{advice} Gradients jump at {named}: a smooth form may be needed there."),
+        false => format!(
+            "{advice} Gradients jump at {named}: where the solution is at the tip of such a corner, begin on the side on \
+             which the objective is better."
+        ),
+    }
 }
 
 /// The status of an outcome of this transcription.

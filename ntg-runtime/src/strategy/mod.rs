@@ -7,7 +7,8 @@
 //!
 //! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
 //! `coarse_start` finds starts on fewer knots, `simulated_start` by simulation, `fallback` is the sequence of attempts where
-//! a solve fails, `feasible_guess` looks whether a guess was better.
+//! a solve fails, `feasible_guess` looks whether a guess was better, `tips` whether a solution at the tip of a corner is a
+//! minimum, `relaxation` whether one with helpers in the place of corners meets the equations as they are written.
 
 mod beside;
 mod budget;
@@ -16,10 +17,13 @@ mod coarse_start;
 mod continuation;
 mod fallback;
 mod feasible_guess;
+mod one_sided;
 mod relaxation;
 mod session;
 mod simulated_start;
+mod slopes;
 mod solve;
+mod tips;
 mod turns;
 
 pub(crate) use session::{Session, Task};

@@ -1,4 +1,4 @@
-//! Corners of equations: a solve beside them first, and at them where it leaves a gap (docs/maths.md, equation 18.6).
+//! Corners of equations: a solve beside them first, and at them where it leaves a gap (docs/maths.md, equation 18.5).
 
 use super::budget::Budget;
 use super::session::{Session, Task};

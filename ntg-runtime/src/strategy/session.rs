@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 const ROUNDS: usize = 3;
 
 /// Objectives, and variables of one size, that differ by less are the same. A law: the acceptable end.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 /// What is kept of a problem between its solves.
 #[derive(Default)]

@@ -111,6 +111,9 @@ impl Session {
                 let guess = guessed.as_deref().unwrap_or(&first);
                 (outcome, is_guess_better) = self.no_worse_than_guess(&mut nlp, guess, outcome, &mut budget)?;
             }
+            if is_last {
+                outcome = self.leave_tips(&mut nlp, outcome, &mut budget);
+            }
             outcome.iterations = budget.spent() - spent;
             if is_last {
                 outcome = self.unwrap_turns(&mut nlp, outcome, settings);
@@ -210,10 +213,13 @@ impl Session {
             rows = carried(&last.inner, &nlp);
             Start::Warm(Multipliers { rows: &rows, ..own })
         };
-        let mut once = self.solve_measured(&mut nlp, FirstPoint { x: &first, from }, settings);
+        let mut budget = Budget::new(settings);
+        let once = self.solve_measured(&mut nlp, FirstPoint { x: &first, from }, settings);
+        budget.spend(once.iterations);
+        let mut once = self.leave_tips(&mut nlp, once, &mut budget);
         if once.status.has_solution() && !nlp.open_relaxations(&once.x).is_empty() {
             once.status = Status::StepTooSmall;
         }
-        Ok((nlp, once))
+        Ok((nlp, Outcome { iterations: budget.spent(), ..once }))
     }
 }

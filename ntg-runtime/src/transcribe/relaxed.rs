@@ -1,5 +1,5 @@
 //! Whether a point that meets equations with helpers in the place of corners meets them as they are written (docs/maths.md,
-//! equation 18.6).
+//! equation 18.5).
 
 use super::Transcription;
 use super::instances::family_members;
