@@ -113,9 +113,37 @@ impl Problem {
 }
 
 impl Read {
-    /// The problem without helpers in its equations: what another solver finds is a solution of these.
-    fn as_written(&self) -> WithStructure<'_> {
-        WithStructure::new(&self.problem).edited(ntg_structure::Structure::pose_as_written)
+    /// The problem with its equations that have corners in the form that a solve begins with, or as they are written.
+    fn posed(&self, as_written: bool) -> WithStructure<'_> {
+        WithStructure::new(&self.problem).edited(|structure| {
+            for number in 0..structure.relaxations.len() {
+                structure.pose(number, as_written || structure.relaxations[number].exact_first);
+            }
+        })
+    }
+
+    /// Whether a point is nearer to the equations as they are written than to those with helpers for their corners.
+    fn is_as_written(&self, path: &Path) -> Result<bool, String> {
+        if self.program.structure.relaxations.is_empty() {
+            return Ok(false);
+        }
+        let violation = |as_written: bool| -> Result<f64, String> {
+            let problem = self.posed(as_written);
+            let mut nlp = Transcription::new(&problem).map_err(|error| self.said(error))?;
+            let found = self.measured(path, &mut nlp)?.0;
+            let judged = judge(&nlp, Point { x: &found.x, multipliers: None });
+            Ok(judged.map_or(f64::INFINITY, |judged| judged.violation()))
+        };
+        Ok(violation(true)? < violation(false)?)
+    }
+
+    /// A point, and whether it was saved on other splines; the program gets sizes.
+    fn measured(&self, path: &Path, nlp: &mut Transcription<'_>) -> Result<(Solution, bool), String> {
+        let found = point(path, self, nlp)?;
+        let sizes_from = start(nlp, self.guess.as_ref()).map_err(|error| self.said(error))?;
+        nlp.set_scales(&sizes_from, &Settings::default()).map_err(|error| self.said(error))?;
+        nlp.take_smaller_sizes(&found.0.x);
+        Ok(found)
     }
 
     fn said(&self, error: SetupError) -> String {
@@ -135,7 +163,7 @@ pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
     }
     paths.iter().try_for_each(|path| crate::write::may_write(path, arguments.force))?;
     let read = arguments.problem.read()?;
-    let problem = read.as_written();
+    let problem = read.posed(false);
     let nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
     let first = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
     let expressions = Expressions::new(&read.program, &nlp).map_err(|error| error.to_string())?;
@@ -155,12 +183,9 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         return Err(format!("--tolerance {tolerance}: a positive number"));
     }
     let read = arguments.problem.read()?;
-    let problem = read.as_written();
+    let problem = read.posed(read.is_as_written(&arguments.point)?);
     let mut nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
-    let (found, is_interpolated) = point(&arguments.point, &read, &nlp)?;
-    let sizes_from = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
-    nlp.set_scales(&sizes_from, &Settings::default()).map_err(|error| read.said(error))?;
-    nlp.take_smaller_sizes(&found.x);
+    let (found, is_interpolated) = read.measured(&arguments.point, &mut nlp)?;
     let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
     // The judge minimises.
     let multipliers = found.multipliers.as_ref().map(|all| all.iter().map(|y| sign * y).collect::<Vec<_>>());
@@ -168,6 +193,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     let judged = judged.map_err(|error| format!("the point has no value: {}", nlp.in_words(error, &found.x)))?;
     let objective = sign * judged.objective / read.program.structure.objective_unit.factor;
     let worst = judged.optimality.iter().flatten().map(|residual| residual.relative).fold(judged.violation(), f64::max);
+    let as_written = nlp.missed_as_written(&found.x);
     let said = Said {
         nlp: &nlp,
         read: &read,
@@ -175,7 +201,8 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         is_interpolated,
         judged: &judged,
         objective,
-        is_solution: worst <= tolerance,
+        is_solution: worst <= tolerance && as_written.is_empty(),
+        as_written: &as_written,
         tolerance,
     };
     match arguments.format {
@@ -222,6 +249,8 @@ struct Said<'a> {
     is_interpolated: bool,
     judged: &'a Judgement,
     objective: f64,
+    /// Equations that are met with helpers in the place of their corners alone, and by how much they are missed.
+    as_written: &'a [(String, f64)],
     is_solution: bool,
     /// The largest relative violation of a solution.
     tolerance: f64,
@@ -263,6 +292,11 @@ impl Said<'_> {
         if let more @ 1.. = told.count().saturating_sub(LISTED) {
             lines.push(format!("  and {more} more"));
         }
+        for (name, missed) in self.as_written {
+            lines.push(format!(
+                "  `{name}` is missed as it is written ({missed:.1e} relative): nothing pushes to its corner"
+            ));
+        }
         lines.push(self.verdict().to_owned());
         lines.join("\n")
     }
@@ -272,6 +306,7 @@ impl Said<'_> {
             let Missed { of, value, violation, relative } = missed;
             json!({ "name": name(self.nlp, *of), "value": value, "violation": violation, "relative": relative })
         });
+        let as_written = self.as_written.iter().map(|(name, missed)| json!({ "name": name, "relative": missed }));
         let residual = |which: usize| {
             self.judged
                 .optimality
@@ -287,6 +322,7 @@ impl Said<'_> {
             "stationarity": residual(0),
             "complementarity": residual(1),
             "missed": missed.collect::<Vec<_>>(),
+            "missed_as_written": as_written.collect::<Vec<_>>(),
         })
     }
 }

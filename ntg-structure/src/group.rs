@@ -148,9 +148,9 @@ pub struct Relaxation {
     pub equation: usize,
     /// The form that is not posed.
     pub other: usize,
-    /// What holds the helpers beside the corners.
+    /// What holds the helpers beside the corners. Equations may have helpers in common.
     pub sides: Vec<usize>,
-    /// What holds them at 0 where the equation is posed as it is written.
+    /// What holds them at 0 where no equation has them.
     pub parked: Vec<usize>,
     /// Where the corners are.
     pub corners: Vec<Place>,

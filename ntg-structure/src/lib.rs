@@ -132,23 +132,20 @@ impl Structure {
         }
     }
 
-    /// Poses all equations as they are written.
-    pub fn pose_as_written(&mut self) {
-        (0..self.relaxations.len()).for_each(|number| self.pose(number, true));
-    }
-
     /// Where a gradient may jump in what is posed.
     pub fn corners_posed(&self) -> impl Iterator<Item = &Place> {
         let exact = self.relaxations.iter().filter(|own| own.is_exact);
         self.corners.iter().chain(exact.flat_map(|own| &own.corners))
     }
 
-    /// Whether a constraint is posed: all are but those of relaxations that hold in the other form.
+    /// Whether a constraint is posed: all are but equations in their other form, and what holds helpers beside their corners where
+    /// no equation has them, or at 0 where one has.
     pub fn is_posed(&self, constraint: usize) -> bool {
-        self.relaxations.iter().all(|own| {
-            let left_out = if own.is_exact { &own.sides } else { &own.parked };
-            constraint != own.other && !left_out.contains(&constraint)
-        })
+        let all = || self.relaxations.iter();
+        let mut of_sides = all().filter(|own| own.sides.contains(&constraint)).peekable();
+        let is_needed = of_sides.peek().is_none() || of_sides.any(|own| !own.is_exact);
+        let mut of_parked = all().filter(|own| own.parked.contains(&constraint));
+        is_needed && of_parked.all(|own| own.is_exact) && all().all(|own| own.other != constraint)
     }
 
     /// A group by its number: those of `groups`, then those of `shown`.

@@ -32,13 +32,6 @@ pub(super) struct Site {
     pub(super) floats: bool,
 }
 
-/// A helper, and where it stands.
-pub(super) struct Made {
-    pub(super) helper: NodeId,
-    pub(super) site: Site,
-    pub(super) span: Span,
-}
-
 /// The pass's state.
 pub(super) struct Corners {
     pub(super) signs: Signs,
@@ -59,13 +52,18 @@ pub(super) struct Corners {
     /// The choices between the tip of a cone and the rest of it, which are no corners.
     pub(super) tips: Set<NodeId>, // Asked, never iterated.
     pub(super) helpers: usize,
-    /// All helpers, in their order.
-    pub(super) made: Vec<Made>,
+    /// The helpers, by what they stand for, of corners that are pushed down.
+    pub(super) known: Map<(NodeId, Site), NodeId>, // Looked up, never iterated.
     /// The term in hand.
     pub(super) span: Span,
 }
 
 impl Corners {
+    /// The helper that stands for a corner in what is minimised or limited.
+    pub(super) fn helper_of(&self, corner: NodeId, site: &Site) -> Option<NodeId> {
+        self.known.get(&(corner, site.clone())).copied()
+    }
+
     /// Whether there are corners in a node.
     pub(super) fn has_corners(&self, node: NodeId) -> bool {
         self.within.contains(&node)
@@ -101,7 +99,7 @@ impl Elaborator<'_> {
             treated: Set::default(),
             tips: Set::default(),
             helpers: 0,
-            made: vec![],
+            known: Map::default(),
             span: Span::default(),
         };
         self.corners_limited(&mut pass);

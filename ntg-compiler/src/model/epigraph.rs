@@ -7,7 +7,7 @@
 
 use ntg_structure::{Block, Unit};
 
-use super::corners::{Corners, Made, Site, squares};
+use super::corners::{Corners, Site, squares};
 use super::elaborator::Elaborator;
 use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, Variable};
 use super::unknowns::{is_affine, is_given};
@@ -45,7 +45,9 @@ impl Elaborator<'_> {
         }
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
         let helper = self.helper_leaf(pass, corner, site, span)?;
-        pass.made.push(Made { helper, site: site.clone(), span });
+        if growing {
+            pass.known.insert((corner, site.clone()), helper);
+        }
         let zero = self.problem.dag.constant(0.0);
         let above = |node| (node, Bounds { lower: Some(zero), upper: None });
         match against {

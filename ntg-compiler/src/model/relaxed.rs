@@ -10,44 +10,54 @@ use super::elaborator::Elaborator;
 use super::problem::{Bounds, Constraint, Domain, Imposed, Leaf, Part, Relaxation};
 use super::unknowns::is_given;
 use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
+use crate::source::Span;
 use ntg_structure::Block;
 
 /// How deep equations are looked into; deeper corners stay.
 const MAX_DEPTH: usize = 500;
 
-/// What is known of one equation.
-struct Known<'o> {
-    /// The helpers that stand for its corners.
-    helpers: Map<(NodeId, Site), NodeId>, // Looked up, never iterated.
-    /// The constraints that hold them beside their corners, by number.
+/// A helper in equations. One that stands for a corner in what is minimised or limited too has its rows from there.
+#[derive(Clone)]
+struct Helper {
+    node: NodeId,
+    span: Span,
+    /// The constraints that hold it beside its corner, by number.
     sides: Vec<usize>,
-    /// Whether inputs have no part in the corners.
+    /// The constraints that hold it at 0 where no equation has it.
+    parked: Vec<usize>,
+    /// Whether inputs have no part in the corner.
     has_states_alone: bool,
-    orders: &'o Orders,
 }
 
-/// The highest derivative of each output in all that is solved, by phase and output.
-type Orders = Map<(usize, usize), usize>; // Looked up, never iterated.
+/// What is known of the equations.
+struct Known {
+    /// The helpers, by what they stand for: equations share them, as work, wear and fuel of one thrust do.
+    helpers: Map<(NodeId, Site), Helper>, // Looked up, never iterated.
+    /// Those of the equation in hand.
+    used: Vec<Helper>,
+    /// The highest derivative of each output in all that is solved, by phase and output.
+    orders: Map<(usize, usize), usize>, // Looked up, never iterated.
+}
 
 impl Elaborator<'_> {
     /// Gives equations with corners a form without.
     pub(super) fn corners_relaxed(&mut self, pass: &mut Corners) {
-        let mut orders = Orders::default();
+        let mut known = Known { helpers: Map::default(), used: vec![], orders: Map::default() };
         let bodies: Vec<NodeId> = self.problem.constraints.iter().map(|own| own.body).collect();
         for (place, order) in self.outputs_in(&bodies) {
-            let highest = orders.entry(place).or_insert(0);
+            let highest = known.orders.entry(place).or_insert(0);
             *highest = order.max(*highest);
         }
         for number in 0..self.problem.constraints.len() {
             let own = &self.problem.constraints[number];
             let is_equation = own.bounds.lower.is_some() && own.bounds.lower == own.bounds.upper;
             if is_equation && own.imposed == Imposed::Everywhere && pass.has_corners(own.body) {
-                self.equation_relaxed(pass, &orders, number);
+                self.equation_relaxed(pass, &mut known, number);
             }
         }
     }
 
-    fn equation_relaxed(&mut self, pass: &mut Corners, orders: &Orders, number: usize) {
+    fn equation_relaxed(&mut self, pass: &mut Corners, known: &mut Known, number: usize) {
         let own = self.problem.constraints[number].clone();
         let along = match &own.domain {
             Domain::Path(phase, part) if *part == Part::WHOLE => Some(phase.clone()),
@@ -56,21 +66,12 @@ impl Elaborator<'_> {
         };
         let site = Site { loops: own.loops.clone(), along, floats: false };
         pass.span = own.span;
-        let made = pass.made.len();
-        let mut known = Known { helpers: Map::default(), sides: vec![], has_states_alone: true, orders };
-        let relaxed = self.relaxed(pass, &mut known, (own.body, false), &site, 0);
+        let relaxed = self.relaxed(pass, known, (own.body, false), &site, 0);
+        let used = std::mem::take(&mut known.used);
         if relaxed == own.body {
             return;
         }
         self.origin(relaxed, own.span);
-        let zero = self.problem.dag.constant(0.0);
-        let at_zero = Bounds { lower: Some(zero), upper: Some(zero) };
-        let first = self.problem.constraints.len();
-        let mut corners = vec![];
-        for made in pass.made.split_off(made) {
-            self.hold_helper(&made.site, vec![], (made.helper, at_zero.clone()), made.span);
-            corners.push(made.span);
-        }
         let other = self.problem.constraints.len();
         let as_written = Constraint { name: None, block: Block::Corner, written: None, ..own.clone() };
         self.problem.constraints.push(as_written);
@@ -79,10 +80,10 @@ impl Elaborator<'_> {
         self.problem.relaxations.push(Relaxation {
             equation: number,
             other,
-            sides: known.sides,
-            parked: (first..other).collect(),
-            corners,
-            exact_first: known.has_states_alone,
+            sides: used.iter().flat_map(|helper| helper.sides.iter().copied()).collect(),
+            parked: used.iter().flat_map(|helper| helper.parked.iter().copied()).collect(),
+            corners: used.iter().map(|helper| helper.span).collect(),
+            exact_first: used.iter().all(|helper| helper.has_states_alone),
         });
     }
 
@@ -91,7 +92,7 @@ impl Elaborator<'_> {
     fn relaxed(
         &mut self,
         pass: &mut Corners,
-        known: &mut Known<'_>,
+        known: &mut Known,
         (node, is_multiplied): (NodeId, bool),
         site: &Site,
         depth: usize,
@@ -152,7 +153,7 @@ impl Elaborator<'_> {
     fn in_place_of(
         &mut self,
         pass: &mut Corners,
-        known: &mut Known<'_>,
+        known: &mut Known,
         corner: NodeId,
         at: (&Site, usize),
     ) -> Option<NodeId> {
@@ -181,23 +182,49 @@ impl Elaborator<'_> {
     fn held_beside(
         &mut self,
         pass: &mut Corners,
-        known: &mut Known<'_>,
+        known: &mut Known,
         corner: NodeId,
         (site, depth): (&Site, usize),
     ) -> Option<NodeId> {
-        if let Some(helper) = known.helpers.get(&(corner, site.clone())) {
-            return Some(*helper);
+        let key = (corner, site.clone());
+        let helper = match known.helpers.get(&key) {
+            Some(helper) => helper.clone(),
+            None => {
+                let helper = self.helper_of_equations(pass, known, corner, (site, depth))?;
+                known.helpers.insert(key, helper.clone());
+                helper
+            }
+        };
+        pass.treated.insert(corner);
+        let node = helper.node;
+        if known.used.iter().all(|used| used.node != node) {
+            known.used.push(helper);
         }
+        Some(node)
+    }
+
+    fn helper_of_equations(
+        &mut self,
+        pass: &mut Corners,
+        known: &Known,
+        corner: NodeId,
+        (site, depth): (&Site, usize),
+    ) -> Option<Helper> {
         if self.is_kept_away(corner) || !self.has_one_corner(pass, corner) {
             return None;
         }
+        let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
+        let has_states_alone = self.has_states_alone(&known.orders, corner);
+        if let Some(node) = pass.helper_of(corner, site) {
+            return Some(Helper { node, span, sides: vec![], parked: vec![], has_states_alone });
+        }
         let first = self.problem.constraints.len();
-        let helper = [true, false].into_iter().find_map(|growing| self.helper(pass, corner, (site, growing), depth))?;
-        pass.treated.insert(corner);
-        known.sides.extend(first..self.problem.constraints.len());
-        known.has_states_alone &= self.has_states_alone(known.orders, corner);
-        known.helpers.insert((corner, site.clone()), helper);
-        Some(helper)
+        let node = [true, false].into_iter().find_map(|growing| self.helper(pass, corner, (site, growing), depth))?;
+        let after = self.problem.constraints.len();
+        let zero = self.problem.dag.constant(0.0);
+        self.hold_helper(site, vec![], (node, Bounds { lower: Some(zero), upper: Some(zero) }), span);
+        let (sides, parked) = ((first..after).collect(), vec![after]);
+        Some(Helper { node, span, sides, parked, has_states_alone })
     }
 
     /// Whether a limit keeps a corner at 0 away from it: the least magnitude of a thrust.
@@ -209,7 +236,7 @@ impl Elaborator<'_> {
     }
 
     /// Whether a corner is made of outputs whose derivatives stand in equations, and of no others.
-    fn has_states_alone(&self, orders: &Orders, corner: NodeId) -> bool {
+    fn has_states_alone(&self, orders: &Map<(usize, usize), usize>, corner: NodeId) -> bool {
         let mut outputs = self.outputs_in(&[corner]).into_iter().peekable();
         outputs.peek().is_some() && outputs.all(|(place, order)| orders.get(&place).is_some_and(|own| order < *own))
     }

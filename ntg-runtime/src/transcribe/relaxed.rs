@@ -4,7 +4,7 @@
 use super::Transcription;
 use super::instances::family_members;
 use super::layout::narrow;
-use super::rows::{RowInfo, RowKind};
+use super::rows::{RowInfo, RowKind, constraint_name};
 use ntg_nlp::Nlp;
 use ntg_structure::Relaxation;
 
@@ -50,6 +50,14 @@ impl Transcription<'_> {
         };
         let all = relaxed.into_iter().map(|(number, own)| (number, missed(own)));
         all.filter(|(_, missed)| *missed > MET || missed.is_nan()).collect()
+    }
+
+    /// The equations with corners that a point meets with helpers in their place alone: their names, and by how much it misses them
+    /// as they are written, as a part of the largest term of helpers in them.
+    pub fn missed_as_written(&self, x: &[f64]) -> Vec<(String, f64)> {
+        let structure = &self.model.structure;
+        let name = |number: usize| constraint_name(&structure.constraints[structure.relaxations[number].equation]);
+        self.open_relaxations(x).into_iter().map(|(number, missed)| (name(number).to_owned(), missed)).collect()
     }
 
     /// The variables that are helpers.
