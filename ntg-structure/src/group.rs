@@ -148,16 +148,25 @@ pub struct Relaxation {
     pub equation: usize,
     /// The form that is not posed.
     pub other: usize,
-    /// What holds the helpers beside the corners. Equations may have helpers in common.
-    pub sides: Vec<usize>,
-    /// What holds them at 0 where no equation has them.
-    pub parked: Vec<usize>,
+    /// The helpers. Equations may have some in common.
+    pub helpers: Vec<Helper>,
     /// Where the corners are.
     pub corners: Vec<Place>,
     /// Whether a solver poses it first as it is written: inputs have no part in the corners, and nothing holds a trajectory there.
     pub exact_first: bool,
     /// Whether it is posed as it is written.
     pub is_exact: bool,
+}
+
+/// A number for each point that stands for a corner of equations. All constraints are given by their numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
+pub struct Helper {
+    /// What holds it beside the corner, one for each side of that.
+    pub sides: Vec<usize>,
+    /// Its own bounds.
+    pub bounds: Vec<usize>,
+    /// What holds it at 0 where no equation has it.
+    pub parked: usize,
 }
 
 /// Measured values with their standard deviations: half the sum of squared ratios is part of a term of the objective

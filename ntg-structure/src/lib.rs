@@ -25,7 +25,7 @@ mod quantity;
 
 pub use call::{At, Call, Data, PhaseRef, ReduceOp, Reduction, Slot};
 pub use group::{
-    Angle, Arguments, Block, Constraint, Domain, Group, Integral, Measurement, Named, Relaxation, Row, Term,
+    Angle, Arguments, Block, Constraint, Domain, Group, Helper, Integral, Measurement, Named, Relaxation, Row, Term,
 };
 pub use guess::{Continuation, Guess, GuessKind, GuessScope};
 pub use index::{Affine, Family, Grid, Loop};
@@ -141,11 +141,21 @@ impl Structure {
     /// Whether a constraint is posed: all are but equations in their other form, and what holds helpers beside their corners where
     /// no equation has them, or at 0 where one has.
     pub fn is_posed(&self, constraint: usize) -> bool {
-        let all = || self.relaxations.iter();
-        let mut of_sides = all().filter(|own| own.sides.contains(&constraint)).peekable();
-        let is_needed = of_sides.peek().is_none() || of_sides.any(|own| !own.is_exact);
-        let mut of_parked = all().filter(|own| own.parked.contains(&constraint));
-        is_needed && of_parked.all(|own| own.is_exact) && all().all(|own| own.other != constraint)
+        let mut is_needed = None;
+        for own in &self.relaxations {
+            if own.other == constraint {
+                return false;
+            }
+            for helper in &own.helpers {
+                if helper.parked == constraint && !own.is_exact {
+                    return false;
+                }
+                if helper.sides.contains(&constraint) || helper.bounds.contains(&constraint) {
+                    is_needed = Some(is_needed == Some(true) || !own.is_exact);
+                }
+            }
+        }
+        is_needed != Some(false)
     }
 
     /// A group by its number: those of `groups`, then those of `shown`.

@@ -160,6 +160,45 @@ fn no_helper_throws_mass_away() {
     }
 }
 
+/// The worst of two counters: the other one has wear to spare, and nothing pushes its helper.
+#[test]
+fn a_counter_with_room_is_counted_as_it_is_written() {
+    for (points, intervals) in MESHES {
+        let of = |cost: &str| {
+            let text = format!(
+                "problem Worst {{
+                    duration T = 6; state x[2], v[2], E[2]; input u[2] in -1 .. 1;
+                    collocation gauss(points = {points}, intervals = {intervals}, inequalities = points);
+                    minimize {cost};
+                    dynamics {{ der(x) == v; der(v) == u; for i in 1 .. 2 {{ der(E[i]) == abs(u[i]); }} }}
+                    initial {{ x == 0; v == 0; E == 0; }} final {{ x == (4, 1); v == 0; }}
+                }}"
+            );
+            solved(&text, 250)
+        };
+        let worst = of("max(final(E[1]), final(E[2]))");
+        close(worst.objective, of("integral(abs(u[1]))").objective, 1e-6);
+        let second = |report: &Report| report.solution.output("E[2]").expect("it is one").at(6.0);
+        assert!(second(&worst) <= worst.objective + 1e-6, "{worst}");
+    }
+}
+
+/// Work that is to be little and mass that it would be good to lose, by one thrust: one helper, which the work pushes.
+#[test]
+fn equations_share_the_helper_of_their_corner() {
+    for mesh in MESHES {
+        let of = |burnt: &str, rows: &str| {
+            let rest = format!(
+                "state m; input F in -1 .. 1, s in 0 .. 1; minimize final(E);
+                 dynamics {{ der(x) == v; der(v) == F / m; der(E) == {burnt}; der(m) == -0.05 * {burnt}; }}
+                 trajectory {{ {rows} }} initial {{ E == 0; m == 1; }}"
+            );
+            solved(&cart("E", mesh, &rest), 60).objective
+        };
+        close(of("abs(F)", "s == 0;"), of("s", "s >= F; s >= -F;"), 1e-6);
+    }
+}
+
 /// A budget that is spent exactly, and a variable that is what an integral is.
 #[test]
 fn equations_of_the_whole_mission_are_as_the_limits_are() {

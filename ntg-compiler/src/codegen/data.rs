@@ -13,10 +13,10 @@
 
 use ntg_structure::{
     Affine, Agent, Angle, Arguments, At, Block, Bounds, Call, Constraint, Continuation, Data, Degree, Domain, Duration,
-    Family, Grid, Group, Guess, GuessKind, GuessScope, Independent, Instant, Integral, Kernel, Loop, Measurement,
-    Named, Output, Parameter, Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction, Relaxation, Row,
-    Shared, Slot, Spline, Start, Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry, Term, Unit,
-    Variable,
+    Family, Grid, Group, Guess, GuessKind, GuessScope, Helper, Independent, Instant, Integral, Kernel, Loop,
+    Measurement, Named, Output, Parameter, Part, Phase, PhaseRef, Place, Places, Points, ReduceOp, Reduction,
+    Relaxation, Row, Shared, Slot, Spline, Start, Table, TableAxis, TableExtrapolation, TableMethod, TableSymmetry,
+    Term, Unit, Variable,
 };
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -120,7 +120,8 @@ structs! {
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }
     Places { first, instants }
     Reduction { op, over, body }
-    Relaxation { equation, other, sides, parked, corners, exact_first, is_exact }
+    Helper { sides, bounds, parked }
+    Relaxation { equation, other, helpers, corners, exact_first, is_exact }
     Shared { phase, output, until }
     Table { name, doc, axes, unit, values, method, extrapolation, replaceable }
     TableAxis { name, unit, nodes, symmetry }

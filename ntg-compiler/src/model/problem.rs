@@ -5,7 +5,7 @@
 //! with `program`. Arrays, loops, phases and agents are families: an index is a [`Form`] in
 //! [`IndexId`]s, and whoever holds an expression also holds the [`Loop`]s that bind its indices.
 
-use ntg_structure::{Block, Grid, Independent, Parameter, Shared, Spline, Table, Unit};
+use ntg_structure::{Block, Grid, Helper, Independent, Parameter, Shared, Spline, Table, Unit};
 
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Dag, InputId, Map, NodeId};
@@ -310,10 +310,8 @@ pub struct Relaxation {
     pub equation: usize,
     /// The form as it is written.
     pub other: usize,
-    /// What holds the helpers beside the corners.
-    pub sides: Vec<usize>,
-    /// What holds them at 0.
-    pub parked: Vec<usize>,
+    /// The helpers.
+    pub helpers: Vec<Helper>,
     /// Where the corners are.
     pub corners: Vec<Span>,
     /// Whether inputs have no part in the corners.

@@ -11,20 +11,18 @@ use super::problem::{Bounds, Constraint, Domain, Imposed, Leaf, Part, Relaxation
 use super::unknowns::is_given;
 use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
 use crate::source::Span;
-use ntg_structure::Block;
+use ntg_structure::{Block, Helper};
 
 /// How deep equations are looked into; deeper corners stay.
 const MAX_DEPTH: usize = 500;
 
-/// A helper in equations. One that stands for a corner in what is minimised or limited too has its rows from there.
+/// A helper in equations.
 #[derive(Clone)]
-struct Helper {
+struct Used {
     node: NodeId,
     span: Span,
-    /// The constraints that hold it beside its corner, by number.
-    sides: Vec<usize>,
-    /// The constraints that hold it at 0 where no equation has it.
-    parked: Vec<usize>,
+    /// Its rows; one that stands for a corner in what is minimised or limited too has its rows from there.
+    held: Option<Helper>,
     /// Whether inputs have no part in the corner.
     has_states_alone: bool,
 }
@@ -32,9 +30,9 @@ struct Helper {
 /// What is known of the equations.
 struct Known {
     /// The helpers, by what they stand for: equations share them, as work, wear and fuel of one thrust do.
-    helpers: Map<(NodeId, Site), Helper>, // Looked up, never iterated.
+    helpers: Map<(NodeId, Site), Used>, // Looked up, never iterated.
     /// Those of the equation in hand.
-    used: Vec<Helper>,
+    used: Vec<Used>,
     /// The highest derivative of each output in all that is solved, by phase and output.
     orders: Map<(usize, usize), usize>, // Looked up, never iterated.
 }
@@ -80,8 +78,7 @@ impl Elaborator<'_> {
         self.problem.relaxations.push(Relaxation {
             equation: number,
             other,
-            sides: used.iter().flat_map(|helper| helper.sides.iter().copied()).collect(),
-            parked: used.iter().flat_map(|helper| helper.parked.iter().copied()).collect(),
+            helpers: used.iter().filter_map(|helper| helper.held.clone()).collect(),
             corners: used.iter().map(|helper| helper.span).collect(),
             exact_first: used.iter().all(|helper| helper.has_states_alone),
         });
@@ -110,25 +107,21 @@ impl Elaborator<'_> {
         }
         let own = self.problem.dag.node(node).clone();
         match own {
-            Node::Unary(Unary::Neg, _)
-            | Node::Binary(Binary::Add | Binary::Sub | Binary::Mul | Binary::Div, ..)
-            | Node::Reduce { fold: Fold::Sum, .. } => {
+            _ if is_smooth(&own) => {
                 let mut inner = site.clone();
                 if let Node::Reduce { range, .. } = own {
                     inner.loops.push(self.problem.ranges[range as usize].clone());
                 }
-                let is_product = matches!(own, Node::Binary(Binary::Mul | Binary::Div, ..));
+                let is_sum = matches!(own, Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Add | Binary::Sub, ..))
+                    || matches!(own, Node::Reduce { fold: Fold::Sum, .. });
                 let operands = own.operands();
                 let mut images: Map<NodeId, NodeId> = Map::default();
                 for (at, operand) in operands.iter().enumerate() {
-                    let is_divisor = at > 0 && matches!(own, Node::Binary(Binary::Div, ..));
                     let others = operands.iter().enumerate().filter(|(other, _)| *other != at);
-                    let by_unknown =
-                        is_product && others.into_iter().any(|(_, other)| !is_given(&self.problem, *other));
-                    let image = match is_divisor {
-                        true => *operand,
-                        false => self.relaxed(pass, known, (*operand, is_multiplied || by_unknown), &inner, depth + 1),
-                    };
+                    let by_unknown = !is_sum && others.into_iter().any(|(_, other)| !is_given(&self.problem, *other));
+                    let is_divisor = at > 0 && matches!(own, Node::Binary(Binary::Div, ..));
+                    let is_multiplied = is_multiplied || by_unknown || is_divisor || matches!(own, Node::Powi(..));
+                    let image = self.relaxed(pass, known, (*operand, is_multiplied), &inner, depth + 1);
                     images.insert(*operand, image);
                 }
                 self.problem.dag.rebuild(&own, |operand| images[&operand])
@@ -209,22 +202,25 @@ impl Elaborator<'_> {
         known: &Known,
         corner: NodeId,
         (site, depth): (&Site, usize),
-    ) -> Option<Helper> {
+    ) -> Option<Used> {
         if self.is_kept_away(corner) || !self.has_one_corner(pass, corner) {
             return None;
         }
         let span = self.problem.origin.get(&corner).copied().unwrap_or(pass.span);
         let has_states_alone = self.has_states_alone(&known.orders, corner);
         if let Some(node) = pass.helper_of(corner, site) {
-            return Some(Helper { node, span, sides: vec![], parked: vec![], has_states_alone });
+            return Some(Used { node, span, held: None, has_states_alone });
         }
         let first = self.problem.constraints.len();
-        let node = [true, false].into_iter().find_map(|growing| self.helper(pass, corner, (site, growing), depth))?;
+        // What nothing pushes is held by what it can be at all.
+        let free = Site { floats: true, ..site.clone() };
+        let node = [true, false].into_iter().find_map(|growing| self.helper(pass, corner, (&free, growing), depth))?;
         let after = self.problem.constraints.len();
         let zero = self.problem.dag.constant(0.0);
         self.hold_helper(site, vec![], (node, Bounds { lower: Some(zero), upper: Some(zero) }), span);
-        let (sides, parked) = ((first..after).collect(), vec![after]);
-        Some(Helper { node, span, sides, parked, has_states_alone })
+        let (bounds, sides) = (first..after).partition(|row| self.problem.constraints[*row].body == node);
+        let held = Some(Helper { sides, bounds, parked: after });
+        Some(Used { node, span, held, has_states_alone })
     }
 
     /// Whether a limit keeps a corner at 0 away from it: the least magnitude of a thrust.
@@ -261,5 +257,16 @@ impl Elaborator<'_> {
                 _ => false,
             }
         })
+    }
+}
+
+/// Whether a node is a smooth function of its operands.
+fn is_smooth(node: &Node) -> bool {
+    match node {
+        Node::Unary(op, _) => !matches!(op, Unary::Abs | Unary::Sign | Unary::Sqrt),
+        Node::Binary(op, ..) => matches!(op, Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Pow),
+        Node::Powi(..) => true,
+        Node::Reduce { fold, .. } => *fold == Fold::Sum,
+        _ => false,
     }
 }

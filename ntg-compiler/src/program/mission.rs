@@ -48,8 +48,7 @@ fn relaxations(lowering: &Lowering<'_>) -> Vec<out::Relaxation> {
     let relaxation = |own: &crate::model::problem::Relaxation| out::Relaxation {
         equation: own.equation,
         other: own.other,
-        sides: own.sides.clone(),
-        parked: own.parked.clone(),
+        helpers: own.helpers.clone(),
         corners: own.corners.iter().map(|span| lowering.place(*span)).collect(),
         exact_first: own.exact_first,
         is_exact: false,

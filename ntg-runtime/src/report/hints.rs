@@ -92,7 +92,7 @@ pub(super) fn overdetermined(nlp: &Transcription) -> Option<(String, Place)> {
     Some((message, equation.place.clone()))
 }
 
-/// The norm of a vector that is integrated in what is minimised, where a solve finds no end: an input that is its width is
+/// The norm of a vector that is integrated in what is minimised, or stands in an equation, where a solve finds no end: an input that is its width is
 /// solved more surely than the helper that stands for it (docs/maths.md, section 18).
 pub(super) fn integrated_norm(nlp: &Transcription) -> Option<(String, Place)> {
     let structure = &nlp.model.structure;
@@ -100,12 +100,19 @@ pub(super) fn integrated_norm(nlp: &Transcription) -> Option<(String, Place)> {
     let norm = helpers
         .filter_map(|helper| helper.doc.strip_prefix("Stands for `")?.strip_suffix("`."))
         .find(|text| ["norm(", "hypot(", "sqrt("].iter().any(|root| text.starts_with(root)) && text.ends_with(')'))?;
+    let of_equation = structure.relaxations.iter().flat_map(|own| &own.corners).find(|corner| corner.text == norm);
+    let (told, place, whole) = match of_equation {
+        Some(corner) => ("stands in an equation", corner, "the equation"),
+        None => {
+            let term = structure.terms.iter().find(|term| term.place.text.contains(norm));
+            ("is integrated in what is minimised", &term.or(structure.terms.first())?.place, "the objective")
+        }
+    };
     let message = format!(
-        "`{norm}` is integrated in what is minimised: an input of its own is often solved where this is not, `input s;` \
-         with the limit of the norm as its bound, `{norm} <= s` in `trajectory`, and `s` in the objective"
+        "`{norm}` {told}: an input of its own is often solved where this is not, `input s;` with the limit of the norm as its \
+         bound, `{norm} <= s` in `trajectory`, and `s` in {whole}"
     );
-    let term = structure.terms.iter().find(|term| term.place.text.contains(norm)).or(structure.terms.first())?;
-    Some((message, term.place.clone()))
+    Some((message, place.clone()))
 }
 
 /// Outputs that have left their sizes far behind, the farthest first.
@@ -120,7 +127,7 @@ pub(super) fn ran_off(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
                 own.coefficients.iter().map(|c| ((x[*c as usize] - origin(*c)).abs(), nlp.limits.scale[*c as usize]));
             let far =
                 sizes.map(|(value, size)| (value / size, value)).fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a });
-            if far.0 > RAN_OFF {
+            if far.0 > RAN_OFF && !declared.outputs[own.output].is_helper() {
                 let unit = &declared.outputs[own.output].unit;
                 let message = format!(
                     "`{}` ran off to {}, {} times its size at the start: bounds keep it where it has a meaning, and so \

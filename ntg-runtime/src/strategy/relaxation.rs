@@ -1,12 +1,14 @@
 //! Corners of equations: a solve beside them first, and at them where it leaves a gap (docs/maths.md, equation 18.5).
 
 use super::budget::Budget;
-use super::session::{Session, Task};
+use super::session::{FirstPoint, SAME, Session, Task, record};
 use crate::error::Error;
+use crate::guess::Guess;
 use crate::problem::Problem;
 use crate::report::Report;
 use crate::settings::Settings;
 use crate::status::Status;
+use ntg_nlp::Start;
 use ntg_structure::Structure;
 use std::time::Instant;
 
@@ -51,11 +53,9 @@ impl Session {
                 return Ok(report.ended(if is_late { Status::TimeLimit } else { Status::IterationLimit }));
             }
             if is_solved
-                && open.iter().all(|(_, missed)| *missed < NEARLY)
-                && let Some(tight) = self.closer(task.problem, &report, &budget)?
+                && let Some(found) = self.at_corners(task.problem, &structure, (&report, &open), &mut budget)?
             {
-                budget.spend(tight.iterations);
-                return Ok(Report { iterations: budget.spent(), seconds: began.elapsed().as_secs_f64(), ..tight });
+                return Ok(Report { iterations: budget.spent(), seconds: began.elapsed().as_secs_f64(), ..found });
             }
             if is_solved {
                 open.into_iter().for_each(|(number, _)| way[number] = true);
@@ -67,11 +67,76 @@ impl Session {
         }
     }
 
+    /// A solution with the helpers of some equations at their corners, from one that has them beside these.
+    fn at_corners(
+        &mut self,
+        problem: &dyn Problem,
+        structure: &Structure,
+        (report, open): (&Report, &[(usize, f64)]),
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Report>, Error> {
+        if open.iter().all(|(_, missed)| *missed < NEARLY)
+            && let Some(found) = self.closer(problem, report, budget)?
+        {
+            budget.spend(found.iterations);
+            return Ok(Some(found));
+        }
+        let Some((found, is_best)) = self.closed(problem, structure, (report, open), budget)? else { return Ok(None) };
+        budget.spend(found.iterations);
+        if is_best {
+            return Ok(Some(found));
+        }
+        // A point that keeps the equations, beside which they may be kept better.
+        let Some(settings) = budget.near() else { return Ok(None) };
+        let mut exact = structure.clone();
+        open.iter().for_each(|(number, _)| exact.pose(*number, true));
+        let guess = Guess::from(&found.solution);
+        let (found, open) = self.solve_posed(Task { problem, guess: Some(&guess) }, exact, &settings)?;
+        budget.spend(found.iterations);
+        Ok((found.status == Status::Solved && open.is_empty()).then_some(found))
+    }
+
     /// The solution that a solution is near whose equations are missed by little as they are written: closer to the bounds.
     fn closer(&mut self, problem: &dyn Problem, report: &Report, budget: &Budget<'_>) -> Result<Option<Report>, Error> {
         let Some(rest) = budget.near() else { return Ok(None) };
         let settings = Settings { tolerance: CLOSER * rest.tolerance, ..rest };
         self.solve_again(problem, &report.solution, &settings)
+    }
+
+    /// A solution with the helpers of some equations held at their corners, each on the side on which the corner is at a
+    /// solution that has them beside; and whether it is as good as that, and so the best there is.
+    fn closed(
+        &mut self,
+        problem: &dyn Problem,
+        structure: &Structure,
+        (report, open): (&Report, &[(usize, f64)]),
+        budget: &Budget<'_>,
+    ) -> Result<Option<(Report, bool)>, Error> {
+        let Some(settings) = budget.near() else { return Ok(None) };
+        let began = Instant::now();
+        let mut nlp = self.program(problem, structure)?;
+        let own = &report.solution.inner;
+        nlp.set_scales(&own.x, &settings)?;
+        nlp.raise_sizes(&own.sizes, &settings);
+        let limits = nlp.limits.clone();
+        let numbers: Vec<usize> = open.iter().map(|(number, _)| *number).collect();
+        let is_held = nlp.close(&numbers, &own.x).is_ok();
+        // Another program, of which nothing is to be kept.
+        let first = FirstPoint { x: &own.x, from: Start::Near };
+        let found = is_held.then(|| Session::default().solve_measured(&mut nlp, first, &settings));
+        (nlp.limits.row_lower, nlp.limits.row_upper) = (limits.row_lower, limits.row_upper);
+        let found =
+            found.filter(|found| found.status == ntg_nlp::Status::Solved && nlp.open_relaxations(&found.x).is_empty());
+        let Some(found) = found else {
+            self.kept = Some(nlp.keep());
+            return Ok(None);
+        };
+        let history = vec![record(&nlp, &[], &found, began)];
+        let found = self.report(nlp, found, history, &settings)?;
+        let rise =
+            if structure.maximize { report.objective - found.objective } else { found.objective - report.objective };
+        let is_best = rise <= SAME * report.objective.abs().max(found.objective.abs());
+        Ok(Some((found, is_best)))
     }
 }
 

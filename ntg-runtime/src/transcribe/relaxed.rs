@@ -4,9 +4,10 @@
 use super::Transcription;
 use super::instances::family_members;
 use super::layout::narrow;
-use super::rows::{RowInfo, RowKind, constraint_name};
-use ntg_nlp::Nlp;
+use super::rows::{RowInfo, RowKey, RowKind, constraint_name};
+use ntg_nlp::{Nlp, NotFinite};
 use ntg_structure::Relaxation;
+use std::collections::BTreeMap;
 
 /// How far an equation as it is written may be missed where it is met, as a part of the largest term of helpers in it. A law: the
 /// acceptable violation of a row.
@@ -31,14 +32,10 @@ impl Transcription<'_> {
         let (Some(rows), Some(without)) = (rows(x), rows(&without)) else {
             return relaxed.into_iter().map(|(number, _)| (number, f64::INFINITY)).collect();
         };
-        let rows_of = |constraint: usize| {
-            let is_own = move |row: &&RowInfo| row.kind == RowKind::Constraint(constraint);
-            (0..).zip(&self.elements.rows).filter(move |(_, row)| is_own(row)).map(|(number, _): (usize, _)| number)
-        };
         let missed = |own: &Relaxation| {
             let (mut missed, mut size) = (0.0, 0.0);
             // Both forms have the same rows in the same order.
-            for (posed, other) in rows_of(own.equation).zip(rows_of(own.other)) {
+            for (posed, other) in self.rows_of(own.equation).zip(self.rows_of(own.other)) {
                 let term = (rows[posed] - without[posed]).abs().max(VANISHES * self.limits.row_scale[posed]);
                 size = crate::math::max(size, term);
                 missed = crate::math::max(missed, (rows[other] - rows[posed]).abs());
@@ -58,6 +55,37 @@ impl Transcription<'_> {
         let structure = &self.model.structure;
         let name = |number: usize| constraint_name(&structure.constraints[structure.relaxations[number].equation]);
         self.open_relaxations(x).into_iter().map(|(number, missed)| (name(number).to_owned(), missed)).collect()
+    }
+
+    /// Holds the helpers of relaxations at their corners, each on the side on which the corner is at a point.
+    pub(crate) fn close(&mut self, relaxations: &[usize], x: &[f64]) -> Result<(), NotFinite> {
+        let (mut work, mut at) = self.workspace();
+        self.values(x, &mut work, &mut at)?;
+        let structure = &self.model.structure;
+        let helpers = relaxations.iter().flat_map(|number| &structure.relaxations[*number].helpers);
+        let mut nearest: BTreeMap<RowKey<'_>, (f64, usize)> = BTreeMap::new();
+        for helper in helpers {
+            let outer = self.rows_of(helper.parked).next().map_or(0, |row| self.elements.rows[row].indices.len());
+            for row in helper.sides.iter().flat_map(|side| self.rows_of(*side)) {
+                let (_, _, indices, phase, tau, is_left) = self.elements.rows[row].key();
+                let key = (false, helper.parked, &indices[..outer.min(indices.len())], phase, tau, is_left);
+                let gap = at.rows[row] - self.limits.row_lower[row];
+                let held = nearest.entry(key).or_insert((gap, row));
+                if gap < held.0 {
+                    *held = (gap, row);
+                }
+            }
+        }
+        for (_, row) in nearest.into_values() {
+            self.limits.row_upper[row] = self.limits.row_lower[row];
+        }
+        Ok(())
+    }
+
+    /// The rows of a constraint.
+    fn rows_of(&self, constraint: usize) -> impl Iterator<Item = usize> {
+        let is_own = move |row: &RowInfo| row.kind == RowKind::Constraint(constraint);
+        self.elements.rows.iter().enumerate().filter(move |(_, row)| is_own(row)).map(|(number, _)| number)
     }
 
     /// The variables that are helpers.
