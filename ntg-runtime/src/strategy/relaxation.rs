@@ -1,7 +1,7 @@
 //! Corners of equations: a solve beside them first, and at them where it leaves a gap (docs/maths.md, equation 18.5).
 
 use super::budget::Budget;
-use super::session::{FirstPoint, SAME, Session, Task, record};
+use super::session::{FirstPoint, Session, Task, record};
 use crate::error::Error;
 use crate::guess::Guess;
 use crate::problem::Problem;
@@ -17,6 +17,9 @@ const NEARLY: f64 = 1e-3;
 /// The part of the tolerance to which a solve goes on then. A law: by (18.2) the helper misses its corner by the root of what its
 /// row does.
 const CLOSER: f64 = 1e-3;
+
+/// An objective that is above a bound of it by no more than this part of it is the least. A law: ten tolerances.
+const PROVEN: f64 = 1e-7;
 
 impl Session {
     /// Solves a problem from a guess, with helpers beside the corners of its equations as long as they end at them.
@@ -55,7 +58,8 @@ impl Session {
             if is_solved
                 && let Some(found) = self.at_corners(task.problem, &structure, (&report, &open), &mut budget)?
             {
-                return Ok(Report { iterations: budget.spent(), seconds: began.elapsed().as_secs_f64(), ..found });
+                let (iterations, seconds, singular) = (budget.spent(), began.elapsed().as_secs_f64(), report.singular);
+                return Ok(Report { iterations, seconds, singular, ..found });
             }
             if is_solved {
                 open.into_iter().for_each(|(number, _)| way[number] = true);
@@ -135,7 +139,7 @@ impl Session {
         let found = self.report(nlp, found, history, &settings)?;
         let rise =
             if structure.maximize { report.objective - found.objective } else { found.objective - report.objective };
-        let is_best = rise <= SAME * report.objective.abs().max(found.objective.abs());
+        let is_best = rise <= PROVEN * report.objective.abs().max(found.objective.abs());
         Ok(Some((found, is_best)))
     }
 }
