@@ -15,6 +15,9 @@ const MET: f64 = ntg_nlp::residuals::ACCEPTABLE;
 /// A term that is smaller everywhere, as a part of the size of its row, is 0. A choice.
 const VANISHES: f64 = 1e-3;
 
+/// The indices of a member of an equation, and its phase.
+type Member<'a> = (&'a [i64], Option<usize>);
+
 impl Transcription<'_> {
     /// The relaxations, by number, whose equations a point misses as they are written, and by how much, as a part of the largest
     /// term of helpers in them.
@@ -33,17 +36,19 @@ impl Transcription<'_> {
             return relaxed.into_iter().map(|(number, _)| (number, f64::INFINITY)).collect();
         };
         let missed = |own: &Relaxation| {
-            let (mut missed, mut size) = (0.0, 0.0);
+            // By how much each member of the equation is missed in each phase, and its largest term.
+            let mut members: BTreeMap<Member<'_>, (f64, f64)> = BTreeMap::new();
             // Both forms have the same rows in the same order.
             for (posed, other) in self.rows_of(own.equation).zip(self.rows_of(own.other)) {
+                let info = &self.elements.rows[posed];
+                let (missed, size) = members.entry((&info.indices, info.point.phase)).or_default();
                 let term = (rows[posed] - without[posed]).abs().max(VANISHES * self.limits.row_scale[posed]);
-                size = crate::math::max(size, term);
-                missed = crate::math::max(missed, (rows[other] - rows[posed]).abs());
+                *size = crate::math::max(*size, term);
+                *missed = crate::math::max(*missed, (rows[other] - rows[posed]).abs());
             }
-            if std::env::var("NTG_DBG").is_ok() {
-                eprintln!("gap {missed:e} {size:e}");
-            }
-            if missed > 0.0 { missed / size } else { missed }
+            let relative =
+                members.into_values().map(|(missed, size)| if missed > 0.0 { missed / size } else { missed });
+            relative.fold(0.0, crate::math::max)
         };
         let all = relaxed.into_iter().map(|(number, own)| (number, missed(own)));
         all.filter(|(_, missed)| *missed > MET || missed.is_nan()).collect()
