@@ -28,6 +28,8 @@ const LISTED: usize = 10;
 ///
 /// The file holds the transcribed program in SI units, unscaled; names of rows and variables stand beside it in files that end
 /// in .row and .col. Tables are written out as piecewise polynomials. A continuation is left out: the program is that of its last step.
+/// Equations with corners are in the form that a solve begins with, mostly with helpers in the place of the corners; `ntg check-solution`
+/// tells where a point meets that form alone.
 /// Exit status: 0 done, 2 on errors.
 ///
 /// Examples:
@@ -113,28 +115,32 @@ impl Problem {
 }
 
 impl Read {
-    /// The problem with its equations that have corners in the form that a solve begins with, or as they are written.
-    fn posed(&self, as_written: bool) -> WithStructure<'_> {
+    /// The problem with its equations that have corners in the form that a solve begins with.
+    fn posed(&self) -> WithStructure<'_> {
         WithStructure::new(&self.problem).edited(|structure| {
             for number in 0..structure.relaxations.len() {
-                structure.pose(number, as_written || structure.relaxations[number].exact_first);
+                structure.pose(number, structure.relaxations[number].exact_first);
             }
         })
     }
 
-    /// Whether a point is nearer to the equations as they are written than to those with helpers for their corners.
-    fn is_as_written(&self, path: &Path) -> Result<bool, String> {
-        if self.program.structure.relaxations.is_empty() {
-            return Ok(false);
-        }
-        let violation = |as_written: bool| -> Result<f64, String> {
-            let problem = self.posed(as_written);
-            let mut nlp = Transcription::new(&problem).map_err(|error| self.said(error))?;
+    /// The problem with each of these equations in the form that a point is nearer to.
+    fn posed_at(&self, path: &Path) -> Result<WithStructure<'_>, String> {
+        let missed = |problem: &WithStructure<'_>| -> Result<f64, String> {
+            let mut nlp = Transcription::new(problem).map_err(|error| self.said(error))?;
             let found = self.measured(path, &mut nlp)?.0;
             let judged = judge(&nlp, Point { x: &found.x, multipliers: None });
-            Ok(judged.map_or(f64::INFINITY, |judged| judged.violation()))
+            Ok(judged.map_or(f64::INFINITY, |judged| judged.missed.iter().map(|missed| missed.relative).sum()))
         };
-        Ok(violation(true)? < violation(false)?)
+        let mut posed = self.posed();
+        for number in 0..posed.structure.relaxations.len() {
+            let is_exact = posed.structure.relaxations[number].is_exact;
+            let other = posed.edited(|structure| structure.pose(number, !is_exact));
+            if missed(&other)? < missed(&posed)? {
+                posed = other;
+            }
+        }
+        Ok(posed)
     }
 
     /// A point, and whether it was saved on other splines; the program gets sizes.
@@ -163,7 +169,7 @@ pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
     }
     paths.iter().try_for_each(|path| crate::write::may_write(path, arguments.force))?;
     let read = arguments.problem.read()?;
-    let problem = read.posed(false);
+    let problem = read.posed();
     let nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
     let first = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;
     let expressions = Expressions::new(&read.program, &nlp).map_err(|error| error.to_string())?;
@@ -183,7 +189,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         return Err(format!("--tolerance {tolerance}: a positive number"));
     }
     let read = arguments.problem.read()?;
-    let problem = read.posed(read.is_as_written(&arguments.point)?);
+    let problem = read.posed_at(&arguments.point)?;
     let mut nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
     let (found, is_interpolated) = read.measured(&arguments.point, &mut nlp)?;
     let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };

@@ -134,3 +134,41 @@ fn an_answer_to_another_program_is_refused() {
     let said = text(&done.stderr);
     assert!(said.contains("it has 1 rows, but the program has 3; it belongs to another program"), "{said}");
 }
+
+/// Equations with corners that are solved with helpers in the place of these (a battery), as they are written (a thrust by which
+/// mass is lost, in the least time), and one of each: a saved solution is one, and none of another battery.
+#[test]
+fn solutions_of_equations_with_corners_are_confirmed_in_the_form_in_which_they_were_found() {
+    const BATTERY: &str = "problem Battery {
+        param r = 0.9; duration T = 24; state e in 0 .. 10; input p in -4 .. 4; collocation gauss(points = 3, intervals = 12);
+        minimize integral((0.25 + 0.12 * sin(2 * pi * (t - 13) / 24)) * p); dynamics { der(e) == min(r * p, p / r); }
+        initial { e == 2; } final { e == 2; }
+    }";
+    const HURRY: &str = "problem Hurry {
+        duration T in 0.5 .. 20; state x, v, m; input F in -1 .. 1; collocation gauss(points = 3, intervals = 20);
+        minimize T; dynamics { der(x) == v; der(v) == F / m; der(m) == -0.2 * abs(F); }
+        initial { x == 0; v == 0; m == 1; } final { x == 4; v == 0; }
+    }";
+    const BOTH: &str = "problem Both {
+        duration T in 0.5 .. 20; state x, v, m, y, w, E; input F in -1 .. 1, G in -1 .. 1;
+        collocation gauss(points = 3, intervals = 20); minimize T + 0.2 * final(E);
+        dynamics {
+            der(x) == v; der(v) == F / m; der(m) == -0.2 * abs(F);
+            der(y) == w; der(w) == G; der(E) == abs(G);
+        }
+        initial { x == 0; v == 0; m == 1; y == 0; w == 0; E == 0; } final { x == 4; v == 0; y == 1; w == 0; }
+    }";
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, spec) in [("battery", BATTERY), ("hurry", HURRY), ("both", BOTH)] {
+        let [spec_file, saved] = ["ntg", "json"].map(|extension| format!("{name}.{extension}"));
+        std::fs::write(folder.path().join(&spec_file), spec).expect("written");
+        let solved = ntg(&["solve", &spec_file, "--save", &saved], folder.path());
+        assert_eq!(solved.status.code(), Some(0), "{name}: {}", text(&solved.stdout));
+        let checked = text(&ntg(&["check-solution", &spec_file, &saved], folder.path()).stdout);
+        assert!(checked.ends_with("\na solution\n"), "{name}: {checked}");
+    }
+    let other = ntg(&["check-solution", "battery.ntg", "battery.json", "--set", "r=0.8"], folder.path());
+    assert!(text(&other.stdout).ends_with("\nno solution\n"), "{}", text(&other.stdout));
+    let exported = ntg(&["export", "battery.ntg", "-o", "battery.nl"], folder.path());
+    assert_eq!(exported.status.code(), Some(0), "{}", text(&exported.stderr));
+}

@@ -344,3 +344,23 @@ fn equations_whose_corners_are_of_states_alone_are_posed_as_written_first() {
     assert_eq!(first("abs(u * v) + abs(x)"), [false]);
     assert_eq!(first("u - norm((x, v)) * v"), [false; 0]);
 }
+
+/// A point that meets an equation with a helper alone is told of: that of a way as it is written, where helpers are 0.
+#[test]
+fn an_equation_that_is_missed_as_it_is_written_is_named() {
+    let missed = |text: &str| {
+        let problem = compiled(text);
+        let report = solve(&problem, &Settings::default()).expect("it can be set up");
+        assert!(report.is_solved(), "{report}");
+        let nlp = ntg_runtime::transcribe::Transcription::new(&problem).expect("it transcribes");
+        nlp.missed_as_written(report.solution.coefficients())
+    };
+    let fuel = "problem P { duration T = 3; state x, v, E; input u in -1 .. 1; collocation gauss(points = 3, intervals = 12); \
+        minimize final(E); dynamics { der(x) == v; der(v) == u; counted: der(E) == abs(u); } \
+        initial { x == 1; v == 0; E == 0; } final { x == 0; v == 0; } }";
+    assert_eq!(missed(fuel), []);
+    let way = "problem P { duration T = 4; state x, s; input u[2]; collocation gauss(points = 3, intervals = 10); \
+        minimize integral(dot(u, u)); dynamics { der(x) == u[1]; length: der(s) == norm(u); } \
+        initial { x == 0; s == 0; } final { x == 3; s == 6; } }";
+    assert_eq!(missed(way).iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["length"]);
+}

@@ -148,7 +148,7 @@ structs! {
     Continuation { parameter: usize, steps: List<f64> }
     Group { loops: List<Loop>, domain: Domain, call: Call, rows: List<Row>, bounds: Option<Call> }
     Guess { loops: List<Loop>, scope: GuessScope, kind: GuessKind }
-    Helper { sides: List<usize>, bounds: List<usize>, parked: usize }
+    Helper { sides: List<usize>, bounds: List<usize>, at_zero: usize }
     Independent { name: Text = "t", unit: Unit = Unit { symbol: "s", factor: 1.0 } }
     Integral { loops: List<Loop>, place: Place }
     Kernel {

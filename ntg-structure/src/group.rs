@@ -165,8 +165,8 @@ pub struct Helper {
     pub sides: Vec<usize>,
     /// Its own bounds.
     pub bounds: Vec<usize>,
-    /// What holds it at 0 where no equation has it.
-    pub parked: usize,
+    /// What holds it at 0 where no equation that is posed has it.
+    pub at_zero: usize,
 }
 
 /// Measured values with their standard deviations: half the sum of squared ratios is part of a term of the objective

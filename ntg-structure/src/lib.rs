@@ -147,7 +147,7 @@ impl Structure {
                 return false;
             }
             for helper in &own.helpers {
-                if helper.parked == constraint && !own.is_exact {
+                if helper.at_zero == constraint && !own.is_exact {
                     return false;
                 }
                 if helper.sides.contains(&constraint) || helper.bounds.contains(&constraint) {

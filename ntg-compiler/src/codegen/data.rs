@@ -120,7 +120,7 @@ structs! {
     Phase { name, agent, family, after, duration, duration_name, outputs, points, place }
     Places { first, instants }
     Reduction { op, over, body }
-    Helper { sides, bounds, parked }
+    Helper { sides, bounds, at_zero }
     Relaxation { equation, other, helpers, corners, exact_first, is_exact }
     Shared { phase, output, until }
     Table { name, doc, axes, unit, values, method, extrapolation, replaceable }

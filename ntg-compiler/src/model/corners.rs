@@ -353,8 +353,8 @@ impl Elaborator<'_> {
         }
     }
 
-    /// The corners in what is solved, but for equations for which there is a form with helpers, and those that are none because a factor vanishes where they are; of what is only shown
-    /// there are these too.
+    /// The corners in what is solved, and those that are none because a factor vanishes where they are; of what is only shown
+    /// there are these too. Equations that have a form with helpers are left out as they are written.
     fn corners_left(&mut self, tips: &Set<NodeId>) -> (Vec<NodeId>, Set<NodeId>) {
         let held: Set<usize> = self.problem.relaxations.iter().map(|own| own.other).collect();
         let constraints = self.problem.constraints.iter().enumerate();

@@ -1,9 +1,9 @@
 //! Corners in equations, `der(m) == -c * norm(F)` (docs/maths.md, equation 18.5).
 //!
 //! Takes equations that hold all along a phase, and those of the whole mission. In another form of each a helper stands for
-//! each corner that is a summand, or a factor of one, and is held on the convex side of the corner alone. Whether the solution
-//! has it at the corner is seen when it is known: a solver poses the one form or the other (`ntg_structure::Relaxation`). Signs decide
-//! nothing here.
+//! each corner that the equation is a smooth function of, and is held on the convex side of the corner alone. Whether the
+//! solution has it at the corner is seen when it is known: a solver poses the one form or the other
+//! (`ntg_structure::Relaxation`). Signs decide nothing here.
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
@@ -107,25 +107,7 @@ impl Elaborator<'_> {
         }
         let own = self.problem.dag.node(node).clone();
         match own {
-            _ if is_smooth(&own) => {
-                let mut inner = site.clone();
-                if let Node::Reduce { range, .. } = own {
-                    inner.loops.push(self.problem.ranges[range as usize].clone());
-                }
-                let is_sum = matches!(own, Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Add | Binary::Sub, ..))
-                    || matches!(own, Node::Reduce { fold: Fold::Sum, .. });
-                let operands = own.operands();
-                let mut images: Map<NodeId, NodeId> = Map::default();
-                for (at, operand) in operands.iter().enumerate() {
-                    let others = operands.iter().enumerate().filter(|(other, _)| *other != at);
-                    let by_unknown = !is_sum && others.into_iter().any(|(_, other)| !is_given(&self.problem, *other));
-                    let is_divisor = at > 0 && matches!(own, Node::Binary(Binary::Div, ..));
-                    let is_multiplied = is_multiplied || by_unknown || is_divisor || matches!(own, Node::Powi(..));
-                    let image = self.relaxed(pass, known, (*operand, is_multiplied), &inner, depth + 1);
-                    images.insert(*operand, image);
-                }
-                self.problem.dag.rebuild(&own, |operand| images[&operand])
-            }
+            _ if is_smooth(&own) => self.relaxed_below(pass, known, (&own, is_multiplied), site, depth + 1),
             Node::Input(input) => match self.problem.leaves.leaf(input).clone() {
                 Leaf::Integral { phase, integrand } if site.along.is_none() => {
                     let along = Site { along: Some(phase.clone()), ..site.clone() };
@@ -138,6 +120,36 @@ impl Elaborator<'_> {
             Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if is_multiplied => node,
             _ => self.in_place_of(pass, known, node, (site, depth)).unwrap_or(node),
         }
+    }
+
+    /// A smooth function with helpers in its operands.
+    fn relaxed_below(
+        &mut self,
+        pass: &mut Corners,
+        known: &mut Known,
+        (own, is_multiplied): (&Node, bool),
+        site: &Site,
+        depth: usize,
+    ) -> NodeId {
+        let mut inner = site.clone();
+        if let Node::Reduce { range, .. } = own {
+            inner.loops.push(self.problem.ranges[*range as usize].clone());
+        }
+        let is_sum = matches!(
+            own,
+            Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Add | Binary::Sub, ..) | Node::Reduce { .. }
+        );
+        let operands = own.operands();
+        let mut images: Map<NodeId, NodeId> = Map::default();
+        for (at, operand) in operands.iter().enumerate() {
+            let mut others = operands.iter().enumerate().filter(|(other, _)| *other != at);
+            let by_unknown = !is_sum && others.any(|(_, other)| !is_given(&self.problem, *other));
+            let is_divisor = at > 0 && matches!(own, Node::Binary(Binary::Div, ..));
+            let is_multiplied = is_multiplied || by_unknown || is_divisor || matches!(own, Node::Powi(..));
+            let image = self.relaxed(pass, known, (*operand, is_multiplied), &inner, depth);
+            images.insert(*operand, image);
+        }
+        self.problem.dag.rebuild(own, |operand| images[&operand])
     }
 
     /// What stands for a corner; none where nothing is known of its sides. The greater and the lesser of two values are half their
@@ -196,6 +208,7 @@ impl Elaborator<'_> {
         Some(node)
     }
 
+    /// A new helper, or that of the same corner in what is minimised or limited.
     fn helper_of_equations(
         &mut self,
         pass: &mut Corners,
@@ -219,7 +232,7 @@ impl Elaborator<'_> {
         let zero = self.problem.dag.constant(0.0);
         self.hold_helper(site, vec![], (node, Bounds { lower: Some(zero), upper: Some(zero) }), span);
         let (bounds, sides) = (first..after).partition(|row| self.problem.constraints[*row].body == node);
-        let held = Some(Helper { sides, bounds, parked: after });
+        let held = Some(Helper { sides, bounds, at_zero: after });
         Some(Used { node, span, held, has_states_alone })
     }
 

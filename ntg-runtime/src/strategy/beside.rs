@@ -48,12 +48,26 @@ pub(super) fn beside_infeasible(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
 
 /// Every variable moved by up to a fraction of its size, within its bounds, always in the same way.
 fn beside(nlp: &Transcription, x: &[f64], fraction: f64) -> Vec<f64> {
+    let sizes = &nlp.limits().scale;
+    moved(nlp, x, |j| {
+        let size = if sizes[j].is_finite() && sizes[j] > 0.0 { sizes[j] } else { 1.0 };
+        fraction * size * uneven(j)
+    })
+}
+
+/// Every variable moved by its own step, within its bounds.
+pub(super) fn moved(nlp: &Transcription, x: &[f64], step: impl Fn(usize) -> f64) -> Vec<f64> {
     let limits = nlp.limits();
-    let moved = |(j, x): (usize, &f64)| {
-        let size = limits.scale[j];
-        let size = if size.is_finite() && size > 0.0 { size } else { 1.0 };
-        let shift = fraction * size * (0.5 + 0.5 * (GOLDEN * (j + 1) as f64).fract());
-        (x + shift).min(limits.upper[j]).max(limits.lower[j])
-    };
+    let moved = |(j, x): (usize, &f64)| (x + step(j)).min(limits.upper[j]).max(limits.lower[j]);
     x.iter().enumerate().map(moved).collect()
+}
+
+/// How far a variable moves beside the others: between half and all of its size.
+pub(super) fn uneven(variable: usize) -> f64 {
+    0.5 + 0.5 * golden(variable)
+}
+
+/// A number between 0 and 1 for each variable, without a pattern.
+pub(super) fn golden(variable: usize) -> f64 {
+    (GOLDEN * (variable + 1) as f64).fract()
 }

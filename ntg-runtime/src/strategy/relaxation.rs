@@ -17,7 +17,6 @@ const NEARLY: f64 = 1e-3;
 /// The part of the tolerance to which a solve goes on then. A law: by (18.2) the helper misses its corner by the root of what its
 /// row does.
 const CLOSER: f64 = 1e-3;
-
 /// An objective that is above a bound of it by no more than this part of it is the least. A law: ten tolerances.
 const PROVEN: f64 = 1e-7;
 
@@ -42,10 +41,10 @@ impl Session {
                 (false, None) => budget.rest(),
             };
             let limited = limited.as_ref().unwrap_or(settings);
-            let (mut report, open) = self.solve_posed(task, structure.clone(), limited)?;
+            let before = budget.spent();
+            let (report, open) = self.solve_posed(task, structure.clone(), limited)?;
             budget.spend(report.iterations);
-            report.iterations = budget.spent();
-            report.seconds = began.elapsed().as_secs_f64();
+            let report = with_all(report, before, began);
             let is_solved = report.has_solution();
             let is_stopped = matches!(report.status, Status::Cancelled | Status::TimeLimit);
             if is_stopped || (is_solved && open.is_empty()) {
@@ -58,8 +57,8 @@ impl Session {
             if is_solved
                 && let Some(found) = self.at_corners(task.problem, &structure, (&report, &open), &mut budget)?
             {
-                let (iterations, seconds, singular) = (budget.spent(), began.elapsed().as_secs_f64(), report.singular);
-                return Ok(Report { iterations, seconds, singular, ..found });
+                let before = budget.spent() - found.iterations;
+                return Ok(Report { singular: report.singular, ..with_all(found, before, began) });
             }
             if is_solved {
                 open.into_iter().for_each(|(number, _)| way[number] = true);
@@ -139,9 +138,20 @@ impl Session {
         let found = self.report(nlp, found, history, &settings)?;
         let rise =
             if structure.maximize { report.objective - found.objective } else { found.objective - report.objective };
-        let is_best = rise <= PROVEN * report.objective.abs().max(found.objective.abs());
+        let is_bound = report.status == Status::Solved;
+        let is_best = is_bound && rise <= PROVEN * report.objective.abs().max(found.objective.abs());
         Ok(Some((found, is_best)))
     }
+}
+
+/// A report with the iterations of the solves before it, and the time since these began.
+fn with_all(mut report: Report, before: usize, began: Instant) -> Report {
+    report.iterations += before;
+    if let Some(step) = report.history.last_mut() {
+        step.iterations += before;
+    }
+    report.seconds = began.elapsed().as_secs_f64();
+    report
 }
 
 /// What is tried in turn: which equations are posed as they are written. Where nothing is minimised nothing pushes a helper to its

@@ -3,6 +3,7 @@
 //! Takes a transcription and an outcome that meets its tolerances; gives the slopes along every variable on both sides, from
 //! four evaluations. Where nothing jumps they are 0.
 
+use super::beside::{golden, moved, uneven};
 use crate::transcribe::Transcription;
 use ntg_nlp::{Nlp, Outcome, residuals};
 
@@ -11,10 +12,6 @@ use ntg_nlp::{Nlp, Outcome, residuals};
 pub(super) const BESIDE: [f64; 2] = [1e-4, 1e-5];
 /// Slopes of less than this part of the largest are none. A choice: together they add as little.
 pub(super) const SMALL: f64 = 1e-3;
-/// The golden ratio less 1, whose multiples fall everywhere between 0 and 1: no two variables move alike, so that the
-/// differences of equal ones move too.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
 /// Slopes of the Lagrangian times sizes on both sides of a point, by variable: negative where it falls that way.
 pub(super) struct Slopes {
     up: Vec<f64>,
@@ -32,18 +29,6 @@ pub(super) enum Ways {
     Best,
     Down,
     Mixed,
-}
-
-/// A point beside a solution, within the bounds of the variables.
-pub(super) fn beside(nlp: &Transcription, outcome: &Outcome, way: &[f64], distance: f64) -> Vec<f64> {
-    let limits = nlp.limits();
-    let moved = |(j, x): (usize, &f64)| (x + distance * way[j]).min(limits.upper[j]).max(limits.lower[j]);
-    outcome.x.iter().enumerate().map(moved).collect()
-}
-
-/// How far a variable moves beside the others: between half and all of its size.
-pub(super) fn uneven(variable: usize) -> f64 {
-    0.5 + 0.5 * (GOLDEN * (variable + 1) as f64).fract()
 }
 
 impl Slopes {
@@ -99,7 +84,7 @@ impl Slopes {
                 (false, true, _) => false,
                 (true, true, Ways::Best) => up <= down + SMALL * self.largest,
                 (true, true, Ways::Down) => false,
-                (true, true, Ways::Mixed) => (GOLDEN * (j + 1) as f64).fract() < 0.5,
+                (true, true, Ways::Mixed) => golden(j) < 0.5,
             };
             if is_up { 1.0 } else { -1.0 }
         };
@@ -115,7 +100,7 @@ fn side(nlp: &Transcription, outcome: &Outcome, sign: f64) -> Option<(Vec<f64>, 
     let way: Vec<f64> = sizes.iter().enumerate().map(|(j, size)| sign * size * uneven(j)).collect();
     let (no_multipliers, mut variation) = (vec![0.0; nlp.rows()], 0.0_f64);
     let mut slopes_at = |distance: f64| {
-        let x = beside(nlp, outcome, &way, distance);
+        let x = moved(nlp, &outcome.x, |j| distance * way[j]);
         nlp.derivatives(&x, 1.0, &outcome.row_multipliers, &mut work, &mut at).ok()?;
         let mut slopes = vec![0.0; x.len()];
         residuals::lagrangian(nlp.blocks(), &at, &no_multipliers, &mut slopes);

@@ -5,10 +5,11 @@
 //! finds the variables that may fall from there; the program to first order with these slopes tells whether the
 //! constraints let them, and the solve goes on from beside the tip then.
 
+use super::beside::{moved, uneven};
 use super::budget::Budget;
 use super::one_sided::OneSided;
 use super::session::{FirstPoint, SAME, Session};
-use super::slopes::{BESIDE, SMALL, Slopes, Ways, beside, uneven};
+use super::slopes::{BESIDE, SMALL, Slopes, Ways};
 use crate::transcribe::Transcription;
 use ntg_nlp::residuals::violation;
 use ntg_nlp::{Method, Nlp, Options, Outcome, Start, Status, ipm};
@@ -124,7 +125,7 @@ fn way_down(nlp: &Transcription, outcome: &Outcome, budget: &mut Budget<'_>) -> 
     let ways = if slopes.has_both() { &[Ways::Best, Ways::Down, Ways::Mixed][..] } else { &[Ways::Best] };
     let step = ways.iter().find_map(|ways| {
         let mut step = |way: &[f64], keep: &dyn Fn(usize) -> Option<f64>| {
-            first_order(nlp, outcome, &beside(nlp, outcome, way, BESIDE[1]), keep, (least, &mut *budget))
+            first_order(nlp, outcome, &moved(nlp, &outcome.x, |j| BESIDE[1] * way[j]), keep, (least, &mut *budget))
         };
         let sides = slopes.sides(*ways);
         let way: Vec<f64> = sides.iter().enumerate().map(|(j, side)| side * sizes[j] * uneven(j)).collect();
@@ -173,7 +174,7 @@ fn first_order(
 
 /// Whether the program itself falls along a step as it does to first order, by more than what it misses its rows by is worth.
 fn falls(nlp: &Transcription, outcome: &Outcome, step: &Outcome) -> bool {
-    let near = beside(nlp, outcome, &step.x, PART);
+    let near = moved(nlp, &outcome.x, |j| PART * step.x[j]);
     let Some(promised) = OneSided::new(nlp, &outcome.x, &near, REACH).map(|program| program.fall(&step.x)) else {
         return false;
     };
@@ -184,8 +185,8 @@ fn falls(nlp: &Transcription, outcome: &Outcome, step: &Outcome) -> bool {
         let missed = |(i, row): (usize, &f64)| violation(*row, limits.row_lower[i], limits.row_upper[i]);
         Some((at.objective, at.rows.iter().enumerate().map(missed).collect::<Vec<f64>>()))
     };
-    let Some(((before, rows), (after, moved))) = look(&outcome.x).zip(look(&near)) else { return false };
-    let more = |i: usize| moved[i] - rows[i];
+    let Some(((before, rows), (after, there))) = look(&outcome.x).zip(look(&near)) else { return false };
+    let more = |i: usize| there[i] - rows[i];
     let price = |i: usize| outcome.row_multipliers[i].abs().max(step.row_multipliers[i].abs());
     let worth: f64 = (0..rows.len()).map(|i| price(i) * more(i)).sum();
     let keeps = (0..rows.len()).all(|i| outcome.row_factors[i] * more(i) <= MISSED * PART);

@@ -256,6 +256,7 @@ fn bounds_by(nlp: &Transcription, phase: usize, output: usize, counts: impl Fn(u
             let ends = [rows.row_lower[target as usize], rows.row_upper[target as usize]].map(|b| (b - offset) / slope);
             let (lower, upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
             if lower == f64::NEG_INFINITY && upper == f64::INFINITY {
+                // It is not posed.
                 continue;
             }
             let held = found.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));

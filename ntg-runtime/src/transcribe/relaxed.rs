@@ -70,10 +70,10 @@ impl Transcription<'_> {
         let helpers = relaxations.iter().flat_map(|number| &structure.relaxations[*number].helpers);
         let mut nearest: BTreeMap<RowKey<'_>, (f64, usize)> = BTreeMap::new();
         for helper in helpers {
-            let outer = self.rows_of(helper.parked).next().map_or(0, |row| self.elements.rows[row].indices.len());
+            let outer = self.rows_of(helper.at_zero).next().map_or(0, |row| self.elements.rows[row].indices.len());
             for row in helper.sides.iter().flat_map(|side| self.rows_of(*side)) {
                 let (_, _, indices, phase, tau, is_left) = self.elements.rows[row].key();
-                let key = (false, helper.parked, &indices[..outer.min(indices.len())], phase, tau, is_left);
+                let key = (false, helper.at_zero, &indices[..outer.min(indices.len())], phase, tau, is_left);
                 let gap = at.rows[row] - self.limits.row_lower[row];
                 let held = nearest.entry(key).or_insert((gap, row));
                 if gap < held.0 {
