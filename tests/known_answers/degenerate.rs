@@ -354,3 +354,28 @@ fn a_variable_that_nothing_depends_on_changes_nothing() {
         assert_eq!(with.iterations, without.iterations, "{name}");
     }
 }
+
+/// Least squares of 0 with room in everything else: all multipliers are 0, and the centre of the barrier is at infinity.
+#[test]
+fn a_least_value_of_0_is_found_beside_variables_that_nothing_holds() {
+    for points in [2, 3, 4] {
+        for intervals in [10, 15, 20, 22, 24, 30] {
+            for at in ["", ", inequalities = points"] {
+                let report = Shipped::text(&format!(
+                    "problem Room {{
+                        duration T = 3;  state x, d;  input u, s;
+                        collocation gauss(points = {points}, intervals = {intervals}{at});
+                        minimize integral(u^2);
+                        dynamics {{ der(x) == u;  der(d) == s; }}
+                        initial {{ x == 0;  d == 0; }}
+                        trajectory {{ s >= u;  s >= -u; }}
+                        final {{ x == 0;  d >= 6; }}
+                    }}"
+                ))
+                .solve();
+                assert!(report.objective.abs() < 1e-12, "{report}");
+                assert!(report.iterations <= 40, "{points} {intervals}{at}: {} iterations", report.iterations);
+            }
+        }
+    }
+}

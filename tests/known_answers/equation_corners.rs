@@ -236,6 +236,48 @@ fn no_solution_is_told_where_iterations_end_before_the_equations_are_met() {
     }
 }
 
+/// More is to be counted than the cheapest way makes, whose corners are at their tips: by Cauchy-Schwarz `|u|` is constant where
+/// signs are free. Units of time and of what is counted change nothing.
+#[test]
+fn more_is_made_than_is_cheapest_by_going_to_both_sides() {
+    let line = |rate: &str, ends: &str, (points, intervals): (usize, usize), unit: &str| {
+        format!(
+            "problem More {{
+                duration T = 3 [{unit}]; state x, d; input u [1/{unit}]; collocation gauss(points = {points}, intervals = {intervals});
+                minimize integral(u^2) / 1 [1/{unit}]; dynamics {{ der(x) == u; der(d) == {rate}; }}
+                initial {{ x == 0; d == 0; }} final {{ {ends} }}
+            }}"
+        )
+    };
+    for mesh in MESHES {
+        for unit in ["s", "h", "ms"] {
+            close(solved(&line("abs(u)", "x == 0; d == 6;", mesh, unit), 100).objective, 12.0, 1e-6);
+            close(solved(&line("abs(u)", "x == 0; d >= 6;", mesh, unit), 100).objective, 12.0, 1e-6);
+            close(solved(&line("1.5 * abs(u) + 0.5 * u", "x == 0; d == 9;", mesh, unit), 100).objective, 12.0, 1e-6);
+        }
+        let plane = format!(
+            "problem Away {{
+                duration T = 3; state d; input u[2]; collocation gauss(points = {}, intervals = {});
+                minimize integral(dot(u, u)); dynamics {{ der(d) == norm(u); }} initial {{ d == 0; }} final {{ d == 3; }}
+            }}",
+            mesh.0, mesh.1
+        );
+        close(solved(&plane, 100).objective, 3.0, 1e-6);
+    }
+}
+
+/// A cart that has to go 8 m to be 4 m further: what it costs is the same on all meshes.
+#[test]
+fn more_is_made_by_turning_round_at_one_cost_on_all_meshes() {
+    let cost = |mesh| {
+        let rest = "input u; minimize integral(u^2); dynamics { der(x) == v; der(v) == u; der(d) == abs(v); } \
+                    initial { d == 0; } final { d == 8; }";
+        solved(&cart("d", mesh, rest), 250).objective
+    };
+    let finest = cost(MESHES[2]);
+    MESHES[..2].iter().for_each(|mesh| close(cost(*mesh), finest, 1e-2));
+}
+
 /// A tank that flows over above 2, held near a level above.
 const TANK: &str = "problem Tank {
     param goal = 2.5; duration T = 10; state h; input q in 0 .. 1; collocation gauss(points = 3, intervals = 20);

@@ -19,8 +19,12 @@ const THETA_MU: f64 = 1.5;
 
 impl<N: Nlp> State<'_, N> {
     /// The barrier parameter that ends the sequence.
-    fn last_barrier(&self) -> f64 {
-        self.polish_factor() * LAST * self.options.tolerance.min(self.options.constraint_tolerance) * self.barrier_unit
+    pub(super) fn last_barrier(&self) -> f64 {
+        self.last.factor
+            * self.polish_factor()
+            * LAST
+            * self.options.tolerance.min(self.options.constraint_tolerance)
+            * self.barrier_unit
     }
 
     /// Lowers the barrier parameter as long as its problem is solved well enough, equation (11.6). A status where the

@@ -5,6 +5,7 @@ use super::conjugate_residuals::ConjugateResiduals;
 use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
 use super::inertia::Corrections;
+use super::last_barrier::LastBarrier;
 use super::mode::Mode;
 use super::slacks::{BoundSizes, Slacks};
 use super::stagnation::Stagnation;
@@ -101,6 +102,7 @@ impl<'a, N: Nlp> State<'a, N> {
             begin,
             size_limits: vec![],
             is_damped: false,
+            last: LastBarrier::default(),
             is_warm: matches!(from, Start::Warm(_)),
             x,
             slacks,

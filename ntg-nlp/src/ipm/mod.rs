@@ -26,6 +26,7 @@ mod equalities;
 mod filter;
 mod inertia;
 mod initial;
+mod last_barrier;
 mod line_search;
 mod mode;
 mod penalty;
@@ -174,6 +175,7 @@ fn iterate<N: Nlp>(mut state: State<'_, N>) -> Outcome {
         if state.stagnates() {
             return state.end(Status::StepTooSmall); // 5
         }
+        state.lower_last_barrier(); // 6
         if let Some(status) = state.lower_barrier() {
             return state.end(status); // 6
         }

@@ -5,6 +5,7 @@ use super::conjugate_residuals::ConjugateResiduals;
 use super::equalities::Estimate;
 use super::filter::Filter;
 use super::inertia::Corrections;
+use super::last_barrier::LastBarrier;
 use super::mode::Mode;
 use super::slacks::{Slacks, log_sum};
 use super::stagnation::Stagnation;
@@ -91,6 +92,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) size_limits: Vec<f64>,
     /// Whether slacks with nothing on their other sides are damped.
     pub(super) is_damped: bool,
+    /// How far the last barrier parameter was lowered.
+    pub(super) last: LastBarrier,
     /// Whether the solve began at a solution nearby, with its multipliers.
     pub(super) is_warm: bool,
 }

@@ -15,6 +15,7 @@ mod budget;
 mod carried;
 mod coarse_start;
 mod continuation;
+mod corner_sides;
 mod fallback;
 mod feasible_guess;
 mod one_sided;

@@ -1,6 +1,7 @@
 //! Corners of equations: a solve beside them first, and at them where it leaves a gap (docs/maths.md, equation 18.5).
 
 use super::budget::Budget;
+use super::corner_sides::{self, TURNS, Turn, at_helpers};
 use super::session::{FirstPoint, Session, Task, record};
 use crate::error::Error;
 use crate::guess::Guess;
@@ -20,79 +21,178 @@ const CLOSER: f64 = 1e-3;
 /// An objective that is above a bound of it by no more than this part of it is the least. A law: ten tolerances.
 const PROVEN: f64 = 1e-7;
 
+/// A solution that has helpers of some equations beside their corners.
+struct Beside {
+    /// The problem as it was posed.
+    structure: Structure,
+    report: Report,
+    /// The relaxations that it misses as they are written, and by how much.
+    open: Vec<(usize, f64)>,
+}
+
+/// What a solve of a problem in all its ways has found.
+struct Search<'a> {
+    budget: Budget<'a>,
+    began: Instant,
+    /// Ways whose solutions have helpers beside corners.
+    beside: Vec<Vec<bool>>,
+}
+
+/// What one way has led to.
+enum Led {
+    /// The answer.
+    Answer(Report),
+    /// Helpers beside corners, which are to be posed as written next.
+    Beside(Beside),
+    /// No solution.
+    Nowhere(Report),
+}
+
 impl Session {
     /// Solves a problem from a guess, with helpers beside the corners of its equations as long as they end at them.
     pub(crate) fn solve(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
         let began = Instant::now();
-        let mut structure = self.structure_of(task.problem);
+        let structure = self.structure_of(task.problem);
         if structure.relaxations.is_empty() {
             return Ok(self.solve_posed(task, structure, settings)?.0);
         }
-        let mut budget = Budget::new(settings);
+        let mut search = Search { budget: Budget::new(settings), began, beside: vec![] };
         let tried = ways(&structure);
+        let (mut last, mut first_beside) = (None, None);
         // Each in few iterations, then each in many.
-        let mut ways = tried.iter().chain(&tried).cloned().enumerate().peekable();
-        let (mut number, mut way) = ways.next().expect("there is one at least");
-        loop {
-            way.iter().enumerate().for_each(|(number, is_exact)| structure.pose(number, *is_exact));
-            let limited = match (number < tried.len(), ways.peek()) {
-                (true, _) => budget.near(),
-                (false, Some(_)) => budget.attempt(),
-                (false, None) => budget.rest(),
-            };
-            let limited = limited.as_ref().unwrap_or(settings);
-            let before = budget.spent();
-            let (report, open) = self.solve_posed(task, structure.clone(), limited)?;
-            budget.spend(report.iterations);
-            let report = with_all(report, before, began);
-            let is_solved = report.has_solution();
-            let is_stopped = matches!(report.status, Status::Cancelled | Status::TimeLimit);
-            if is_stopped || (is_solved && open.is_empty()) {
-                return Ok(report);
+        for is_late in [false, true] {
+            let mut done: Vec<Vec<bool>> = vec![];
+            for (number, way) in tried.iter().enumerate() {
+                let mut way = way.clone();
+                while !done.contains(&way) && !search.beside.contains(&way) {
+                    let is_over =
+                        |next: &Vec<bool>| *next == way || done.contains(next) || search.beside.contains(next);
+                    let is_last = is_late && tried[number + 1..].iter().all(is_over);
+                    done.push(way.clone());
+                    let limited = match (is_late, is_last) {
+                        (false, _) => search.budget.near(),
+                        (true, false) => search.budget.attempt(),
+                        (true, true) => search.budget.rest(),
+                    };
+                    let Some(limited) = limited else {
+                        let report: Report = last.expect("a way before has led nowhere");
+                        return Ok(report.ended(search.limit()));
+                    };
+                    match self.along(task, (&structure, &way), &limited, &mut search)? {
+                        Led::Answer(report) => return Ok(report),
+                        Led::Beside(beside) => {
+                            search.beside.push(way.clone());
+                            beside.open.iter().for_each(|(number, _)| way[*number] = true);
+                            first_beside.get_or_insert(beside);
+                        }
+                        Led::Nowhere(report) => {
+                            last = Some(report);
+                            break;
+                        }
+                    }
+                }
             }
-            if budget.rest().is_none() {
-                let is_late = budget.reached() == ntg_nlp::Status::TimeLimit;
-                return Ok(report.ended(if is_late { Status::TimeLimit } else { Status::IterationLimit }));
-            }
-            if is_solved
-                && let Some(found) = self.at_corners(task.problem, &structure, (&report, &open), &mut budget)?
+            if let Some(beside) = first_beside.take()
+                && let Some(found) = self.from_sides(task.problem, &beside, &TURNS, &mut search.budget)?
             {
-                let before = budget.spent() - found.iterations;
-                return Ok(Report { singular: report.singular, ..with_all(found, before, began) });
-            }
-            if is_solved {
-                open.into_iter().for_each(|(number, _)| way[number] = true);
-            } else if let Some(next) = ways.next() {
-                (number, way) = next;
-            } else {
-                return Ok(report);
+                return Ok(search.told(found, &beside.report));
             }
         }
+        Ok(last.expect("a way that is not solved is the last one"))
+    }
+
+    /// Solves a problem with some equations as they are written.
+    fn along(
+        &mut self,
+        task: Task<'_>,
+        (structure, way): (&Structure, &[bool]),
+        limited: &Settings,
+        search: &mut Search<'_>,
+    ) -> Result<Led, Error> {
+        let mut structure = structure.clone();
+        way.iter().enumerate().for_each(|(number, is_exact)| structure.pose(number, *is_exact));
+        let before = search.budget.spent();
+        let (report, open) = self.solve_posed(task, structure.clone(), limited)?;
+        search.budget.spend(report.iterations);
+        let report = with_all(report, before, search.began);
+        let is_solved = report.has_solution();
+        let is_stopped = matches!(report.status, Status::Cancelled | Status::TimeLimit);
+        if is_stopped || (is_solved && open.is_empty()) {
+            return Ok(Led::Answer(report));
+        }
+        if search.budget.rest().is_none() {
+            return Ok(Led::Answer(report.ended(search.limit())));
+        }
+        if !is_solved {
+            return Ok(Led::Nowhere(report));
+        }
+        let beside = Beside { structure, report, open };
+        Ok(match self.at_corners(task.problem, &beside, &mut search.budget)? {
+            Some(found) => Led::Answer(search.told(found, &beside.report)),
+            None if search.budget.rest().is_none() => Led::Answer(beside.report.ended(search.limit())),
+            None => Led::Beside(beside),
+        })
     }
 
     /// A solution with the helpers of some equations at their corners, from one that has them beside these.
     fn at_corners(
         &mut self,
         problem: &dyn Problem,
-        structure: &Structure,
-        (report, open): (&Report, &[(usize, f64)]),
+        beside: &Beside,
         budget: &mut Budget<'_>,
     ) -> Result<Option<Report>, Error> {
-        if open.iter().all(|(_, missed)| *missed < NEARLY)
-            && let Some(found) = self.closer(problem, report, budget)?
+        if beside.open.iter().all(|(_, missed)| *missed < NEARLY)
+            && let Some(found) = self.closer(problem, &beside.report, budget)?
         {
             budget.spend(found.iterations);
             return Ok(Some(found));
         }
-        let Some((found, is_best)) = self.closed(problem, structure, (report, open), budget)? else { return Ok(None) };
+        let as_it_is = [None];
+        let sides = if self.is_at_tips(problem, beside)? { &TURNS[..2] } else { &as_it_is };
+        self.from_sides(problem, beside, sides, budget)
+    }
+
+    /// As [`Session::at_corners`], from points at which corners are where the helpers are, on one side or the other.
+    fn from_sides(
+        &mut self,
+        problem: &dyn Problem,
+        beside: &Beside,
+        sides: &[Option<Turn>],
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Report>, Error> {
+        for turn in sides {
+            if let Some(found) = self.on_sides(problem, beside, *turn, budget)? {
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether what is in the corners is at their tips, for the most part, so that no side is nearer than another.
+    fn is_at_tips(&mut self, problem: &dyn Problem, beside: &Beside) -> Result<bool, Error> {
+        let nlp = self.program(problem, &beside.structure)?;
+        let is_at_tips = corner_sides::is_at_tips(&nlp, &beside.numbers(), &beside.report.solution.inner);
+        self.kept = Some(nlp.keep());
+        Ok(is_at_tips)
+    }
+
+    /// A solution with the helpers of some equations at their corners, first with each on the side on which it is.
+    fn on_sides(
+        &mut self,
+        problem: &dyn Problem,
+        beside: &Beside,
+        turn: Option<Turn>,
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Report>, Error> {
+        let Some((found, is_best)) = self.closed(problem, beside, turn, budget)? else { return Ok(None) };
         budget.spend(found.iterations);
         if is_best {
             return Ok(Some(found));
         }
         // A point that keeps the equations, beside which they may be kept better.
         let Some(settings) = budget.near() else { return Ok(None) };
-        let mut exact = structure.clone();
-        open.iter().for_each(|(number, _)| exact.pose(*number, true));
+        let mut exact = beside.structure.clone();
+        beside.open.iter().for_each(|(number, _)| exact.pose(*number, true));
         let guess = Guess::from(&found.solution);
         let (found, open) = self.solve_posed(Task { problem, guess: Some(&guess) }, exact, &settings)?;
         budget.spend(found.iterations);
@@ -107,25 +207,38 @@ impl Session {
     }
 
     /// A solution with the helpers of some equations held at their corners, each on the side on which the corner is at a
-    /// solution that has them beside; and whether it is as good as that, and so the best there is.
+    /// solution that has them beside, or at a point beside that; and whether it is as good as that, and so the best there is.
     fn closed(
         &mut self,
         problem: &dyn Problem,
-        structure: &Structure,
-        (report, open): (&Report, &[(usize, f64)]),
-        budget: &Budget<'_>,
+        beside: &Beside,
+        turn: Option<Turn>,
+        budget: &mut Budget<'_>,
     ) -> Result<Option<(Report, bool)>, Error> {
+        let Beside { structure, report, .. } = beside;
         let Some(settings) = budget.near() else { return Ok(None) };
         let began = Instant::now();
         let mut nlp = self.program(problem, structure)?;
         let own = &report.solution.inner;
+        let numbers = beside.numbers();
         nlp.set_scales(&own.x, &settings)?;
         nlp.raise_sizes(&own.sizes, &settings);
+        let x = match turn {
+            Some(turn) => at_helpers(&nlp, &numbers, &own.x, turn),
+            None => Some(own.x.clone()),
+        };
+        let Some(x) = x else {
+            self.kept = Some(nlp.keep());
+            return Ok(None);
+        };
+        if turn.is_some() {
+            nlp.set_scales(&x, &settings)?;
+            nlp.raise_sizes(&own.sizes, &settings);
+        }
         let limits = nlp.limits.clone();
-        let numbers: Vec<usize> = open.iter().map(|(number, _)| *number).collect();
-        let is_held = nlp.close(&numbers, &own.x).is_ok();
+        let is_held = nlp.close(&numbers, &x).is_ok();
         // Another program, of which nothing is to be kept.
-        let first = FirstPoint { x: &own.x, from: Start::Near };
+        let first = FirstPoint { x: &x, from: Start::Near };
         let found = is_held.then(|| Session::default().solve_measured(&mut nlp, first, &settings));
         (nlp.limits.row_lower, nlp.limits.row_upper) = (limits.row_lower, limits.row_upper);
         let found =
@@ -141,6 +254,27 @@ impl Session {
         let is_bound = report.status == Status::Solved;
         let is_best = is_bound && rise <= PROVEN * report.objective.abs().max(found.objective.abs());
         Ok(Some((found, is_best)))
+    }
+}
+
+impl Beside {
+    /// The relaxations that are missed as they are written.
+    fn numbers(&self) -> Vec<usize> {
+        self.open.iter().map(|(number, _)| *number).collect()
+    }
+}
+
+impl Search<'_> {
+    /// The limit that has been reached.
+    fn limit(&self) -> Status {
+        let is_late = self.budget.reached() == ntg_nlp::Status::TimeLimit;
+        if is_late { Status::TimeLimit } else { Status::IterationLimit }
+    }
+
+    /// A report of what was found from a solution beside corners.
+    fn told(&self, found: Report, beside: &Report) -> Report {
+        let before = self.budget.spent() - found.iterations;
+        Report { singular: beside.singular.clone(), ..with_all(found, before, self.began) }
     }
 }
 

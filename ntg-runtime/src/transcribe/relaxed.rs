@@ -64,6 +64,14 @@ impl Transcription<'_> {
 
     /// Holds the helpers of relaxations at their corners, each on the side on which the corner is at a point.
     pub(crate) fn close(&mut self, relaxations: &[usize], x: &[f64]) -> Result<(), NotFinite> {
+        for row in self.nearest_sides(relaxations, x)? {
+            self.limits.row_upper[row] = self.limits.row_lower[row];
+        }
+        Ok(())
+    }
+
+    /// The rows of the sides on which corners are at a point, one for each helper of relaxations and point of time.
+    pub(crate) fn nearest_sides(&self, relaxations: &[usize], x: &[f64]) -> Result<Vec<usize>, NotFinite> {
         let (mut work, mut at) = self.workspace();
         self.values(x, &mut work, &mut at)?;
         let structure = &self.model.structure;
@@ -81,10 +89,7 @@ impl Transcription<'_> {
                 }
             }
         }
-        for (_, row) in nearest.into_values() {
-            self.limits.row_upper[row] = self.limits.row_lower[row];
-        }
-        Ok(())
+        Ok(nearest.into_values().map(|(_, row)| row).collect())
     }
 
     /// The rows of a constraint.
@@ -94,7 +99,7 @@ impl Transcription<'_> {
     }
 
     /// The variables that are helpers.
-    fn helpers(&self) -> impl Iterator<Item = u32> {
+    pub(crate) fn helpers(&self) -> impl Iterator<Item = u32> {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         let of_phases = layout.phases.iter().flat_map(|phase| {
             let is_helper = |output: usize| structure.phases[phase.phase].outputs[output].is_helper();
