@@ -88,7 +88,7 @@ pub(super) fn at_helpers(nlp: &Transcription, relaxations: &[usize], x: &[f64], 
     let reach = sides.past_helpers(x, &way)?;
     let mut x = moved(nlp, x, |j| reach[j] * way[j]);
     for _ in 0..ROUNDS {
-        let step = sides.to_helpers(&x)?;
+        let step = sides.step_to_helpers(&x)?;
         // No further than it was gone: at a tip slopes are next to nothing.
         let furthest = |j: usize| reach[j] * sizes[j];
         x = moved(nlp, &x, |j| step[j].clamp(-furthest(j), furthest(j)));
@@ -134,7 +134,7 @@ impl Sides<'_> {
     }
 
     /// A step to where the nearest sides are at their helpers to first order: by each row in turn, the least step that meets it.
-    fn to_helpers(&mut self, x: &[f64]) -> Option<Vec<f64>> {
+    fn step_to_helpers(&mut self, x: &[f64]) -> Option<Vec<f64>> {
         let (mut work, mut at) = self.nlp.workspace();
         self.nlp.derivatives(x, 1.0, &vec![0.0; self.nlp.rows()], &mut work, &mut at).ok()?;
         self.slopes.first(self.nlp.blocks(), &at);

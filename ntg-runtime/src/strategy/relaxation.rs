@@ -41,11 +41,11 @@ struct Search<'a> {
 /// What one way has led to.
 enum Led {
     /// The answer.
-    Answer(Report),
+    Answer(Box<Report>),
     /// Helpers beside corners, which are to be posed as written next.
-    Beside(Beside),
+    Beside(Box<Beside>),
     /// No solution.
-    Nowhere(Report),
+    Nowhere(Box<Report>),
 }
 
 impl Session {
@@ -74,31 +74,31 @@ impl Session {
                         (true, false) => search.budget.attempt(),
                         (true, true) => search.budget.rest(),
                     };
-                    let Some(limited) = limited else {
-                        let report: Report = last.expect("a way before has led nowhere");
-                        return Ok(report.ended(search.limit()));
-                    };
+                    // Where nothing is left, the way ends where it begins.
+                    let limited = limited.unwrap_or_else(|| Settings { max_iterations: 0, ..settings.clone() });
                     match self.along(task, (&structure, &way), &limited, &mut search)? {
-                        Led::Answer(report) => return Ok(report),
+                        Led::Answer(report) => return Ok(*report),
                         Led::Beside(beside) => {
                             search.beside.push(way.clone());
                             beside.open.iter().for_each(|(number, _)| way[*number] = true);
                             first_beside.get_or_insert(beside);
                         }
                         Led::Nowhere(report) => {
-                            last = Some(report);
+                            last = Some(*report);
                             break;
                         }
                     }
                 }
             }
             if let Some(beside) = first_beside.take()
-                && let Some(found) = self.from_sides(task.problem, &beside, &TURNS, &mut search.budget)?
+                && let Some(found) = self.on_all_sides(task.problem, &beside, &TURNS, &mut search.budget)?
             {
                 return Ok(search.told(found, &beside.report));
             }
         }
-        Ok(last.expect("a way that is not solved is the last one"))
+        Ok(last.expect(
+            "each way has more equations as they are written than the one before, and the last one all that it misses",
+        ))
     }
 
     /// Solves a problem with some equations as they are written.
@@ -118,18 +118,18 @@ impl Session {
         let is_solved = report.has_solution();
         let is_stopped = matches!(report.status, Status::Cancelled | Status::TimeLimit);
         if is_stopped || (is_solved && open.is_empty()) {
-            return Ok(Led::Answer(report));
+            return Ok(Led::Answer(Box::new(report)));
         }
         if search.budget.rest().is_none() {
-            return Ok(Led::Answer(report.ended(search.limit())));
+            return Ok(Led::Answer(Box::new(report.ended(search.limit()))));
         }
         if !is_solved {
-            return Ok(Led::Nowhere(report));
+            return Ok(Led::Nowhere(Box::new(report)));
         }
-        let beside = Beside { structure, report, open };
+        let beside = Box::new(Beside { structure, report, open });
         Ok(match self.at_corners(task.problem, &beside, &mut search.budget)? {
-            Some(found) => Led::Answer(search.told(found, &beside.report)),
-            None if search.budget.rest().is_none() => Led::Answer(beside.report.ended(search.limit())),
+            Some(found) => Led::Answer(Box::new(search.told(found, &beside.report))),
+            None if search.budget.rest().is_none() => Led::Answer(Box::new(beside.report.ended(search.limit()))),
             None => Led::Beside(beside),
         })
     }
@@ -149,11 +149,11 @@ impl Session {
         }
         let as_it_is = [None];
         let sides = if self.is_at_tips(problem, beside)? { &TURNS[..2] } else { &as_it_is };
-        self.from_sides(problem, beside, sides, budget)
+        self.on_all_sides(problem, beside, sides, budget)
     }
 
     /// As [`Session::at_corners`], from points at which corners are where the helpers are, on one side or the other.
-    fn from_sides(
+    fn on_all_sides(
         &mut self,
         problem: &dyn Problem,
         beside: &Beside,
