@@ -49,11 +49,14 @@ impl Elaborator<'_> {
     fn meeting(&mut self, (then, otherwise): (NodeId, NodeId), beyond: NodeId) -> Option<NodeId> {
         let near = self.branch_within(otherwise, beyond);
         let factor = self.given_factor([then, near], beyond)?;
-        let dag = &mut self.problem.dag;
-        let line = dag.mul(factor, beyond);
-        if !is_sum(dag, then, [near, line]) {
+        let Some(factor) = [Some(factor), self.factor([then, near], beyond)].into_iter().flatten().find(|factor| {
+            let dag = &mut self.problem.dag;
+            let line = dag.mul(*factor, beyond);
+            is_sum(dag, then, [near, line])
+        }) else {
             return None;
-        }
+        };
+        let dag = &mut self.problem.dag;
         let zero = dag.constant(0.0);
         let corner = dag.max(zero, beyond);
         if by_defaults(&self.problem, factor, 0).is_some_and(|value| value < 0.0) {
@@ -109,6 +112,16 @@ impl Elaborator<'_> {
             is_sum(dag, factor, [product, zero]).then_some(product)
         });
         Some(of_one.unwrap_or(factor))
+    }
+
+    /// As [`Self::given_factor`], of what is solved for: of `F * v / 0.9` and `0.6 * F * v` by `F` it is a multiple of `v`.
+    fn factor(&mut self, branches: [NodeId; 2], beyond: NodeId) -> Option<NodeId> {
+        let unknown = *self.unknowns(&[beyond]).first()?;
+        let dag = &mut self.problem.dag;
+        let slope = |dag: &mut Dag, node: NodeId| Some(gradient(dag, node, &[unknown]).ok()?[0]);
+        let (along, then, near) = (slope(dag, beyond)?, slope(dag, branches[0])?, slope(dag, branches[1])?);
+        let difference = dag.sub(then, near);
+        Some(dag.div(difference, along))
     }
 
     /// What is solved for in some nodes.

@@ -162,6 +162,7 @@ impl Elaborator<'_> {
         corner: NodeId,
         at: (&Site, usize),
     ) -> Option<NodeId> {
+        let corner = self.helpers_within(pass, known, corner, at);
         let (a, b, is_greater) = match *self.problem.dag.node(corner) {
             Node::Binary(op @ (Binary::Max | Binary::Min), a, b) => (a, b, op == Binary::Max),
             _ => return self.held_beside(pass, known, corner, at),
@@ -181,6 +182,34 @@ impl Elaborator<'_> {
         let twice = if is_greater { dag.add(sum, helper) } else { dag.sub(sum, helper) };
         let half = dag.constant(0.5);
         Some(dag.mul(half, twice))
+    }
+
+    /// A corner of corners with helpers for those within: `max(0, abs(u) - 0.3)` is `max(0, s - 0.3)` with `s` beside `abs(u)`.
+    fn helpers_within(
+        &mut self,
+        pass: &mut Corners,
+        known: &mut Known,
+        corner: NodeId,
+        (site, depth): (&Site, usize),
+    ) -> NodeId {
+        let own = self.problem.dag.node(corner).clone();
+        let is_lattice = matches!(
+            own,
+            Node::Unary(Unary::Abs, _)
+                | Node::Binary(Binary::Max | Binary::Min, ..)
+                | Node::Reduce { fold: Fold::Max | Fold::Min, .. }
+        );
+        if !is_lattice || self.has_one_corner(pass, corner) {
+            return corner;
+        }
+        let within = self.relaxed_below(pass, known, (&own, false), site, depth + 1);
+        if within != corner {
+            pass.treated.insert(corner);
+            if let Some(span) = self.problem.origin.get(&corner).copied() {
+                self.origin(within, span);
+            }
+        }
+        within
     }
 
     /// A helper that is held beside a corner; none where nothing is known of the corner's sides.
