@@ -7,6 +7,7 @@
 use super::beside::{moved, uneven};
 use crate::solution::Inner;
 use crate::transcribe::Transcription;
+use crate::transcribe::relaxed::Corner;
 use ntg_nlp::{Assembly, Nlp};
 use std::collections::BTreeSet;
 
@@ -40,6 +41,8 @@ const BESIDE: f64 = 1e-2;
 /// rows that share coefficients of a spline are met to a tenth in five.
 const ROUNDS: usize = 3;
 const SWEEPS: usize = 5;
+/// As many for helpers alone, whose rows share no more than the coefficients of an interval: to a thousandth.
+const SWEEPS_OF_HELPERS: usize = 50;
 
 impl Turn {
     fn side(self, tau: f64) -> f64 {
@@ -52,12 +55,12 @@ impl Turn {
 pub(super) fn is_at_tips(nlp: &Transcription, relaxations: &[usize], solution: &Inner) -> bool {
     let (x, mut sizes) = (&solution.x, solution.sizes.clone());
     nlp.helpers().for_each(|helper| sizes[helper as usize] = 0.0);
+    let corners = nlp.corners_of(relaxations);
     let gaps = |sign: f64| {
         let (mut work, mut at) = nlp.workspace();
         let x = moved(nlp, x, |j| sign * BESIDE * sizes[j] * uneven(j));
         nlp.values(&x, &mut work, &mut at).ok()?;
-        let rows = nlp.nearest_sides(relaxations, &x).ok()?;
-        Some(rows.into_iter().map(|row| gap(nlp, &at.rows, row)).collect::<Vec<f64>>())
+        Some(corners.iter().map(|corner| gap(nlp, &at.rows, nlp.nearest_side(&at.rows, corner))).collect::<Vec<f64>>())
     };
     let [Some(here), Some(up), Some(down)] = [0.0, 1.0, -1.0].map(gaps) else { return false };
     let largest = here.iter().fold(0.0, |most: f64, gap| most.max(*gap));
@@ -66,11 +69,12 @@ pub(super) fn is_at_tips(nlp: &Transcription, relaxations: &[usize], solution: &
     2 * is_tip.iter().filter(|is_tip| **is_tip).count() > is_tip.len()
 }
 
-/// The sides of corners as rows, and what is in them but helpers.
+/// The sides of corners as rows, and what of them is to move.
 struct Sides<'a> {
     nlp: &'a Transcription<'a>,
-    relaxations: &'a [usize],
-    helpers: BTreeSet<usize>,
+    corners: Vec<Corner>,
+    /// The variables that move: helpers, or all but these.
+    moves: Vec<bool>,
     slopes: Assembly,
 }
 
@@ -80,15 +84,13 @@ type Row = (usize, Vec<(usize, f64)>);
 /// A point at which the helpers of relaxations are at their corners, nearly; none where something is not finite, or nothing
 /// can be moved.
 pub(super) fn at_helpers(nlp: &Transcription, relaxations: &[usize], x: &[f64], turn: Turn) -> Option<Vec<f64>> {
-    let helpers = nlp.helpers().map(|variable| variable as usize).collect();
-    let slopes = Assembly::of_slopes(x.len(), nlp.rows(), nlp.blocks());
-    let mut sides = Sides { nlp, relaxations, helpers, slopes };
+    let mut sides = Sides::new(nlp, nlp.corners_of(relaxations), false);
     let (sizes, tau) = (&nlp.limits().scale, places(nlp, x.len()));
     let way: Vec<f64> = (0..x.len()).map(|j| sizes[j] * uneven(j) * turn.side(tau[j])).collect();
     let reach = sides.past_helpers(x, &way)?;
     let mut x = moved(nlp, x, |j| reach[j] * way[j]);
     for _ in 0..ROUNDS {
-        let step = sides.step_to_helpers(&x)?;
+        let step = sides.step_to_helpers(&x, SWEEPS)?;
         // No further than it was gone: at a tip slopes are next to nothing.
         let furthest = |j: usize| reach[j] * sizes[j];
         x = moved(nlp, &x, |j| step[j].clamp(-furthest(j), furthest(j)));
@@ -96,14 +98,40 @@ pub(super) fn at_helpers(nlp: &Transcription, relaxations: &[usize], x: &[f64], 
     x.iter().all(|x| x.is_finite()).then_some(x)
 }
 
-impl Sides<'_> {
+/// The sides on which corners are at a point, by the values that helpers have at their corners: those of a corner within others
+/// count as they are written.
+pub(super) fn sides_as_written(nlp: &Transcription, corners: Vec<Corner>, x: &[f64]) -> Option<(Vec<Corner>, Vec<usize>)> {
+    let mut sides = Sides::new(nlp, corners, true);
+    let mut x = x.to_vec();
+    for _ in 0..ROUNDS {
+        let step = sides.step_to_helpers(&x, SWEEPS_OF_HELPERS)?;
+        x.iter_mut().zip(step).for_each(|(x, step)| *x += step);
+    }
+    let (mut work, mut at) = nlp.workspace();
+    nlp.values(&x, &mut work, &mut at).ok()?;
+    let nearest = sides.nearest(&at.rows);
+    Some((sides.corners, nearest))
+}
+
+impl<'a> Sides<'a> {
+    fn new(nlp: &'a Transcription<'a>, corners: Vec<Corner>, moves_helpers: bool) -> Self {
+        let variables = nlp.limits().lower.len();
+        let mut moves = vec![!moves_helpers; variables];
+        nlp.helpers().for_each(|helper| moves[helper as usize] = moves_helpers);
+        Self { nlp, corners, moves, slopes: Assembly::of_slopes(variables, nlp.rows(), nlp.blocks()) }
+    }
+
+    /// The nearest side of each corner, by the values of rows.
+    fn nearest(&self, rows: &[f64]) -> Vec<usize> {
+        self.corners.iter().map(|corner| self.nlp.nearest_side(rows, corner)).collect()
+    }
+
     /// How far each variable goes along a way for corners to pass their helpers, in parts of the way.
     fn past_helpers(&self, x: &[f64], way: &[f64]) -> Option<Vec<f64>> {
         let nearest = |x: &[f64]| {
             let (mut work, mut at) = self.nlp.workspace();
             self.nlp.values(x, &mut work, &mut at).ok()?;
-            // One side of each corner, always in one order.
-            let sides = self.nlp.nearest_sides(self.relaxations, x).ok()?;
+            let sides = self.nearest(&at.rows);
             let gaps: Vec<f64> = sides.iter().map(|row| gap(self.nlp, &at.rows, *row)).collect();
             Some((sides, gaps))
         };
@@ -134,14 +162,14 @@ impl Sides<'_> {
     }
 
     /// A step to where the nearest sides are at their helpers to first order: by each row in turn, the least step that meets it.
-    fn step_to_helpers(&mut self, x: &[f64]) -> Option<Vec<f64>> {
+    fn step_to_helpers(&mut self, x: &[f64], sweeps: usize) -> Option<Vec<f64>> {
         let (mut work, mut at) = self.nlp.workspace();
         self.nlp.derivatives(x, 1.0, &vec![0.0; self.nlp.rows()], &mut work, &mut at).ok()?;
         self.slopes.first(self.nlp.blocks(), &at);
-        let rows = self.rows(&self.nlp.nearest_sides(self.relaxations, x).ok()?);
+        let rows = self.rows(&self.nearest(&at.rows));
         let limits = self.nlp.limits();
         let mut step = vec![0.0; x.len()];
-        for (row, entries) in std::iter::repeat_n(&rows, SWEEPS).flatten() {
+        for (row, entries) in std::iter::repeat_n(&rows, sweeps).flatten() {
             let change: f64 = entries.iter().map(|(j, slope)| slope * step[*j]).sum();
             let missed = at.rows[*row] - limits.row_lower[*row] + change;
             let steepness: f64 = entries.iter().map(|(j, slope)| (slope * limits.scale[*j]).powi(2)).sum();
@@ -153,13 +181,13 @@ impl Sides<'_> {
         Some(step)
     }
 
-    /// Rows by the slopes that were assembled last, but for helpers.
+    /// Rows by the slopes that were assembled last, with the variables that move.
     fn rows(&self, rows: &[usize]) -> Vec<Row> {
         let jacobian = &self.slopes.jacobian;
         let mut number = vec![None; jacobian.rows];
         rows.iter().enumerate().for_each(|(at, row)| number[*row] = Some(at));
         let mut entries: Vec<Row> = rows.iter().map(|row| (*row, vec![])).collect();
-        for j in (0..jacobian.columns()).filter(|j| !self.helpers.contains(j)) {
+        for j in (0..jacobian.columns()).filter(|j| self.moves[*j]) {
             for (row, slope) in jacobian.column(j) {
                 if let Some(at) = number[row] {
                     entries[at].1.push((j, slope));
@@ -172,8 +200,7 @@ impl Sides<'_> {
 
 /// How far a helper is from a side of its corner, in the size of that row.
 fn gap(nlp: &Transcription, rows: &[f64], row: usize) -> f64 {
-    let limits = nlp.limits();
-    (rows[row] - limits.row_lower[row]) / limits.row_scale[row]
+    nlp.gap(rows, row) / nlp.limits().row_scale[row]
 }
 
 /// Where along its phase each variable is: for a coefficient by its number among those of its output, else at the start.

@@ -18,6 +18,7 @@ mod continuation;
 mod corner_sides;
 mod fallback;
 mod feasible_guess;
+mod held_sides;
 mod one_sided;
 mod relaxation;
 mod session;

@@ -2,14 +2,14 @@
 
 use super::budget::Budget;
 use super::corner_sides::{self, TURNS, Turn, at_helpers};
-use super::session::{FirstPoint, Session, Task, record};
+use super::held_sides::{CHANGES, OnSides, solve_on_sides};
+use super::session::{Session, Task, record};
 use crate::error::Error;
 use crate::guess::Guess;
 use crate::problem::Problem;
 use crate::report::Report;
 use crate::settings::Settings;
 use crate::status::Status;
-use ntg_nlp::Start;
 use ntg_structure::Structure;
 use std::time::Instant;
 
@@ -184,19 +184,46 @@ impl Session {
         turn: Option<Turn>,
         budget: &mut Budget<'_>,
     ) -> Result<Option<Report>, Error> {
-        let Some((found, is_best)) = self.closed(problem, beside, turn, budget)? else { return Ok(None) };
-        budget.spend(found.iterations);
+        let own = &beside.report.solution.inner.x;
+        let x = match turn {
+            Some(turn) => self.turned(problem, beside, turn, budget)?,
+            None => Some(own.clone()),
+        };
+        let Some(x) = x else { return Ok(None) };
+        let Some((held, is_best)) = self.held(problem, beside, (&x, 0), budget)? else { return Ok(None) };
         if is_best {
-            return Ok(Some(found));
+            return Ok(Some(held));
         }
         // A point that keeps the equations, beside which they may be kept better.
         let Some(settings) = budget.near() else { return Ok(None) };
         let mut exact = beside.structure.clone();
         beside.open.iter().for_each(|(number, _)| exact.pose(*number, true));
-        let guess = Guess::from(&found.solution);
+        let guess = Guess::from(&held.solution);
         let (found, open) = self.solve_posed(Task { problem, guess: Some(&guess) }, exact, &settings)?;
         budget.spend(found.iterations);
-        Ok((found.status == Status::Solved && open.is_empty()).then_some(found))
+        if found.status == Status::Solved && open.is_empty() {
+            return Ok(Some(found));
+        }
+        let on_others = self.held(problem, beside, (&held.solution.inner.x, CHANGES), budget)?;
+        Ok(on_others.and_then(|(found, is_best)| is_best.then_some(found)))
+    }
+
+    /// A point at which what is in the corners has gone to sides.
+    fn turned(
+        &mut self,
+        problem: &dyn Problem,
+        beside: &Beside,
+        turn: Turn,
+        budget: &Budget<'_>,
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let Some(settings) = budget.near() else { return Ok(None) };
+        let mut nlp = self.program(problem, &beside.structure)?;
+        let own = &beside.report.solution.inner;
+        nlp.set_scales(&own.x, &settings)?;
+        nlp.raise_sizes(&own.sizes, &settings);
+        let x = at_helpers(&nlp, &beside.numbers(), &own.x, turn);
+        self.kept = Some(nlp.keep());
+        Ok(x)
     }
 
     /// The solution that a solution is near whose equations are missed by little as they are written: closer to the bounds.
@@ -207,53 +234,35 @@ impl Session {
     }
 
     /// A solution with the helpers of some equations held at their corners, each on the side on which the corner is at a
-    /// solution that has them beside, or at a point beside that; and whether it is as good as that, and so the best there is.
-    fn closed(
+    /// point, and after changes of sides; and whether it is the best there is: as good as the solution with helpers beside, or
+    /// stationary on all sides.
+    fn held(
         &mut self,
         problem: &dyn Problem,
         beside: &Beside,
-        turn: Option<Turn>,
+        (x, changes): (&[f64], usize),
         budget: &mut Budget<'_>,
     ) -> Result<Option<(Report, bool)>, Error> {
         let Beside { structure, report, .. } = beside;
         let Some(settings) = budget.near() else { return Ok(None) };
         let began = Instant::now();
         let mut nlp = self.program(problem, structure)?;
-        let own = &report.solution.inner;
-        let numbers = beside.numbers();
-        nlp.set_scales(&own.x, &settings)?;
-        nlp.raise_sizes(&own.sizes, &settings);
-        let x = match turn {
-            Some(turn) => at_helpers(&nlp, &numbers, &own.x, turn),
-            None => Some(own.x.clone()),
-        };
-        let Some(x) = x else {
-            self.kept = Some(nlp.keep());
-            return Ok(None);
-        };
-        if turn.is_some() {
-            nlp.set_scales(&x, &settings)?;
-            nlp.raise_sizes(&own.sizes, &settings);
-        }
-        let limits = nlp.limits.clone();
-        let is_held = nlp.close(&numbers, &x).is_ok();
-        // Another program, of which nothing is to be kept.
-        let first = FirstPoint { x: &x, from: Start::Near };
-        let found = is_held.then(|| Session::default().solve_measured(&mut nlp, first, &settings));
-        (nlp.limits.row_lower, nlp.limits.row_upper) = (limits.row_lower, limits.row_upper);
-        let found =
-            found.filter(|found| found.status == ntg_nlp::Status::Solved && nlp.open_relaxations(&found.x).is_empty());
-        let Some(found) = found else {
+        nlp.set_scales(x, &settings)?;
+        nlp.raise_sizes(&report.solution.inner.sizes, &settings);
+        let (found, iterations) = solve_on_sides(&mut nlp, &beside.numbers(), (x, changes), &settings);
+        let Some(OnSides { outcome: found, is_stationary }) = found else {
+            budget.spend(iterations);
             self.kept = Some(nlp.keep());
             return Ok(None);
         };
         let history = vec![record(&nlp, &[], &found, began)];
         let found = self.report(nlp, found, history, &settings)?;
+        budget.spend(found.iterations);
         let rise =
             if structure.maximize { report.objective - found.objective } else { found.objective - report.objective };
         let is_bound = report.status == Status::Solved;
         let is_best = is_bound && rise <= PROVEN * report.objective.abs().max(found.objective.abs());
-        Ok(Some((found, is_best)))
+        Ok(Some((found, is_best || is_stationary)))
     }
 }
 

@@ -5,7 +5,7 @@ use super::Transcription;
 use super::instances::family_members;
 use super::layout::narrow;
 use super::rows::{RowInfo, RowKey, RowKind, constraint_name};
-use ntg_nlp::{Nlp, NotFinite};
+use ntg_nlp::Nlp;
 use ntg_structure::Relaxation;
 use std::collections::BTreeMap;
 
@@ -14,6 +14,14 @@ use std::collections::BTreeMap;
 const MET: f64 = ntg_nlp::residuals::ACCEPTABLE;
 /// A term that is smaller everywhere, as a part of the size of its row, is 0. A choice.
 const VANISHES: f64 = 1e-3;
+
+/// A corner at one point of time.
+pub(crate) struct Corner {
+    /// The row that is the helper.
+    pub(crate) value: usize,
+    /// The rows that hold the helper beside the corner.
+    pub(crate) sides: Vec<usize>,
+}
 
 /// The indices of a member of an equation, and its phase.
 type Member<'a> = (&'a [i64], Option<usize>);
@@ -62,34 +70,42 @@ impl Transcription<'_> {
         self.open_relaxations(x).into_iter().map(|(number, missed)| (name(number).to_owned(), missed)).collect()
     }
 
-    /// Holds the helpers of relaxations at their corners, each on the side on which the corner is at a point.
-    pub(crate) fn close(&mut self, relaxations: &[usize], x: &[f64]) -> Result<(), NotFinite> {
-        for row in self.nearest_sides(relaxations, x)? {
-            self.limits.row_upper[row] = self.limits.row_lower[row];
-        }
-        Ok(())
-    }
-
-    /// The rows of the sides on which corners are at a point, one for each helper of relaxations and point of time.
-    pub(crate) fn nearest_sides(&self, relaxations: &[usize], x: &[f64]) -> Result<Vec<usize>, NotFinite> {
-        let (mut work, mut at) = self.workspace();
-        self.values(x, &mut work, &mut at)?;
+    /// The corners of relaxations, one for each helper and point of time, always in one order.
+    pub(crate) fn corners_of(&self, relaxations: &[usize]) -> Vec<Corner> {
         let structure = &self.model.structure;
         let helpers = relaxations.iter().flat_map(|number| &structure.relaxations[*number].helpers);
-        let mut nearest: BTreeMap<RowKey<'_>, (f64, usize)> = BTreeMap::new();
+        let mut corners: BTreeMap<RowKey<'_>, Corner> = BTreeMap::new();
         for helper in helpers {
+            for row in self.rows_of(helper.at_zero) {
+                let key = self.elements.rows[row].key();
+                corners.entry(key).or_insert(Corner { value: row, sides: vec![] });
+            }
             let outer = self.rows_of(helper.at_zero).next().map_or(0, |row| self.elements.rows[row].indices.len());
             for row in helper.sides.iter().flat_map(|side| self.rows_of(*side)) {
-                let (_, _, indices, phase, tau, is_left) = self.elements.rows[row].key();
-                let key = (false, helper.at_zero, &indices[..outer.min(indices.len())], phase, tau, is_left);
-                let gap = at.rows[row] - self.limits.row_lower[row];
-                let held = nearest.entry(key).or_insert((gap, row));
-                if gap < held.0 {
-                    *held = (gap, row);
+                let (is_variable, _, indices, phase, tau, is_left) = self.elements.rows[row].key();
+                let key = (is_variable, helper.at_zero, &indices[..outer.min(indices.len())], phase, tau, is_left);
+                if let Some(corner) = corners.get_mut(&key).filter(|corner| !corner.sides.contains(&row)) {
+                    corner.sides.push(row);
                 }
             }
         }
-        Ok(nearest.into_values().map(|(_, row)| row).collect())
+        corners.into_values().filter(|corner| !corner.sides.is_empty()).collect()
+    }
+
+    /// How far a helper is from a side of its corner, by the values of rows.
+    pub(crate) fn gap(&self, rows: &[f64], side: usize) -> f64 {
+        rows[side] - self.limits.row_lower[side]
+    }
+
+    /// The side on which a corner is, by the values of rows.
+    pub(crate) fn nearest_side(&self, rows: &[f64], corner: &Corner) -> usize {
+        let gap = |row: &&usize| self.gap(rows, **row);
+        *corner.sides.iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).expect("a corner has sides")
+    }
+
+    /// Holds helpers at sides of their corners.
+    pub(crate) fn hold(&mut self, sides: &[usize]) {
+        sides.iter().for_each(|side| self.limits.row_upper[*side] = self.limits.row_lower[*side]);
     }
 
     /// The rows of a constraint.
