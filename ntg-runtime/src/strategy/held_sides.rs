@@ -4,9 +4,9 @@
 //! helper is what one side of its corner is, and whether that is stationary on all sides of the corners that are at
 //! tips there.
 
+use super::budget::Budget;
 use super::corner_sides::sides_as_written;
 use super::session::{FirstPoint, Session};
-use crate::settings::Settings;
 use crate::transcribe::Transcription;
 use crate::transcribe::relaxed::Corner;
 use ntg_nlp::{Nlp, Outcome, Start, Status};
@@ -34,27 +34,26 @@ enum Sides {
 }
 
 /// Solves with the helpers of relaxations held at the sides on which corners are at a point, and then, so many times at most, at
-/// those to which multipliers point. Comes with the iterations of all solves; none where something is not finite, or there is
-/// no solution on those sides.
+/// those to which multipliers point. Iterations are those of all solves; none where something is not finite, or there is no
+/// solution on those sides.
 pub(super) fn solve_on_sides(
     nlp: &mut Transcription,
     relaxations: &[usize],
     (x, changes): (&[f64], usize),
-    settings: &Settings,
-) -> (Option<OnSides>, usize) {
-    let Some((corners, mut sides)) = sides_as_written(nlp, nlp.corners_of(relaxations), x) else { return (None, 0) };
+    budget: &mut Budget<'_>,
+) -> Option<OnSides> {
+    let (corners, mut sides) = sides_as_written(nlp, nlp.corners_of(relaxations), x)?;
     let free = nlp.limits.row_upper.clone();
     let mut last: Option<OnSides> = None;
-    let mut iterations = 0;
+    let before = budget.spent();
     for change in 0..=changes {
-        let Some(left) = settings.max_iterations.checked_sub(iterations).filter(|left| *left > 0) else { break };
-        let settings = Settings { max_iterations: left, ..settings.clone() };
+        let Some(settings) = budget.held() else { break };
         nlp.hold(&sides);
         let first = FirstPoint { x: last.as_ref().map_or(x, |last| &last.outcome.x), from: Start::Near };
         // Another program, of which nothing is to be kept.
         let outcome = Session::default().solve_measured(nlp, first, &settings);
         nlp.limits.row_upper.clone_from(&free);
-        iterations += outcome.iterations;
+        budget.spend(outcome.iterations);
         if outcome.status != Status::Solved || !nlp.open_relaxations(&outcome.x).is_empty() {
             break;
         }
@@ -65,8 +64,8 @@ pub(super) fn solve_on_sides(
             _ => break,
         }
     }
-    let told = |on: OnSides| OnSides { outcome: Outcome { iterations, ..on.outcome }, ..on };
-    (last.map(told), iterations)
+    let iterations = budget.spent() - before;
+    last.map(|on| OnSides { outcome: Outcome { iterations, ..on.outcome }, ..on })
 }
 
 /// Whether the multipliers of held sides have the sign that those of limits have, wherever sides meet; where not, the sides to

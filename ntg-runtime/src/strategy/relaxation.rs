@@ -244,20 +244,19 @@ impl Session {
         budget: &mut Budget<'_>,
     ) -> Result<Option<(Report, bool)>, Error> {
         let Beside { structure, report, .. } = beside;
-        let Some(settings) = budget.near() else { return Ok(None) };
+        let Some(settings) = budget.held() else { return Ok(None) };
         let began = Instant::now();
         let mut nlp = self.program(problem, structure)?;
         nlp.set_scales(x, &settings)?;
         nlp.raise_sizes(&report.solution.inner.sizes, &settings);
-        let (found, iterations) = solve_on_sides(&mut nlp, &beside.numbers(), (x, changes), &settings);
+        let found = solve_on_sides(&mut nlp, &beside.numbers(), (x, changes), budget);
         let Some(OnSides { outcome: found, is_stationary }) = found else {
-            budget.spend(iterations);
             self.kept = Some(nlp.keep());
             return Ok(None);
         };
-        let history = vec![record(&nlp, &[], &found, began)];
+        let (history, spent) = (vec![record(&nlp, &[], &found, began)], found.iterations);
         let found = self.report(nlp, found, history, &settings)?;
-        budget.spend(found.iterations);
+        budget.spend(found.iterations - spent);
         let rise =
             if structure.maximize { report.objective - found.objective } else { found.objective - report.objective };
         let is_bound = report.status == Status::Solved;
