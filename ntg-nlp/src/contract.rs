@@ -208,7 +208,7 @@ pub struct NotFinite {
 /// A nonlinear program made of elements.
 pub trait Nlp: Sync {
     /// Buffers for evaluations, sized once.
-    type Workspace: Send;
+    type Workspace: Send + 'static;
 
     /// Number of variables.
     fn variables(&self) -> usize {

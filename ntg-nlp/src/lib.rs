@@ -48,6 +48,7 @@
 mod check;
 pub mod closures;
 pub mod contract;
+mod erased;
 pub mod ipm;
 mod kkt;
 pub mod method;

@@ -7,7 +7,8 @@
 //! the start of another solve, with scales from there. And where variables outgrow their typical sizes on the way, a solve
 //! begins again with larger ones.
 
-use crate::contract::{Evaluation, Nlp};
+use crate::contract::{Evaluation, Limits, Nlp};
+use crate::erased::Erased;
 use crate::options::Options;
 use crate::outcome::{Outcome, Start};
 use crate::residuals::{self, GAP, Point, Residual, slot_terms, violation};
@@ -94,10 +95,10 @@ pub(crate) struct Round<'a> {
 const FALLEN: f64 = 1e12;
 
 /// Solves, and goes on as long as the scales do not hold.
-pub(crate) fn until_measured<N: Nlp>(
-    nlp: &N,
+pub(crate) fn until_measured(
+    nlp: &Erased<'_>,
     options: &Options,
-    mut solve: impl FnMut(&Resized<'_, N>, Round<'_>, &Options) -> (Outcome, Measure),
+    mut solve: impl FnMut(&Erased<'_>, Round<'_>, &Options) -> (Outcome, Measure),
 ) -> Outcome {
     let mut first = None;
     let end = rounds(nlp, options, |resized, round, options| {
@@ -112,10 +113,10 @@ pub(crate) fn until_measured<N: Nlp>(
 }
 
 /// All solves in a row.
-fn rounds<N: Nlp>(
-    nlp: &N,
+fn rounds(
+    nlp: &Erased<'_>,
     options: &Options,
-    mut solve: impl FnMut(&Resized<'_, N>, Round<'_>, &Options) -> (Outcome, Measure),
+    mut solve: impl FnMut(&Erased<'_>, Round<'_>, &Options) -> (Outcome, Measure),
 ) -> Outcome {
     let began = Instant::now();
     let mut resized = Resized::new(nlp);
@@ -140,7 +141,7 @@ fn rounds<N: Nlp>(
         let tolerance = options.tolerance * wide.as_ref().map_or(1.0, |(_, objective)| *objective);
         let most = if large.is_some() { left.min(MAGNIFIED) } else { left };
         let options = Options { max_iterations: most, tolerance, ..options.after(began.elapsed()) };
-        let (mut outcome, measure) = solve(&resized, round, &options);
+        let (mut outcome, measure) = solve(&Erased::of(&resized), round, &options);
         // By its earlier sizes the start was no solution: that larger ones make it one says nothing.
         let is_end = outcome.iterations == 0 && outcome.status.has_solution() && measure == Measure::Holds;
         let is_start_again = std::mem::take(&mut is_again) && is_end;
@@ -471,13 +472,10 @@ fn residual_by<N: Nlp>(
     nlp.derivatives(&end.x, 1.0, &vec![0.0; nlp.rows()], &mut work, &mut at).ok()?;
     let mut assembly = Assembly::of_slopes(nlp.variables(), nlp.rows(), nlp.blocks());
     assembly.first(nlp.blocks(), &at);
-    let mut resized = Resized::new(nlp);
-    resized.resize(sizes.to_vec());
-    if let Some(size) = objective {
-        resized.measure_objective(size);
-    }
+    let own = nlp.limits();
+    let limits = Limits { scale: sizes.to_vec(), objective_size: objective.or(own.objective_size), ..own.clone() };
     let slopes = Slopes::of(nlp, &at, &assembly.jacobian, sizes).at_solution(nlp, &at, sizes);
-    let scales = Scales::from_slopes(resized.limits(), options.scaling, &slopes);
+    let scales = Scales::from_slopes(&limits, options.scaling, &slopes);
     let (blocks, y) = (nlp.blocks(), |i: usize| end.row_multipliers[i]);
     let mut lagrangian = vec![0.0; sizes.len()];
     residuals::lagrangian(blocks, &at, &end.row_multipliers, &mut lagrangian);
@@ -495,7 +493,7 @@ fn residual_by<N: Nlp>(
         largest_term,
         terms: &terms,
     };
-    let found = residuals::residuals(resized.limits(), &scales, &point).scaled;
+    let found = residuals::residuals(&limits, &scales, &point).scaled;
     Some(Residual { dual_is_rounding: end.residuals.scaled.dual_is_rounding, ..found })
 }
 

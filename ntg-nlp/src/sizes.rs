@@ -3,17 +3,18 @@
 //! Takes [`Limits`] and a point; gives larger sizes, and a program that has them.
 
 use crate::contract::{Block, Evaluation, Limits, Nlp, NotFinite};
+use crate::erased::{Buffers, Erased, Program};
 use std::borrow::Cow;
 
 /// A program with other typical sizes of its variables.
-pub(crate) struct Resized<'a, N> {
-    nlp: &'a N,
+pub(crate) struct Resized<'a> {
+    nlp: &'a Erased<'a>,
     limits: Cow<'a, Limits>,
 }
 
-impl<'a, N: Nlp> Resized<'a, N> {
+impl<'a> Resized<'a> {
     /// A program with its own sizes.
-    pub(crate) fn new(nlp: &'a N) -> Self {
+    pub(crate) fn new(nlp: &'a Erased<'a>) -> Self {
         Self { nlp, limits: Cow::Borrowed(nlp.limits()) }
     }
 
@@ -33,9 +34,7 @@ impl<'a, N: Nlp> Resized<'a, N> {
     }
 }
 
-impl<N: Nlp> Nlp for Resized<'_, N> {
-    type Workspace = N::Workspace;
-
+impl Program for Resized<'_> {
     fn limits(&self) -> &Limits {
         &self.limits
     }
@@ -48,11 +47,11 @@ impl<N: Nlp> Nlp for Resized<'_, N> {
         self.nlp.globals()
     }
 
-    fn workspace(&self) -> (Self::Workspace, Evaluation) {
+    fn workspace(&self) -> (Buffers, Evaluation) {
         self.nlp.workspace()
     }
 
-    fn values(&self, x: &[f64], work: &mut Self::Workspace, out: &mut Evaluation) -> Result<(), NotFinite> {
+    fn values(&self, x: &[f64], work: &mut Buffers, out: &mut Evaluation) -> Result<(), NotFinite> {
         self.nlp.values(x, work, out)
     }
 
@@ -61,7 +60,7 @@ impl<N: Nlp> Nlp for Resized<'_, N> {
         x: &[f64],
         objective_weight: f64,
         multipliers: &[f64],
-        work: &mut Self::Workspace,
+        work: &mut Buffers,
         out: &mut Evaluation,
     ) -> Result<(), NotFinite> {
         self.nlp.derivatives(x, objective_weight, multipliers, work, out)

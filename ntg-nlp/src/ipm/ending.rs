@@ -1,6 +1,6 @@
 //! The end of an iteration, and of a solve (lines 5, 10 and 11 of Algorithm 11).
 
-use super::state::{Analysis, State};
+use super::state::{Kept, State};
 use crate::contract::Nlp;
 use crate::kkt::System;
 use crate::outcome::Outcome;
@@ -106,8 +106,8 @@ impl<'a, N: Nlp> State<'a, N> {
 
     /// Ends the solve at the present point, where variables have outgrown their sizes; `sizes` are larger.
     pub(super) fn end_outgrown(self, sizes: Vec<f64>) -> Outcome {
-        let (outcome, analysis) = self.leave(Status::IterationLimit);
-        analysis.measure = Measure::Outgrown(sizes);
+        let (outcome, kept) = self.leave(Status::IterationLimit);
+        kept.measure = Measure::Outgrown(sizes);
         outcome
     }
 
@@ -116,14 +116,14 @@ impl<'a, N: Nlp> State<'a, N> {
         let rows_hold = !status.has_solution() || self.rows_hold();
         let below = if matches!(status, Status::Solved) && rows_hold { self.below_saddle() } else { None };
         let (nlp, options) = (self.nlp, self.options);
-        let (outcome, analysis) = self.leave(status);
+        let (outcome, kept) = self.leave(status);
         let is_near = |system: &System<N::Workspace>| {
             !is_little(&outcome) && is_near_scales(nlp, (system.scales.objective, system.latest()), &outcome)
         };
         let holds = || below.map_or(Measure::Holds, Measure::Saddle);
-        analysis.measure = if !rows_hold {
+        kept.measure = if !rows_hold {
             Measure::Rows
-        } else if !outcome.status.has_solution() || analysis.system.as_ref().is_none_or(is_near) {
+        } else if !outcome.status.has_solution() || kept.system.as_ref().is_none_or(is_near) {
             holds()
         } else {
             match sizes_at_end(nlp, &outcome, options) {
@@ -151,7 +151,7 @@ impl<'a, N: Nlp> State<'a, N> {
     }
 
     /// The present point as an outcome, and the analysis, which has the system again.
-    fn leave(mut self, status: Status) -> (Outcome, &'a mut Analysis<N::Workspace>) {
+    fn leave(mut self, status: Status) -> (Outcome, &'a mut Kept<N::Workspace>) {
         self.history.push(self.record);
         let n = self.nlp.variables();
         let objective = self.system.scales.objective;
@@ -164,8 +164,8 @@ impl<'a, N: Nlp> State<'a, N> {
         let mut residuals = self.residuals(&x, &row_multipliers, &bound_multipliers);
         residuals.scaled.dual_is_rounding = self.record.residuals.scaled.dual_is_rounding;
         let row_factors = self.system.scales.rows.clone();
-        self.analysis.system = Some(self.system);
-        self.analysis.is_unchanged = true;
+        self.kept.system = Some(self.system);
+        self.kept.is_unchanged = true;
         let outcome = Outcome {
             status,
             x,
@@ -181,7 +181,7 @@ impl<'a, N: Nlp> State<'a, N> {
             history: self.history,
             seconds: self.begin.elapsed().as_secs_f64(),
         };
-        (outcome, self.analysis)
+        (outcome, self.kept)
     }
 
     /// The multipliers of the rows in the program's own units.

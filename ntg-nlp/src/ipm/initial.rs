@@ -9,7 +9,7 @@ use super::last_barrier::LastBarrier;
 use super::mode::Mode;
 use super::slacks::{BoundSizes, Slacks};
 use super::stagnation::Stagnation;
-use super::state::{Analysis, State, Trial};
+use super::state::{Kept, State, Trial};
 use super::step::{LARGEST_PROXIMAL, Step};
 use super::warm;
 use super::watchdog::Watchdog;
@@ -48,11 +48,10 @@ impl<'a, N: Nlp> State<'a, N> {
         start: &[f64],
         from: Start<'_>,
         options: &'a Options,
-        analysis: &'a mut Analysis<N::Workspace>,
+        kept: &'a mut Kept<N::Workspace>,
     ) -> Result<Self, Status> {
         let begin = Instant::now();
-        let mut system =
-            System::for_program(analysis.system.take(), nlp, analysis.is_unchanged, vec![false; nlp.variables()]);
+        let mut system = System::for_program(kept.system.take(), nlp, kept.is_unchanged, vec![false; nlp.variables()]);
         let n = nlp.variables();
         let sizes = Scales::sizes(nlp.limits());
         let mut x: Vec<f64> = start.iter().zip(&sizes).map(|(x, size)| x / size).collect();
@@ -70,7 +69,7 @@ impl<'a, N: Nlp> State<'a, N> {
         let mut state = Self {
             nlp,
             options,
-            analysis,
+            kept,
             values: vec![0.0; functions],
             negative_gradient: vec![0.0; n + 1],
             multipliers: vec![0.0; functions],

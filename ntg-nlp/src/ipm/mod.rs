@@ -46,6 +46,7 @@ mod watchdog;
 
 use crate::check::refusal;
 use crate::contract::Nlp;
+use crate::erased::{Buffers, Erased, Own};
 use crate::options::Options;
 use crate::outcome::{Outcome, Start};
 use crate::posed::Posed;
@@ -54,11 +55,34 @@ use crate::status::Status;
 use line_search::SearchOutcome;
 #[cfg(feature = "sqp")]
 pub(crate) use saddle::below_saddle;
-pub use state::Analysis;
-use state::State;
+use state::{Kept, State};
+use std::marker::PhantomData;
 
 /// Tiny steps in a row, at one barrier parameter, that end a solve. A law: one may be an accident of rounding.
 const TINY_STEPS: usize = 3;
+
+/// What one solve leaves to the next: the scaled system with its symbolic analysis. `W` is the program's workspace.
+///
+/// A solve analyses the program again where its patterns differ from those of the last program, and loads its numbers
+/// again where they may differ.
+pub struct Analysis<W> {
+    kept: Kept<Buffers>,
+    workspace: PhantomData<fn() -> W>,
+}
+
+impl<W> Analysis<W> {
+    /// Must be called when a program differs from the one of the last solve in its blocks or in the data of its
+    /// workspace. Bounds, row sizes and variable sizes may differ without it.
+    pub fn program_changed(&mut self) {
+        self.kept.is_unchanged = false;
+    }
+}
+
+impl<W> Default for Analysis<W> {
+    fn default() -> Self {
+        Self { kept: Kept::default(), workspace: PhantomData }
+    }
+}
 
 /// Solves `nlp` from `start`, which is first moved to within the bounds of the variables.
 ///
@@ -83,23 +107,34 @@ pub fn solve_again<N: Nlp>(
     from: Start<'_>,
     options: &Options,
 ) -> Outcome {
+    solve_erased(&mut analysis.kept, &Erased::of(&Own(nlp)), start, from, options)
+}
+
+/// As [`solve_again`].
+fn solve_erased(
+    kept: &mut Kept<Buffers>,
+    nlp: &Erased<'_>,
+    start: &[f64],
+    from: Start<'_>,
+    options: &Options,
+) -> Outcome {
     match Posed::of(nlp, start) {
-        Some(posed) => posed.solve(start, from, |from| solve_posed(analysis, &posed, start, from, options)),
-        None => solve_posed(analysis, nlp, start, from, options),
+        Some(posed) => posed.solve(start, from, |from| solve_posed(kept, &Erased::of(&posed), start, from, options)),
+        None => solve_posed(kept, nlp, start, from, options),
     }
 }
 
 /// As [`solve_again`]; norms are as they are.
-fn solve_posed<N: Nlp>(
-    analysis: &mut Analysis<N::Workspace>,
-    nlp: &N,
+fn solve_posed(
+    kept: &mut Kept<Buffers>,
+    nlp: &Erased<'_>,
     start: &[f64],
     from: Start<'_>,
     options: &Options,
 ) -> Outcome {
     until_measured(nlp, options, |nlp, round, options| {
         let (start, from) = round.start.unwrap_or((start, from));
-        let outcome = match initial(nlp, start, from, options, analysis) {
+        let outcome = match initial(nlp, start, from, options, kept) {
             Ok(mut state) => {
                 if round.may_outgrow {
                     state.watch_sizes();
@@ -108,11 +143,11 @@ fn solve_posed<N: Nlp>(
                 iterate(state)
             }
             Err(status) => {
-                analysis.measure = Measure::Holds;
+                kept.measure = Measure::Holds;
                 Outcome::failed(nlp, start, status)
             }
         };
-        (outcome, std::mem::take(&mut analysis.measure))
+        (outcome, std::mem::take(&mut kept.measure))
     })
 }
 
@@ -128,8 +163,12 @@ pub struct FixedPenalty {
 /// As [`solve`], in penalty mode with a fixed penalty parameter: where the constraints cannot be met, the sum of scaled
 /// violations is least, and the objective decides only among such points. Multipliers are at most the parameter.
 pub fn solve_at_fixed_penalty<N: Nlp>(nlp: &N, start: &[f64], penalty: FixedPenalty, options: &Options) -> Outcome {
-    let mut analysis = Analysis::default();
-    match initial(nlp, start, Start::Cold, options, &mut analysis) {
+    solve_erased_at_fixed_penalty(&Erased::of(&Own(nlp)), start, penalty, options)
+}
+
+/// As [`solve_at_fixed_penalty`].
+fn solve_erased_at_fixed_penalty(nlp: &Erased<'_>, start: &[f64], penalty: FixedPenalty, options: &Options) -> Outcome {
+    match initial(nlp, start, Start::Cold, options, &mut Kept::default()) {
         Ok(mut state) => {
             state.enter_penalty_mode(penalty.parameter);
             state.fix_penalty(penalty);
@@ -146,11 +185,11 @@ fn initial<'a, N: Nlp>(
     start: &[f64],
     from: Start<'_>,
     options: &'a Options,
-    analysis: &'a mut Analysis<N::Workspace>,
+    kept: &'a mut Kept<N::Workspace>,
 ) -> Result<State<'a, N>, Status> {
     match refusal(nlp, start) {
         Some(status) => Err(status),
-        None => State::new(nlp, start, from, options, analysis),
+        None => State::new(nlp, start, from, options, kept),
     }
 }
 

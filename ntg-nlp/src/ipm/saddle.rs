@@ -6,7 +6,7 @@
 //! derivatives tells: at a minimum it is positive definite but for the border rows.
 
 #[cfg(feature = "sqp")]
-use super::state::Analysis;
+use super::state::Kept;
 use super::state::State;
 use super::step::LEAST_PROXIMAL;
 use crate::contract::Nlp;
@@ -61,8 +61,8 @@ struct Descent {
 /// A point beside the end of another method, as [`State::below_saddle`].
 #[cfg(feature = "sqp")]
 pub(crate) fn below_saddle<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<Vec<f64>> {
-    let mut analysis = Analysis::default();
-    let state = State::new(nlp, &end.x, Start::Warm(end.multipliers()), options, &mut analysis);
+    let mut kept = Kept::default();
+    let state = State::new(nlp, &end.x, Start::Warm(end.multipliers()), options, &mut kept);
     state.ok()?.below_saddle()
 }
 

@@ -33,7 +33,7 @@ pub(super) struct State<'a, N: Nlp> {
     /// The scaled program and its condensed matrix.
     pub(super) system: System<N::Workspace>,
     /// Where the system is kept after the solve.
-    pub(super) analysis: &'a mut Analysis<N::Workspace>,
+    pub(super) kept: &'a mut Kept<N::Workspace>,
     /// The bounds with their slacks `s` and multipliers `z`, and the equalities with their multipliers `y`.
     pub(super) slacks: Slacks,
     /// The variables, and the padding entry.
@@ -98,11 +98,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) is_warm: bool,
 }
 
-/// What one solve leaves to the next: the scaled system with its symbolic analysis. `W` is the program's workspace.
-///
-/// A solve analyses the program again where its patterns differ from those of the last program, and loads its numbers
-/// again where they may differ.
-pub struct Analysis<W> {
+/// What one solve leaves to the next ([`super::Analysis`]).
+pub(super) struct Kept<W> {
     pub(super) system: Option<System<W>>,
     /// Whether the next program has the very numbers of the last one, but for the sizes of its variables.
     pub(super) is_unchanged: bool,
@@ -110,15 +107,7 @@ pub struct Analysis<W> {
     pub(super) measure: Measure,
 }
 
-impl<W> Analysis<W> {
-    /// Must be called when a program differs from the one of the last solve in its blocks or in the data of its
-    /// workspace. Bounds, row sizes and variable sizes may differ without it.
-    pub fn program_changed(&mut self) {
-        self.is_unchanged = false;
-    }
-}
-
-impl<W> Default for Analysis<W> {
+impl<W> Default for Kept<W> {
     fn default() -> Self {
         Self { system: None, is_unchanged: false, measure: Measure::Holds }
     }

@@ -184,6 +184,7 @@ mod tests {
     use super::super::Posed;
     use crate::closures::{Functions, Program};
     use crate::contract::{Nlp, Shrinking};
+    use crate::erased::{Erased, Own};
 
     const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
@@ -222,7 +223,10 @@ mod tests {
     fn derivatives_of_posed_rows_are_those_of_their_values() {
         let program = program();
         for x in [[0.3, 1.2, 0.02], [-2.0, 0.7, 0.1], [1.0, -0.4, 3.0]] {
-            let posed = Posed::of(&program, &x).expect("the row is posed");
+            let own = Own(&program);
+            let erased = Erased::of(&own);
+            let posed = Posed::of(&erased, &x).expect("the row is posed");
+            let posed = Erased::of(&posed);
             let (value, gradient, hessian) = lagrangian(&posed, &x, -0.7);
             let factor = (x[2] / (x[2] + 0.1)).powi(2);
             let own = lagrangian(&program, &x, -0.7).0;

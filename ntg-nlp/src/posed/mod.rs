@@ -10,6 +10,7 @@ mod durations;
 mod squares;
 
 use crate::contract::{Block, Evaluation, Limits, Nlp, NotFinite};
+use crate::erased::{Buffers, Erased, Program};
 use crate::outcome::{Multipliers, Outcome, Start};
 use crate::status::{Bounded, Status};
 use durations::Durations;
@@ -17,8 +18,8 @@ use squares::{Squares, root};
 use std::sync::{Mutex, PoisonError};
 
 /// The program with rows in other forms.
-pub(crate) struct Posed<'a, N> {
-    nlp: &'a N,
+pub(crate) struct Posed<'a> {
+    nlp: &'a Erased<'a>,
     limits: Limits,
     /// The blocks with room for more second derivatives; empty where they are those of the program.
     blocks: Vec<Block>,
@@ -28,9 +29,9 @@ pub(crate) struct Posed<'a, N> {
     multipliers: Mutex<Vec<f64>>,
 }
 
-impl<'a, N: Nlp> Posed<'a, N> {
+impl<'a> Posed<'a> {
     /// The program in the forms that are meant for a start; none where all rows stay what they are.
-    pub(crate) fn of(nlp: &'a N, start: &[f64]) -> Option<Self> {
+    pub(crate) fn of(nlp: &'a Erased<'a>, start: &[f64]) -> Option<Self> {
         let mut blocks = vec![];
         let (squares, durations) = (Squares::of(nlp, start), Durations::of(nlp, &mut blocks));
         if squares.norms.is_empty() && durations.is_empty() {
@@ -98,9 +99,7 @@ fn sole_rows<N: Nlp>(nlp: &N) -> Vec<bool> {
     count.into_iter().map(|count| count == 1).collect()
 }
 
-impl<N: Nlp> Nlp for Posed<'_, N> {
-    type Workspace = N::Workspace;
-
+impl Program for Posed<'_> {
     fn limits(&self) -> &Limits {
         &self.limits
     }
@@ -113,7 +112,7 @@ impl<N: Nlp> Nlp for Posed<'_, N> {
         self.nlp.globals()
     }
 
-    fn workspace(&self) -> (Self::Workspace, Evaluation) {
+    fn workspace(&self) -> (Buffers, Evaluation) {
         let (work, mut at) = self.nlp.workspace();
         for (values, block) in at.blocks.iter_mut().zip(&self.blocks) {
             values.hessian.resize(block.hessian.len() * block.elements, 0.0);
@@ -121,7 +120,7 @@ impl<N: Nlp> Nlp for Posed<'_, N> {
         (work, at)
     }
 
-    fn values(&self, x: &[f64], work: &mut Self::Workspace, out: &mut Evaluation) -> Result<(), NotFinite> {
+    fn values(&self, x: &[f64], work: &mut Buffers, out: &mut Evaluation) -> Result<(), NotFinite> {
         self.nlp.values(x, work, out)?;
         self.squares.pose_values(self.blocks(), out);
         self.durations.pose_values(self.blocks(), x, out);
@@ -133,7 +132,7 @@ impl<N: Nlp> Nlp for Posed<'_, N> {
         x: &[f64],
         objective_weight: f64,
         multipliers: &[f64],
-        work: &mut Self::Workspace,
+        work: &mut Buffers,
         out: &mut Evaluation,
     ) -> Result<(), NotFinite> {
         let mut own = self.multipliers.lock().unwrap_or_else(PoisonError::into_inner);

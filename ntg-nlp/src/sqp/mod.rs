@@ -25,6 +25,7 @@ mod subproblem;
 
 use crate::check::refusal;
 use crate::contract::Nlp;
+use crate::erased::{Erased, Own};
 use crate::ipm::below_saddle;
 use crate::options::Options;
 use crate::outcome::{Multipliers, Outcome, Start};
@@ -44,17 +45,22 @@ pub fn solve<N: Nlp>(nlp: &N, start: &[f64], options: &Options) -> Outcome {
 
 /// As [`solve`], with multipliers to start from, as after a small change of the program.
 pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
+    solve_erased(&Erased::of(&Own(nlp)), start, from, options)
+}
+
+/// As [`solve_from`].
+fn solve_erased(nlp: &Erased<'_>, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
     match Posed::of(nlp, start) {
         Some(posed) => {
-            let from = from.map_or(Start::Cold, Start::Warm);
-            posed.solve(start, from, |from| solve_posed(&posed, start, from.multipliers(&posed), options))
+            let (from, as_posed) = (from.map_or(Start::Cold, Start::Warm), Erased::of(&posed));
+            posed.solve(start, from, |from| solve_posed(&as_posed, start, from.multipliers(&as_posed), options))
         }
         None => solve_posed(nlp, start, from, options),
     }
 }
 
 /// As [`solve_from`]; norms are as they are.
-fn solve_posed<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
+fn solve_posed(nlp: &Erased<'_>, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
     until_measured(nlp, options, |nlp, round, options| {
         let (start, from) = round.start.map_or((start, from), |(start, from)| (start, from.multipliers(nlp)));
         let outcome = solve_with_first_scales(nlp, start, from, options);
