@@ -192,6 +192,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     let problem = read.posed_at(&arguments.point)?;
     let mut nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
     let (found, is_interpolated) = read.measured(&arguments.point, &mut nlp)?;
+    nlp.hold_sides(&found.x);
     let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
     // The judge minimises.
     let multipliers = found.multipliers.as_ref().map(|all| all.iter().map(|y| sign * y).collect::<Vec<_>>());

@@ -136,7 +136,7 @@ fn an_answer_to_another_program_is_refused() {
 }
 
 /// Equations with corners that are solved with helpers in the place of these (a battery), as they are written (a thrust by which
-/// mass is lost, in the least time), and one of each: a saved solution is one, and none of another battery.
+/// mass is lost, in the least time), one of each, and with helpers held at sides (an input that saturates): a saved solution is one, and none of another battery.
 #[test]
 fn solutions_of_equations_with_corners_are_confirmed_in_the_form_in_which_they_were_found() {
     const BATTERY: &str = "problem Battery {
@@ -158,8 +158,13 @@ fn solutions_of_equations_with_corners_are_confirmed_in_the_form_in_which_they_w
         }
         initial { x == 0; v == 0; m == 1; y == 0; w == 0; E == 0; } final { x == 4; v == 0; y == 1; w == 0; }
     }";
+    const SATURATED: &str = "problem Saturated {
+        duration T = 6; state x, v, E; input u in -3 .. 3; collocation gauss(points = 3, intervals = 24);
+        minimize final(E); dynamics { der(x) == v; der(v) == max(-0.6, min(0.6, u)); der(E) == u^2; }
+        initial { x == 0; v == 0; E == 0; } final { x == 4; v == 0; }
+    }";
     let folder = tempfile::tempdir().expect("a folder");
-    for (name, spec) in [("battery", BATTERY), ("hurry", HURRY), ("both", BOTH)] {
+    for (name, spec) in [("battery", BATTERY), ("hurry", HURRY), ("both", BOTH), ("saturated", SATURATED)] {
         let [spec_file, saved] = ["ntg", "json"].map(|extension| format!("{name}.{extension}"));
         std::fs::write(folder.path().join(&spec_file), spec).expect("written");
         let solved = ntg(&["solve", &spec_file, "--save", &saved], folder.path());

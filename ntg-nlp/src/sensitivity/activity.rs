@@ -58,8 +58,9 @@ fn of_bounds((lower, upper): (f64, f64), value: f64, multiplier: f64, factors: (
         return Activity::Active;
     }
     let distance = match multiplier {
-        y if y > 0.0 => value - lower,
-        y if y < 0.0 => upper - value,
+        y if y > 0.0 && lower > f64::NEG_INFINITY => value - lower,
+        y if y < 0.0 && upper < f64::INFINITY => upper - value,
+        // What has one bound and a multiplier of the other sign was held at that.
         _ => (value - lower).min(upper - value),
     };
     let (distance, multiplier) = (distance.max(0.0) * factors.0, multiplier.abs() * factors.1);

@@ -100,7 +100,11 @@ pub(super) fn at_helpers(nlp: &Transcription, relaxations: &[usize], x: &[f64], 
 
 /// The sides on which corners are at a point, by the values that helpers have at their corners: those of a corner within others
 /// count as they are written.
-pub(super) fn sides_as_written(nlp: &Transcription, corners: Vec<Corner>, x: &[f64]) -> Option<(Vec<Corner>, Vec<usize>)> {
+pub(super) fn sides_as_written(
+    nlp: &Transcription,
+    corners: Vec<Corner>,
+    x: &[f64],
+) -> Option<(Vec<Corner>, Vec<usize>)> {
     let mut sides = Sides::new(nlp, corners, true);
     let mut x = x.to_vec();
     for _ in 0..ROUNDS {

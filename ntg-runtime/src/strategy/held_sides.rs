@@ -8,14 +8,11 @@ use super::budget::Budget;
 use super::corner_sides::sides_as_written;
 use super::session::{FirstPoint, Session};
 use crate::transcribe::Transcription;
-use crate::transcribe::relaxed::Corner;
+use crate::transcribe::relaxed::{Corner, MEET};
 use ntg_nlp::{Nlp, Outcome, Start, Status};
 
 /// How often sides are changed. A choice: each change lowers the objective.
 pub(super) const CHANGES: usize = 5;
-/// Sides that differ by less, as a part of the largest helper, meet: the corner is at a tip. A choice: what the last barrier
-/// parameter leaves of a slack without a multiplier is 3e-5 of its size.
-const MEET: f64 = 1e-4;
 /// Multipliers of less than this part of the largest are 0. A choice.
 const NONE: f64 = 1e-6;
 

@@ -15,6 +15,10 @@ const MET: f64 = ntg_nlp::residuals::ACCEPTABLE;
 /// A term that is smaller everywhere, as a part of the size of its row, is 0. A choice.
 const VANISHES: f64 = 1e-3;
 
+/// Sides that differ by less, as a part of the sizes of their rows, meet: the corner is at a tip. A choice: what the last barrier
+/// parameter leaves of a slack without a multiplier is 3e-5 of its size.
+pub(crate) const MEET: f64 = 1e-4;
+
 /// A corner at one point of time.
 pub(crate) struct Corner {
     /// The row that is the helper.
@@ -106,6 +110,26 @@ impl Transcription<'_> {
     /// Holds helpers at sides of their corners.
     pub(crate) fn hold(&mut self, sides: &[usize]) {
         sides.iter().for_each(|side| self.limits.row_upper[*side] = self.limits.row_lower[*side]);
+    }
+
+    /// Holds helpers at the sides of their corners where these are at a point, but at tips: what can move along one side alone
+    /// may do so.
+    pub fn hold_sides(&mut self, x: &[f64]) {
+        let structure = &self.model.structure;
+        let relaxed = structure.relaxations.iter().enumerate().filter(|(_, own)| !own.is_exact);
+        let corners = self.corners_of(&relaxed.map(|(number, _)| number).collect::<Vec<_>>());
+        let (mut work, mut at) = self.workspace();
+        if self.values(x, &mut work, &mut at).is_err() {
+            return;
+        }
+        let distance = |side: usize| self.gap(&at.rows, side) / self.limits.row_scale[side];
+        let held = corners.iter().filter_map(|corner| {
+            let nearest = self.nearest_side(&at.rows, corner);
+            let mut others = corner.sides.iter().filter(|side| **side != nearest);
+            (distance(nearest) <= MET && others.all(|side| distance(*side) > MEET)).then_some(nearest)
+        });
+        let held: Vec<usize> = held.collect();
+        self.hold(&held);
     }
 
     /// The rows of a constraint.
