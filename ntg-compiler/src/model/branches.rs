@@ -49,13 +49,12 @@ impl Elaborator<'_> {
     fn meeting(&mut self, (then, otherwise): (NodeId, NodeId), beyond: NodeId) -> Option<NodeId> {
         let near = self.branch_within(otherwise, beyond);
         let factor = self.given_factor([then, near], beyond)?;
-        let Some(factor) = [Some(factor), self.factor([then, near], beyond)].into_iter().flatten().find(|factor| {
+        let factors = [Some(factor), self.factor([then, near], beyond)].into_iter().flatten();
+        let factor = factors.into_iter().find(|factor| {
             let dag = &mut self.problem.dag;
             let line = dag.mul(*factor, beyond);
             is_sum(dag, then, [near, line])
-        }) else {
-            return None;
-        };
+        })?;
         let dag = &mut self.problem.dag;
         let zero = dag.constant(0.0);
         let corner = dag.max(zero, beyond);

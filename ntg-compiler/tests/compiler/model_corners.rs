@@ -149,7 +149,7 @@ fn a_corner_where_a_factor_vanishes_is_none() {
 
 /// Equations with corners have a form without; what stays is noted.
 #[test]
-fn corners_of_equations_are_gone_but_those_within_others() {
+fn corners_of_equations_are_gone() {
     let equation =
         |rate: &str| said(&format!("state m; input u; minimize integral(u^2); dynamics {{ der(m) == {rate}; }}"));
     for rate in [
@@ -163,10 +163,18 @@ fn corners_of_equations_are_gone_but_those_within_others() {
         "1 - abs(v)",
         "exp(-abs(u))",
         "1 / (1 + abs(u))",
+        "min(1, max(-1, u))",
+        "max(0, abs(u) - 0.3)",
+        "if u >= 0 { 0.9 * u * v } else { u * v / 0.9 }",
     ] {
         assert_eq!(equation(rate), [""; 0], "{rate}");
     }
-    for rate in ["min(1, max(-1, u))", "if u >= 0 { 1 } else { u }", "sqrt(abs(u))"] {
+    for rate in [
+        "if u >= 0 { u * v } else { u * v + u^2 * v }",
+        "max(0, sqrt(abs(u)))",
+        "if u >= 0 { 1 } else { u }",
+        "sqrt(abs(u))",
+    ] {
         assert!(!equation(rate).is_empty(), "{rate}");
     }
     assert_eq!(said("input u; minimize integral(u^2); temporal { integral(abs(u)) == 1; }"), [""; 0]);
