@@ -311,3 +311,39 @@ fn outputs_beside_a_line_leave_their_maxima() {
     beside_a_line(output, "integral((y^2 - 4)^2)", 0.0);
     beside_a_line(output, "integral(y^4 / 4 - y^2 / 2)", -0.25);
 }
+
+/// Guesses from which the first model leads to a saddle in one step: nothing on the way has told of it. An arm whose elbow makes
+/// the way dear while it is straight, and a way on a sphere of 200 degrees along the equator, beyond the conjugate point.
+#[test]
+fn a_saddle_at_the_first_step_is_left() {
+    for points in 2..=6 {
+        for intervals in [5, 10, 20, 24] {
+            let of = |declared: &str, ends: &str| {
+                let text = format!(
+                    "problem Saddle {{
+                        duration T = 1;  {declared}
+                        collocation gauss(points = {points}, intervals = {intervals});
+                        {ends}
+                    }}"
+                );
+                let report = Shipped::text(&text).solve();
+                assert!(report.is_solved(), "{points} {intervals}: {}", report.status);
+                report.objective
+            };
+            let elbow = of(
+                "state a, q;  input u, w;  dynamics { der(a) == w;  der(q) == u; }",
+                "minimize integral((3 + 2 * cos(q)) * w^2 + 0.5 * u^2);
+                 initial { a == 0;  q == 0; }  final { a == 3;  q == 0; }",
+            );
+            // 45 where the arm stays straight.
+            assert!((elbow - 36.6465).abs() < 1e-2, "{points} {intervals}: {elbow}");
+            let way = of(
+                "state la, lo;  input u, w;  dynamics { der(la) == u;  der(lo) == w; }",
+                "minimize integral(u^2 + w^2 * cos(la)^2);
+                 initial { la == 0;  lo == 0; }  final { la == 0;  lo == 3.4907; }",
+            );
+            // Half a circle over a pole, and what steering costs; 3.4907^2 along the equator.
+            assert!(way < 10.7, "{points} {intervals}: {way}");
+        }
+    }
+}

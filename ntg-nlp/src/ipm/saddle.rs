@@ -26,6 +26,8 @@ const SHIFT: f64 = 0.01;
 const CERTAIN: f64 = 1e-3;
 /// Barrier parameters that have fallen by more than this since the last matrix add curvature that is gone. A choice.
 const HIDES: f64 = 100.0;
+/// The matrix of the first iteration is that of the guess. A law.
+const FIRST: usize = 1;
 /// Choices of signs by which the size of `C` is measured. A choice: two variables are alike in all of them for one pair in
 /// thirty.
 const SIGNS: usize = 6;
@@ -75,9 +77,10 @@ impl<N: Nlp> State<'_, N> {
         if equalities == limits.lower.iter().zip(&limits.upper).filter(|(lower, upper)| lower < upper).count() {
             return None; // Nothing is free.
         }
-        // The last matrix was one of a point close by, unless the barrier has hidden there what is curved.
-        let is_told = |last: &IterationRecord| !last.is_corrected() && last.barrier <= HIDES * self.mu;
-        let is_told = self.history.last().is_some_and(is_told);
+        // The last matrix was one of a point close by, unless it was that of a guess without multipliers, or the barrier has hidden
+        // there what is curved.
+        let is_near = |last: &IterationRecord| !last.is_corrected() && last.barrier <= HIDES * self.mu;
+        let is_told = self.history.last().is_some_and(is_near) && (self.is_warm || self.history.len() > FIRST);
         let descent = if is_told { None } else { self.descent() };
         match descent {
             Some(descent) => self.below_curvature(&descent),
