@@ -18,12 +18,12 @@ pub(super) struct Turn {
     first: f64,
 }
 
-/// What is tried in turn, with the sides as they are in between. A choice: what begins and ends at rest needs one change, what
-/// comes home two.
-pub(super) const TURNS: [Option<Turn>; 7] = [
+/// From where sides are tried in turn: from the solution itself, and from beside it. A choice: what begins and ends at rest
+/// needs one change, what comes home two.
+const TURNS: [Option<Turn>; 7] = [
+    None,
     Some(Turn { changes: 1, first: 1.0 }),
     Some(Turn { changes: 1, first: -1.0 }),
-    None,
     Some(Turn { changes: 0, first: 1.0 }),
     Some(Turn { changes: 0, first: -1.0 }),
     Some(Turn { changes: 2, first: 1.0 }),
@@ -43,6 +43,14 @@ const ROUNDS: usize = 3;
 const SWEEPS: usize = 5;
 /// As many for helpers alone, whose rows share no more than the coefficients of an interval: to a thousandth.
 const SWEEPS_OF_HELPERS: usize = 50;
+
+/// What is tried at once, and what where nothing else has led to a solution: where most corners are at tips, two turns come
+/// before the solution itself, whose sides are rounding.
+pub(super) fn turns(is_at_tips: bool) -> (&'static [Option<Turn>], Vec<Option<Turn>>) {
+    let at_once = if is_at_tips { &TURNS[1..3] } else { &TURNS[..1] };
+    let later = if is_at_tips { [&TURNS[..1], &TURNS[3..]].concat() } else { TURNS[1..].to_vec() };
+    (at_once, later)
+}
 
 impl Turn {
     fn side(self, tau: f64) -> f64 {
@@ -93,7 +101,7 @@ pub(super) fn at_helpers(nlp: &Transcription, relaxations: &[usize], x: &[f64], 
         let step = sides.step_to_helpers(&x, SWEEPS)?;
         // No further than it was gone: at a tip slopes are next to nothing.
         let furthest = |j: usize| reach[j] * sizes[j];
-        x = moved(nlp, &x, |j| step[j].clamp(-furthest(j), furthest(j)));
+        x = moved(nlp, &x, |j| step[j].max(-furthest(j)).min(furthest(j)));
     }
     x.iter().all(|x| x.is_finite()).then_some(x)
 }

@@ -1,7 +1,7 @@
 //! Corners of equations: a solve beside them first, and at them where it leaves a gap (docs/maths.md, equation 18.5).
 
 use super::budget::Budget;
-use super::corner_sides::{self, TURNS, Turn, at_helpers};
+use super::corner_sides::{self, Turn, at_helpers, turns};
 use super::held_sides::{CHANGES, OnSides, solve_on_sides};
 use super::session::{Session, Task, record};
 use crate::error::Error;
@@ -28,6 +28,8 @@ struct Beside {
     report: Report,
     /// The relaxations that it misses as they are written, and by how much.
     open: Vec<(usize, f64)>,
+    /// Whether what is in the corners is at their tips, for the most part, so that no side is nearer than another.
+    is_at_tips: bool,
 }
 
 /// What a solve of a problem in all its ways has found.
@@ -91,7 +93,8 @@ impl Session {
                 }
             }
             if let Some(beside) = first_beside.take()
-                && let Some(found) = self.on_all_sides(task.problem, &beside, &TURNS, &mut search.budget)?
+                && let later = turns(beside.is_at_tips).1
+                && let Some(found) = self.on_all_sides(task.problem, &beside, &later, &mut search.budget)?
             {
                 return Ok(search.told(found, &beside.report));
             }
@@ -126,7 +129,11 @@ impl Session {
         if !is_solved {
             return Ok(Led::Nowhere(Box::new(report)));
         }
-        let beside = Box::new(Beside { structure, report, open });
+        let numbers: Vec<usize> = open.iter().map(|(number, _)| *number).collect();
+        let nlp = self.program(task.problem, &structure)?;
+        let is_at_tips = corner_sides::is_at_tips(&nlp, &numbers, &report.solution.inner);
+        self.kept = Some(nlp.keep());
+        let beside = Box::new(Beside { structure, report, open, is_at_tips });
         Ok(match self.at_corners(task.problem, &beside, &mut search.budget)? {
             Some(found) => Led::Answer(Box::new(search.told(found, &beside.report))),
             None if search.budget.rest().is_none() => Led::Answer(Box::new(beside.report.ended(search.limit()))),
@@ -147,9 +154,7 @@ impl Session {
             budget.spend(found.iterations);
             return Ok(Some(found));
         }
-        let as_it_is = [None];
-        let sides = if self.is_at_tips(problem, beside)? { &TURNS[..2] } else { &as_it_is };
-        self.on_all_sides(problem, beside, sides, budget)
+        self.on_all_sides(problem, beside, turns(beside.is_at_tips).0, budget)
     }
 
     /// As [`Session::at_corners`], from points at which corners are where the helpers are, on one side or the other.
@@ -166,14 +171,6 @@ impl Session {
             }
         }
         Ok(None)
-    }
-
-    /// Whether what is in the corners is at their tips, for the most part, so that no side is nearer than another.
-    fn is_at_tips(&mut self, problem: &dyn Problem, beside: &Beside) -> Result<bool, Error> {
-        let nlp = self.program(problem, &beside.structure)?;
-        let is_at_tips = corner_sides::is_at_tips(&nlp, &beside.numbers(), &beside.report.solution.inner);
-        self.kept = Some(nlp.keep());
-        Ok(is_at_tips)
     }
 
     /// A solution with the helpers of some equations at their corners, first with each on the side on which it is.
