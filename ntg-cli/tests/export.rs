@@ -136,7 +136,8 @@ fn an_answer_to_another_program_is_refused() {
 }
 
 /// Equations with corners that are solved with helpers in the place of these (a battery), as they are written (a thrust by which
-/// mass is lost, in the least time), one of each, and with helpers held at sides (an input that saturates): a saved solution is one, and none of another battery.
+/// mass is lost, in the least time), one of each, and with helpers held at sides (an input that saturates): a saved solution is
+/// one, and none of another battery.
 #[test]
 fn solutions_of_equations_with_corners_are_confirmed_in_the_form_in_which_they_were_found() {
     const BATTERY: &str = "problem Battery {

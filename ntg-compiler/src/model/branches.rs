@@ -48,9 +48,8 @@ impl Elaborator<'_> {
     /// is not negative, or `-k` is, which is taken away then.
     fn meeting(&mut self, (then, otherwise): (NodeId, NodeId), beyond: NodeId) -> Option<NodeId> {
         let near = self.branch_within(otherwise, beyond);
-        let factor = self.given_factor([then, near], beyond)?;
-        let factors = [Some(factor), self.factor([then, near], beyond)].into_iter().flatten();
-        let factor = factors.into_iter().find(|factor| {
+        let factors = [self.given_factor([then, near], beyond), self.factor([then, near], beyond)];
+        let factor = factors.into_iter().flatten().find(|factor| {
             let dag = &mut self.problem.dag;
             let line = dag.mul(*factor, beyond);
             is_sum(dag, then, [near, line])
@@ -88,10 +87,7 @@ impl Elaborator<'_> {
     /// What is a number, or a multiple of one of these slopes, is written as that, so that its sign is seen: `p - 0.6 * p` is
     /// `0.4 * p`.
     fn given_factor(&mut self, branches: [NodeId; 2], beyond: NodeId) -> Option<NodeId> {
-        let unknown = *self.unknowns(&[beyond]).first()?;
-        let dag = &mut self.problem.dag;
-        let slope = |dag: &mut Dag, node: NodeId| Some(gradient(dag, node, &[unknown]).ok()?[0]);
-        let slopes = [slope(dag, beyond)?, slope(dag, branches[0])?, slope(dag, branches[1])?];
+        let slopes = self.slopes(branches, beyond)?;
         // `v` of `2 * F * v` and of `F * v` has no part in their quotient: any number stands for it.
         let unknown = self.unknowns(&slopes);
         let dag = &mut self.problem.dag;
@@ -113,12 +109,18 @@ impl Elaborator<'_> {
         Some(of_one.unwrap_or(factor))
     }
 
-    /// As [`Self::given_factor`], of what is solved for: of `F * v / 0.9` and `0.6 * F * v` by `F` it is a multiple of `v`.
-    fn factor(&mut self, branches: [NodeId; 2], beyond: NodeId) -> Option<NodeId> {
+    /// The slopes of a third node and of two branches by one of the unknowns of the third.
+    fn slopes(&mut self, branches: [NodeId; 2], beyond: NodeId) -> Option<[NodeId; 3]> {
         let unknown = *self.unknowns(&[beyond]).first()?;
         let dag = &mut self.problem.dag;
-        let slope = |dag: &mut Dag, node: NodeId| Some(gradient(dag, node, &[unknown]).ok()?[0]);
-        let (along, then, near) = (slope(dag, beyond)?, slope(dag, branches[0])?, slope(dag, branches[1])?);
+        let mut slope = |node: NodeId| Some(gradient(dag, node, &[unknown]).ok()?[0]);
+        Some([slope(beyond)?, slope(branches[0])?, slope(branches[1])?])
+    }
+
+    /// As [`Self::given_factor`], of what is solved for: of `F * v / 0.9` and `0.6 * F * v` by `F` it is a multiple of `v`.
+    fn factor(&mut self, branches: [NodeId; 2], beyond: NodeId) -> Option<NodeId> {
+        let [along, then, near] = self.slopes(branches, beyond)?;
+        let dag = &mut self.problem.dag;
         let difference = dag.sub(then, near);
         Some(dag.div(difference, along))
     }

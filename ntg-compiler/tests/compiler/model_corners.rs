@@ -166,6 +166,7 @@ fn corners_of_equations_are_gone() {
         "min(1, max(-1, u))",
         "max(0, abs(u) - 0.3)",
         "if u >= 0 { 0.9 * u * v } else { u * v / 0.9 }",
+        "if u >= 0 { u * v^2 } else { u }",
     ] {
         assert_eq!(equation(rate), [""; 0], "{rate}");
     }

@@ -13,8 +13,8 @@ const FALLS: f64 = 0.9;
 /// It has stopped where it has not fallen in so many iterations with the last parameter. A choice: convergence of second order
 /// takes fewer.
 const STALLED: usize = 5;
-/// By how much the parameter falls then, and as which part of the last one it may end. Choices: the square of what double
-/// precision knows of a slack of the size 1.
+/// By how much the parameter falls then, and as which part of the last one it may end. Choices: one fall is enough where this
+/// was seen.
 const FALL: f64 = 0.1;
 const LEAST: f64 = 1e-4;
 

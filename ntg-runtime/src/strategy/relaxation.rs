@@ -32,7 +32,7 @@ struct Beside {
     is_at_tips: bool,
 }
 
-/// What a solve of a problem in all its ways has found.
+/// What a solve of a problem in all its ways has spent and found.
 struct Search<'a> {
     budget: Budget<'a>,
     began: Instant,
@@ -254,6 +254,13 @@ impl Session {
         let (history, spent) = (vec![record(&nlp, &[], &found, began)], found.iterations);
         let found = self.report(nlp, found, history, &settings)?;
         budget.spend(found.iterations - spent);
+        // A report may have gone on to tighter constraints, without the sides held.
+        let nlp = self.program(problem, structure)?;
+        let is_at_corners = nlp.open_relaxations(&found.solution.inner.x).is_empty();
+        self.kept = Some(nlp.keep());
+        if !is_at_corners {
+            return Ok(None);
+        }
         let rise =
             if structure.maximize { report.objective - found.objective } else { found.objective - report.objective };
         let is_bound = report.status == Status::Solved;
