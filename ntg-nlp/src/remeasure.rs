@@ -16,6 +16,7 @@ use crate::scaling::{Scales, Slopes, steepest_of_relations, variation};
 use crate::sizes::{Resized, multiples};
 use crate::sparse::Assembly;
 use crate::status::Status;
+use crate::stopping;
 use std::ops::Range;
 use std::time::Instant;
 
@@ -76,8 +77,13 @@ pub(crate) enum Measure {
     Objective(f64),
     /// They hold, and the end is a saddle; beside it, at this point, the Lagrangian is less.
     Saddle(Vec<f64>),
-    /// Variables have outgrown their sizes on the way; these are larger.
-    Outgrown(Vec<f64>),
+    /// Variables have outgrown their sizes on the way.
+    Outgrown {
+        /// Larger ones.
+        sizes: Vec<f64>,
+        /// Whether the objective has fallen far below 0.
+        is_falling: bool,
+    },
 }
 
 /// One of several solves in a row.
@@ -93,6 +99,10 @@ pub(crate) struct Round<'a> {
 /// An objective that falls so many times as far below 0 as it varied by at the start falls without limit: by sizes that have
 /// grown with it, any point of a ray seems stationary. A choice: beyond what sizes of a start are wrong by.
 const FALLEN: f64 = 1e12;
+/// Where it has fallen so far with rows that are all but met, and sizes are outgrown, a solve goes on from where it is: from
+/// its start it would come there again. Choices: what falls along a ray has fallen by as much as sizes are outgrown, a hundred.
+const FALLING: f64 = 300.0;
+const NEAR_ROWS: f64 = 1e-2;
 
 /// Solves, and goes on as long as the scales do not hold.
 pub(crate) fn until_measured(
@@ -101,15 +111,30 @@ pub(crate) fn until_measured(
     mut solve: impl FnMut(&Erased<'_>, Round<'_>, &Options) -> (Outcome, Measure),
 ) -> Outcome {
     let mut first = None;
-    let end = rounds(nlp, options, |resized, round, options| {
-        let (outcome, measure) = solve(resized, round, options);
-        first.get_or_insert(outcome.objective_factor);
+    rounds(nlp, options, |resized, round, options| {
+        let (mut outcome, measure) = solve(resized, round, options);
+        let factor = *first.get_or_insert(outcome.objective_factor);
+        let fallen = -factor * outcome.objective;
+        let is_stopped = matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
+        if fallen > FALLEN && !is_stopped && (outcome.status.has_solution() || is_feasible_by(&outcome, options)) {
+            outcome.status = Status::Unbounded;
+            return (outcome, Measure::Holds);
+        }
+        let measure = match measure {
+            Measure::Outgrown { sizes, .. } => {
+                let is_falling = fallen > FALLING && outcome.residuals.scaled.primal <= NEAR_ROWS;
+                Measure::Outgrown { sizes, is_falling }
+            }
+            measure => measure,
+        };
         (outcome, measure)
-    });
-    let is_feasible = end.residuals.scaled.primal <= options.constraint_tolerance || end.status.has_solution();
-    let has_fallen = first.is_some_and(|factor| factor * end.objective < -FALLEN);
-    let is_stopped = matches!(end.status, Status::Cancelled | Status::TimeLimit);
-    if is_feasible && has_fallen && !is_stopped { Outcome { status: Status::Unbounded, ..end } } else { end }
+    })
+}
+
+/// Whether the end of a solve whose objective has fallen far is feasible, as [`stopping::is_feasible_by`].
+fn is_feasible_by(end: &Outcome, options: &Options) -> bool {
+    let scaled = end.objective_factor * end.objective;
+    stopping::is_feasible_by(end.residuals.scaled.primal, scaled, options.constraint_tolerance)
 }
 
 /// All solves in a row.
@@ -174,7 +199,7 @@ fn rounds(
             measure => measure,
         };
         match measure {
-            Measure::Holds if !is_damped && has_lost_digits(nlp, &outcome, &options) => {
+            Measure::Holds | Measure::Saddle(_) if !is_damped && has_lost_digits(nlp, &outcome, &options) => {
                 (resized, start, undamped) = (Resized::new(nlp), None, Some(outcome));
                 continue;
             }
@@ -187,7 +212,10 @@ fn rounds(
             }
             Measure::Holds => {
                 let end = match undamped.take() {
-                    Some(undamped) if !outcome.status.has_solution() => Outcome { iterations, ..undamped },
+                    // Where damping has shown a saddle, what ran off without is none the better.
+                    Some(undamped) if !outcome.status.has_solution() && left_saddle.is_none() => {
+                        Outcome { iterations, ..undamped }
+                    }
                     _ => outcome,
                 };
                 let is_something = end.objective.abs() > nlp.limits().negligible;
@@ -223,8 +251,12 @@ fn rounds(
                 large = Some(outcome);
                 continue;
             }
-            Measure::Outgrown(sizes) => {
-                (restarts, is_again) = (restarts + 1, true);
+            Measure::Outgrown { sizes, is_falling } => {
+                restarts += 1;
+                is_again = !is_falling;
+                if is_falling {
+                    start = Some(outcome.x);
+                }
                 resized.resize(sizes);
                 continue;
             }
@@ -408,7 +440,9 @@ fn has_lost_digits<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> bool {
     }
     let large: Vec<f64> = end.x.iter().map(|x| x.abs()).collect();
     let rounding = f64::EPSILON * variation(nlp.blocks(), &at, &large);
-    rounding > GAP * options.tolerance * end.objective.abs().max(variation(nlp.blocks(), &at, &sizes))
+    // Where nothing varies the objective, whatever ran off is not to be believed.
+    rounding == 0.0
+        || rounding > GAP * options.tolerance * end.objective.abs().max(variation(nlp.blocks(), &at, &sizes))
 }
 
 /// The sizes by which a solution is none: those that variables have there, where they are larger than their typical ones.

@@ -29,3 +29,80 @@ fn an_objective_without_a_minimum_is_told_of_as_one() {
         assert_eq!(report.status, Status::Unbounded, "{text}\n{report}");
     }
 }
+
+fn status(body: &str) -> Status {
+    let text = format!("problem Ray {{ {body} }}");
+    solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up").status
+}
+
+/// What runs off outgrows its sizes again and again: a solve that begins anew each time never ends.
+#[test]
+fn motions_without_a_best_one_are_told_of_in_a_few_hundred_iterations() {
+    let fixed = [
+        "duration T = 1; state x; input u; dynamics { der(x) == u; } minimize final(x); initial { x == 0; }",
+        "duration T = 2; state x, v; input u; dynamics { der(x) == v; der(v) == u; } maximize final(x);
+         initial { x == 0; v == 0; }",
+        "duration T = 1; state x; input u in 0 ..; dynamics { der(x) == u; } maximize final(sqrt(1 + x));
+         initial { x == 0; }",
+        "duration T = 5; state n; input h in 0 ..; dynamics { der(n) == 0.3 * n; } maximize integral(h);
+         initial { n == 1; } final { n >= 1; }",
+    ];
+    let free = [
+        "duration T in 1 ..; state x; input u in 0 .. 1; dynamics { der(x) == u; } maximize integral(x - 0.2 * u);
+         initial { x == 0; }",
+        "duration T in 0.5 ..; state x; input u in -1 .. 1; dynamics { der(x) == u; } minimize integral(u^2) - T;
+         initial { x == 0; } final { x == 2; }",
+        "duration T in 1 [s] ..; state x [m], v [m/s]; input u in -9.81 .. 9.81 [m/s^2];
+         dynamics { der(x) == v; der(v) == u; } maximize final(x); initial { x == 0; v == 0; }",
+    ];
+    for body in fixed.into_iter().chain(free) {
+        for mesh in ["points = 3, intervals = 12", "points = 4, intervals = 20"] {
+            let text = format!("{body} collocation gauss({mesh});");
+            assert_eq!(status(&text), Status::Unbounded, "{text}");
+        }
+    }
+}
+
+/// Beside a saddle the objective falls without limit: neither the saddle nor what ran off without cost is a solution.
+#[test]
+fn a_saddle_beside_which_the_objective_falls_without_limit_is_no_solution() {
+    let bodies = [
+        "duration T = 1; state x; input u; dynamics { der(x) == u; } minimize integral(u^2 - 20 * x^2);
+         initial { x == 0; }",
+        "duration T = 1; state x; input u; dynamics { der(x) == u; } maximize integral(u^2); initial { x == 0; }
+         final { x == 1; }",
+        // Any duration is as good where nothing moves, and the barrier alone decides it.
+        "duration T in 1 ..; state x; input u in -1 .. 1; dynamics { der(x) == u; } minimize -integral(x^2);
+         initial { x == 0; }",
+    ];
+    for body in bodies {
+        for mesh in ["points = 3, intervals = 12", "points = 4, intervals = 40"] {
+            let text = format!("{body} collocation gauss({mesh});");
+            let status = status(&text);
+            assert!(matches!(status, Status::Unbounded | Status::Stationary), "{status}: {text}");
+        }
+    }
+}
+
+/// What is far away, and what helps nobody by running off, is not without limit.
+#[test]
+fn far_optima_are_found() {
+    let known = [
+        // T - T^2 / 10^4, largest at 5000.
+        ("duration T in 1 ..; state x; input u in 0 .. 1; dynamics { der(x) == u; } maximize final(x) - 1e-4 * T^2;
+          initial { x == 0; }", 2500.0),
+        // T^2 / 2 - T^3 / 10^3, largest at 1000 / 3.
+        ("duration T in 1 ..; state x, v; input u in -1 .. 1; dynamics { der(x) == v; der(v) == u; }
+          maximize final(x) - 1e-3 * T^3; initial { x == 0; v == 0; }", 1e6 / 54.0),
+        // u - 10^-8 u^2.
+        ("duration T = 1; state x; input u; dynamics { der(x) == u; } maximize final(x) - 1e-8 * integral(u^2);
+          initial { x == 0; }", 2.5e7),
+        ("duration T = 1; state x; input u in -1e9 .. 1e9, free in 0 ..; dynamics { der(x) == u; } maximize final(x);
+          initial { x == 0; }", 1e9),
+    ];
+    for (body, optimum) in known {
+        let text = format!("problem Far {{ {body} collocation gauss(points = 3, intervals = 12); }}");
+        let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
+        assert!(report.is_solved() && (report.objective / optimum - 1.0).abs() < 1e-7, "{report}");
+    }
+}

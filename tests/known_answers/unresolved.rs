@@ -205,3 +205,54 @@ fn a_quotient_that_is_large_in_one_interval_has_no_pole() {
     let told: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
     assert!(told.iter().all(|warning| !warning.contains("singular")), "{told:?}");
 }
+
+/// A pendulum by the tension of its rod, index 3: two Gauss points converge to no solution, three and more do.
+fn by_its_rod(points: usize, intervals: usize) -> String {
+    format!(
+        "problem Rod {{
+            duration T = 2;
+            state x, y, u, w;
+            input tension, push;
+            collocation gauss(points = {points}, intervals = {intervals});
+            minimize integral(push^2);
+            dynamics {{
+                der(x) == u;  der(y) == w;
+                der(u) == -tension * x - push * y;  der(w) == -tension * y - 1 + push * x;
+            }}
+            trajectory {{ x^2 + y^2 == 1; }}
+            initial {{ x == 0;  y == -1;  u == 0;  w == 0; }}
+            final {{ x == 1;  y == 0;  u == 0;  w == 0; }}
+        }}"
+    )
+}
+
+/// The same by its angle.
+fn by_its_angle() -> String {
+    "problem Angle {
+        duration T = 2;
+        state a, w;
+        input push;
+        collocation gauss(points = 5, intervals = 20);
+        minimize integral(push^2);
+        dynamics { der(a) == w;  der(w) == push - sin(a); }
+        initial { a == 0;  w == 0; }
+        final { a == pi / 2;  w == 0; }
+    }"
+    .to_owned()
+}
+
+#[test]
+fn a_scheme_that_does_not_converge_is_seen_on_any_mesh() {
+    let optimum = resolution(&by_its_angle()).1.objective;
+    for intervals in [9, 15, 40, 80] {
+        let (found, report) = resolution(&by_its_rod(2, intervals));
+        assert!(report.objective > 5.0 * optimum, "{report}");
+        assert_eq!(found, Resolution::Unresolved, "{intervals}: {report}");
+        assert!(report.to_string().contains("depends on the mesh; on intervals half as long it is "), "{report}");
+    }
+    for (points, intervals) in [(3, 9), (3, 40), (4, 15), (5, 10)] {
+        let (found, report) = resolution(&by_its_rod(points, intervals));
+        assert!(found < Resolution::Unresolved, "{points} points, {intervals} intervals: {report}");
+        assert!((report.objective / optimum - 1.0).abs() < 2e-3, "{} for {optimum}", report.objective);
+    }
+}

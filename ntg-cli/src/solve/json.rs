@@ -64,8 +64,9 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
     }
     if let Some(confirmation) = &report.confirmation {
         let (name, of, missed) = match &confirmation.doubt {
-            Doubt::Motion(output) => ("output", output, "defects"),
-            Doubt::Limit(limit) => ("limit", &report.constraints[*limit].name, "missed"),
+            Doubt::Motion(output) => ("output", output.as_str(), "defects"),
+            Doubt::Limit(limit) => ("limit", report.constraints[*limit].name.as_str(), "missed"),
+            Doubt::Objective => ("of", "objective", "missed"),
         };
         document["confirmation"] = json!({
             (name): of, (missed): confirmation.missed, "halvings": confirmation.halvings,

@@ -1,17 +1,18 @@
-//! Whether a solution that leaves its own equations of motion, or its limits between the points, is one of the problem: solves
-//! on shorter intervals (docs/maths.md, section 9).
+//! Whether a solution that leaves its own equations of motion, its limits between the points, or the objective that it would
+//! have between them, is one of the problem: solves on shorter intervals (docs/maths.md, section 9).
 
 use super::from;
 use super::marks::{halved, split};
 use crate::error::Error;
 use crate::guess::{Defect, defect};
 use crate::problem::{Problem, WithStructure};
-use crate::report::{Confirmation, Doubt, Report, Resolution};
+use crate::report::{Confirmation, ConstraintReport, Doubt, Report, Resolution};
 use crate::settings::{Between, Method, Settings};
 use crate::status::Status;
 use crate::strategy::warm;
 use crate::transcribe::crossed::crossed;
 use crate::transcribe::{Transcription, names};
+use ntg_structure::Block;
 use std::time::{Duration, Instant};
 
 /// How often intervals are halved: a defect that falls once may do so by chance. A choice.
@@ -22,8 +23,8 @@ const PATIENCE: usize = 5;
 const LEAST: usize = 300;
 
 impl Report {
-    /// The report with what solves on shorter intervals say, where a solution leaves its equations of motion, or misses limits of
-    /// what is continuous, by more than is worth a warning. What equations miss between the points does not tell of that: a jump
+    /// The report with what solves on shorter intervals say, where a solution leaves its equations of motion, misses limits of
+    /// what is continuous or has another objective between the points, by more than is worth a warning. What equations miss between the points does not tell of that: a jump
     /// over a pole falls between all samples. Only where the settings ask nothing else of such a solution.
     /// [`solve`](crate::solve) does this by itself, a [`Solver`](crate::Solver) does not.
     ///
@@ -54,7 +55,7 @@ impl Report {
         };
         // What keeps a limit is a neighbour, which is found in as many iterations as from any solution, or is another solution.
         let most = match doubt {
-            Doubt::Motion(_) => (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations),
+            Doubt::Motion(_) | Doubt::Objective => (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations),
             Doubt::Limit(_) => warm(settings).max_iterations,
         };
         let mut found = Confirmation {
@@ -102,6 +103,7 @@ impl Report {
                 Doubt::Limit(limit) => {
                     next.constraints.get(*limit).and_then(|own| Some(own.between.as_ref()?.relative))
                 }
+                Doubt::Objective => Some(next.correction_part()),
             };
             found.missed.push(again.unwrap_or(f64::INFINITY));
             last = Some(next.solution);
@@ -126,12 +128,21 @@ impl Report {
         if !self.poles.is_empty() {
             return Ok(None);
         }
-        let own = defect(nlp, self.solution.coefficients()).filter(|own| own.relative > settings.between_tolerance);
-        if let Some(Defect { phase, output, relative }) = own {
+        let moved = defect(nlp, self.solution.coefficients());
+        if let Some(Defect { phase, output, relative }) = moved.filter(|own| own.relative > settings.between_tolerance)
+        {
             let output = names::output(&nlp.model.structure, &nlp.model.layout, phase, output);
             return Ok(Some((Doubt::Motion(output), relative)));
         }
-        Ok(self.limit_in_doubt(nlp).map(|(limit, missed)| (Doubt::Limit(limit), missed)))
+        if let Some((limit, missed)) = self.limit_in_doubt(nlp) {
+            return Ok(Some((Doubt::Limit(limit), missed)));
+        }
+        // Where the scheme does not converge, as two Gauss points for equations between states alone, the objective is off by
+        // far more than to first order. No motion can be simulated there.
+        let missed = self.correction_part();
+        let of_motion = |own: &&ConstraintReport| own.is_equation && own.block == Block::Trajectory;
+        let is_followed = moved.is_some() || !self.violated_between().iter().any(of_motion);
+        Ok((missed > settings.between_tolerance || !is_followed).then_some((Doubt::Objective, missed)))
     }
 }
 

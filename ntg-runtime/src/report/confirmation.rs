@@ -1,5 +1,5 @@
-//! What solves on shorter intervals say of a solution that leaves its own equations of motion, or its limits between the points
-//! (docs/maths.md, section 9).
+//! What solves on shorter intervals say of a solution that leaves its own equations of motion, its limits between the points, or
+//! the objective that it has there (docs/maths.md, section 9).
 
 use super::Resolution;
 use super::cost::cost_apart;
@@ -14,6 +14,9 @@ pub enum Doubt {
     /// A limit of what is continuous: of those the one that is missed most between the points, by its number in
     /// [`Report::constraints`](crate::report::Report).
     Limit(usize),
+    /// Its objective: with what equations miss between the points it is another one, or equations are missed of a motion that
+    /// cannot be simulated, since they do not decide the highest derivatives.
+    Objective,
 }
 
 /// What solves on intervals half as long, and half as long again, have found.
@@ -23,7 +26,7 @@ pub struct Confirmation {
     pub doubt: Doubt,
     /// By how much it is missed by the solution, and by each on shorter intervals. An output leaves its equations relative to
     /// what it varies by (docs/maths.md, equation 9.3d), infinitely where a motion cannot be followed; a limit is missed
-    /// relative to the scale of its bounds (9.3).
+    /// relative to the scale of its bounds (9.3), an objective relative to the larger one.
     pub missed: Vec<f64>,
     /// How often intervals were halved.
     pub halvings: usize,
@@ -53,8 +56,10 @@ impl Confirmation {
     pub(crate) fn asks_more(&self, objective: f64, tolerance: f64) -> bool {
         match self.doubt {
             Doubt::Motion(_) => self.falls() && self.missed.last() > Some(&tolerance),
-            Doubt::Limit(_) if self.halvings == 0 => true,
-            Doubt::Limit(_) => !self.refutes(objective) && cost_apart(objective, self.objective) > tolerance,
+            Doubt::Limit(_) | Doubt::Objective if self.halvings == 0 => true,
+            Doubt::Limit(_) | Doubt::Objective => {
+                !self.refutes(objective) && cost_apart(objective, self.objective) > tolerance
+            }
         }
     }
 
@@ -74,13 +79,21 @@ impl Confirmation {
         match (&self.doubt, self.status.has_solution()) {
             (Doubt::Motion(_), true) => !self.falls() || is_apart(),
             (Doubt::Motion(_), false) => self.status != Status::Cancelled,
+            (Doubt::Objective, true) => is_apart(),
             (Doubt::Limit(_), true) => self.resolution == Some(Resolution::Unresolved) || is_apart(),
             // A solve that comes to no end tells nothing of a limit.
-            (Doubt::Limit(_), false) => matches!(self.status, Status::Infeasible { .. } | Status::Contradiction { .. }),
+            (Doubt::Limit(_) | Doubt::Objective, false) => {
+                matches!(self.status, Status::Infeasible { .. } | Status::Contradiction { .. })
+            }
         }
     }
 
-    /// What a person should know; of a limit what follows upon how it is missed.
+    /// Whether the objective on shorter intervals is another one than `objective` by more than `tolerance`, or nothing is.
+    pub(super) fn is_another(&self, objective: f64, tolerance: f64) -> bool {
+        self.refutes(objective) || self.status.has_solution() && cost_apart(objective, self.objective) > tolerance
+    }
+
+    /// What a person should know; of a limit, and of an objective, what follows upon how it is missed.
     pub(super) fn words(&self, objective: f64) -> String {
         let percent = |part: &f64| match part.is_finite() {
             true => format!("by {} %", brief((1e3 * part).round() / 10.0)),
@@ -93,7 +106,7 @@ impl Confirmation {
                  it misses the ends {first} of its variation in all"
             ),
             // What is missed is told before.
-            Doubt::Limit(_) => String::new(),
+            Doubt::Limit(_) | Doubt::Objective => String::new(),
         };
         let length = match self.halvings {
             1 => "half as long".to_owned(),
@@ -101,8 +114,14 @@ impl Confirmation {
             halvings => format!("1/{} as long", 1_usize << halvings),
         };
         let last = self.missed.get(1..).and_then(<[f64]>::last).map_or(String::new(), percent);
-        let found = format!("{last}, where the objective is {}", brief(self.objective));
-        let doubt = "the points are too few, and what is asked may be out of reach";
+        let found = match self.doubt {
+            Doubt::Objective => format!("it is {}", brief(self.objective)),
+            _ => format!("{last}, where the objective is {}", brief(self.objective)),
+        };
+        let doubt = match self.doubt {
+            Doubt::Objective => "more points in each interval are needed, or more intervals",
+            _ => "the points are too few, and what is asked may be out of reach",
+        };
         match (self.status.has_solution(), self.refutes(objective)) {
             (true, false) => format!("{left}; on intervals {length} {found}"),
             (true, true) => format!("{left}; on intervals {length} {found}: {doubt}"),

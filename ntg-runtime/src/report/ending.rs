@@ -134,7 +134,7 @@ impl Report {
 
     /// What equations that are missed between the points are worth of the objective, as a part of the larger of the
     /// objectives without and with it.
-    pub(super) fn correction_part(&self) -> f64 {
+    pub(crate) fn correction_part(&self) -> f64 {
         cost_apart(self.objective, self.objective + self.objective_correction)
     }
 

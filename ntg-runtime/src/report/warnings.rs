@@ -82,7 +82,8 @@ impl Report {
             constraint: String::new(),
             time: None,
         });
-        let cost = self.cost_is_off().into_iter().chain(self.equations_are_off());
+        let mut cost: Vec<Warning> = self.cost_is_off().into_iter().chain(self.equations_are_off()).collect();
+        self.tell_objective(&mut cost);
         singular.chain(told).chain(poles).chain(coarse).chain(left).chain(cost).chain(between).chain(unmet).collect()
     }
 
@@ -95,6 +96,27 @@ impl Report {
             (message.to_owned(), place())
         });
         self.told.extend(told);
+    }
+
+    /// What shorter intervals say of the objective: what is measured says more than an estimate to first order.
+    fn tell_objective(&self, cost: &mut Vec<Warning>) {
+        let own = self.confirmation.as_ref().filter(|confirmation| confirmation.doubt == Doubt::Objective);
+        let Some(own) = own else { return };
+        let is_silent = cost.is_empty() && !own.status.has_solution();
+        if own.is_another(self.objective, self.between_tolerance) || is_silent {
+            let lead = if is_silent { "may depend" } else { "depends" };
+            let objective = brief(self.objective);
+            let message = format!("the objective, {objective}, {lead} on the mesh{}", own.words(self.objective));
+            *cost = vec![self.of_objective(message)];
+        } else if let Some(last) = cost.last_mut() {
+            last.message += &own.words(self.objective);
+        }
+    }
+
+    /// A warning of the objective.
+    fn of_objective(&self, message: String) -> Warning {
+        let place = self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone());
+        Warning { message, place, constraint: String::new(), time: None }
     }
 
     /// Where the equations that a solution misses between the points are worth more of its objective than
@@ -113,12 +135,7 @@ impl Report {
             true => missed,
             false => "how far the objective is off is no number: somewhere they have no value".to_owned(),
         };
-        is_off.then(|| Warning {
-            message: format!("by what equations miss between the points, {missed}"),
-            place: self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone()),
-            constraint: String::new(),
-            time: None,
-        })
+        is_off.then(|| self.of_objective(format!("by what equations miss between the points, {missed}")))
     }
 
     /// Where the objective of a solution and its finer integral differ by more than `Settings::between_tolerance`, relative to
@@ -127,17 +144,15 @@ impl Report {
         let (points, fine) = (self.objective, self.objective_fine);
         let apart = self.cost_missed();
         let is_off = self.meets_points() && apart > self.between_tolerance;
-        is_off.then(|| Warning {
-            message: format!(
+        let message = || {
+            format!(
                 "finely integrated, the objective is {} instead of {}, {} % of the larger: the points are too few for it",
                 brief(fine),
                 brief(points),
                 brief((1e3 * apart).round() / 10.0)
-            ),
-            place: self.solution.structure().terms.first().map_or_else(Place::default, |term| term.place.clone()),
-            constraint: String::new(),
-            time: None,
-        })
+            )
+        };
+        is_off.then(|| self.of_objective(message()))
     }
 
     /// The limit of what is continuous that is violated most between the points, by its number, if any is by more than

@@ -149,7 +149,9 @@ impl Session {
                     if attempt.has_other_sizes() {
                         next.residuals.scaled.primal = violation_by(nlp, &outcome.row_factors, &next.x).0;
                     }
-                    if attempt == Attempt::Rays && next.status == Status::Unbounded {
+                    // Two ways that find no end are no accident of one.
+                    let is_again = attempt == Attempt::Rays || outcome.status == Status::Unbounded;
+                    if is_again && next.status == Status::Unbounded {
                         outcome = next;
                         break;
                     }
