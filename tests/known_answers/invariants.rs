@@ -133,3 +133,28 @@ fn ends_within_rounding_of_an_invariant_are_met() {
     let report = Shipped::text(&text.replace("HERE", DIRECTION.invariants)).solve();
     close(report.objective, std::f64::consts::FRAC_PI_4.powi(2), 1e-6);
 }
+
+/// What is fixed at the end of a phase and contradicts what the motion keeps is told before the solve, for the values that
+/// parameters have; where the end is free nothing is asked.
+#[test]
+fn an_end_that_contradicts_an_invariant_is_refused() {
+    let text = |end: &str| {
+        format!(
+            "problem Balance {{ param part = 0.3; collocation gauss(points = 3, intervals = 8); state a, b, c;
+             input k in 0.1 .. 2;
+             phase one {{ duration = 1; }} phase two after one {{ duration in 0.5 .. 3; final {{ {end} }} }}
+             minimize duration(two) + 0.1 * integral(one, k^2) + integral(two, k^2);
+             dynamics {{ der(a) == -k * a; der(b) == k * a - 0.5 * b; der(c) == 0.5 * b; }}
+             trajectory {{ a + b + c == 1; }} initial {{ a == 1; b == 0; c == 0; }} }}"
+        )
+    };
+    let refused = solve(Shipped::text(&text("a == 0.2; b == 0.4; c == part + 0.2;")).problem(), &Settings::default());
+    let told = refused.expect_err("the sum is 1.1").to_string();
+    let expected = "`a + b + c == 1` at the end of phase `two` cannot hold: the other conditions there make it 1.1, and \
+                    its bound is 1 [E057]";
+    assert!(told.starts_with(expected), "{told}");
+    for end in ["a == 0.2; b == 0.4; c == part + 0.1;", "a == 0.2; b == 0.4;"] {
+        let report = Shipped::text(&text(end)).solve();
+        assert!(report.is_solved(), "{end}: {report}");
+    }
+}

@@ -3,12 +3,13 @@
 //! Takes the elements; gives the system of linear equalities at single points, from which the
 //! default guess takes known values. Finds: linear rows that miss their bounds whatever durations and
 //! variables are within theirs, equalities that contradict each other, and rows at the ends of phases
-//! whose inputs are all fixed and that miss their bounds. A row exactly on its bound is no
-//! contradiction.
+//! whose inputs are all fixed and that miss their bounds, invariants of the motion among them. A row exactly on its
+//! bound is no contradiction.
 
 use super::elements::{Elements, GroupBatch};
 use super::error::{SetupError, Why};
 use super::frame::Frame;
+use super::implied;
 use super::linear::{Combination, LinearSystem};
 use super::names;
 use super::rows::{RowKind, constraint_words};
@@ -68,6 +69,7 @@ pub(crate) fn decided(frame: &Frame, elements: &Elements, bounds: &[(f64, f64)])
         }
     }
     let met = known_rows(frame, elements, &system)?;
+    known_rows(frame, &implied::at_ends(frame)?, &system)?;
     Ok(Decided { system, met })
 }
 

@@ -101,7 +101,8 @@ pub(crate) fn domain_sites(
 }
 
 impl Elements {
-    fn add(&mut self, frame: &Frame, index: usize, group: &Group, batch: Batch) -> Result<(), SetupError> {
+    /// Adds the block of a batch; `index` is the number of its group.
+    pub(super) fn add(&mut self, frame: &Frame, index: usize, group: &Group, batch: Batch) -> Result<(), SetupError> {
         let kernels = &frame.structure.kernels;
         let [jacobian, hessian] = batch.patterns(kernels);
         let count = batch.sites.len();

@@ -24,6 +24,7 @@ mod error;
 mod evaluate;
 mod fault;
 pub(crate) mod frame;
+mod implied;
 pub(crate) mod instances;
 pub(crate) mod layout;
 pub(crate) mod linear;
