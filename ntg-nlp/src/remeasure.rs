@@ -16,7 +16,6 @@ use crate::scaling::{Scales, Slopes, steepest_of_relations, variation};
 use crate::sizes::{Resized, multiples};
 use crate::sparse::Assembly;
 use crate::status::Status;
-use crate::stopping;
 use std::ops::Range;
 use std::time::Instant;
 
@@ -131,10 +130,10 @@ pub(crate) fn until_measured(
     })
 }
 
-/// Whether the end of a solve whose objective has fallen far is feasible, as [`stopping::is_feasible_by`].
+/// Whether the end of a solve whose objective has fallen far is feasible, as [`residuals::is_feasible_by`].
 fn is_feasible_by(end: &Outcome, options: &Options) -> bool {
     let scaled = end.objective_factor * end.objective;
-    stopping::is_feasible_by(end.residuals.scaled.primal, scaled, options.constraint_tolerance)
+    residuals::is_feasible_by(end.residuals.scaled.primal, scaled, options.constraint_tolerance)
 }
 
 /// All solves in a row.

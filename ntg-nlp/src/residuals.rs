@@ -15,6 +15,11 @@
 use crate::contract::{Block, Evaluation, Limits, Target};
 use crate::scaling::Scales;
 
+/// What neither rounding nor an objective that has fallen far excuses, for rows of the slope 1. A choice.
+pub(crate) const NEAR: f64 = 1e-2;
+/// What is missed is not what an objective far below 0 has fallen by where the objective is so many times as far
+/// below 0 as rows of the slope 1 are missed. A choice: no multiplier is as large that double precision can tell.
+const BEYOND_PRICE: f64 = 1e18;
 /// Where the mean size of the multipliers exceeds this, residuals are measured relative to it.
 const LARGE_MULTIPLIER: f64 = 100.0;
 
@@ -241,6 +246,11 @@ pub fn violation(value: f64, lower: f64, upper: f64) -> f64 {
 /// Bounds closer together than this are one equality (scaled), and a residual below it is rounding. A law: rounding of bounds
 /// that are meant to be equal.
 pub(crate) const SAME: f64 = 1e-12;
+
+/// Whether a point that misses rows by `primal` is feasible as far as a scaled objective so far below 0 can tell.
+pub(crate) fn is_feasible_by(primal: f64, objective: f64, tolerance: f64) -> bool {
+    primal <= tolerance.max((-objective / BEYOND_PRICE).min(NEAR))
+}
 
 /// Whether scaled bounds leave no room between them.
 pub(crate) fn is_equality(lower: f64, upper: f64) -> bool {

@@ -2,6 +2,7 @@
 
 use crate::options::{Control, Options, Progress};
 use crate::outcome::IterationRecord;
+use crate::residuals::{NEAR, is_feasible_by};
 use crate::status::Status;
 use std::time::Instant;
 
@@ -9,17 +10,12 @@ use std::time::Instant;
 /// points that are feasible but for the rounding of their variables, mean that there is no minimum.
 const UNBOUNDED: f64 = 1e10;
 /// Variables may run off without any change of the objective. A choice: an objective that falls as the root of what runs off
-/// is a tenth of [`UNBOUNDED`]'s root there.
+/// has fallen by ten times as much there.
 const WITH_THEM: f64 = 1e4;
 
 /// What rounding of scaled variables of the size 1 leaves of a row of the slope 1: a hundred roundings. A choice: rows have
 /// tens of terms.
 const ROUNDINGS: f64 = 100.0 * f64::EPSILON;
-/// What no rounding excuses, for rows of the slope 1. A choice.
-const NEAR: f64 = 1e-2;
-/// What is missed is not what an objective below [`UNBOUNDED`] has fallen by where the objective is so many times as far
-/// below 0 as rows of the slope 1 are missed. A choice: no multiplier is as large that double precision can tell.
-const BEYOND_PRICE: f64 = 1e18;
 
 /// How far a solve has come.
 pub(crate) struct Stage<'a> {
@@ -70,9 +66,4 @@ impl Stage<'_> {
         }
         (self.iterations >= options.max_iterations).then_some(Status::IterationLimit)
     }
-}
-
-/// Whether a point that misses rows by `primal` is feasible as far as a scaled objective so far below 0 can tell.
-pub(crate) fn is_feasible_by(primal: f64, objective: f64, tolerance: f64) -> bool {
-    primal <= tolerance.max((-objective / BEYOND_PRICE).min(NEAR))
 }
