@@ -9,8 +9,8 @@ use std::time::Instant;
 /// A scaled objective this far below zero, or variables this large with an objective that has fallen beyond [`WITH_THEM`], at
 /// points that are feasible but for the rounding of their variables, mean that there is no minimum.
 const UNBOUNDED: f64 = 1e10;
-/// Variables may run off without any change of the objective. A choice: an objective that falls as the root of what runs off
-/// has fallen by ten times as much there.
+/// Variables may run off beside an objective that hardly changes: that is no progress. A choice: an objective that falls as the
+/// root of what runs off has fallen by ten times as much there.
 const WITH_THEM: f64 = 1e4;
 
 /// What rounding of scaled variables of the size 1 leaves of a row of the slope 1: a hundred roundings. A choice: rows have
@@ -45,8 +45,10 @@ impl Stage<'_> {
         let is_near = found.primal <= options.constraint_tolerance.max((ROUNDINGS * largest).min(NEAR));
         let is_fallen = self.objective < -UNBOUNDED
             && (is_near || is_feasible_by(found.primal, self.objective, options.constraint_tolerance));
-        if is_fallen || is_near && largest > UNBOUNDED && self.objective < -WITH_THEM {
-            return Some(Status::Unbounded);
+        if is_fallen || is_near && largest > UNBOUNDED {
+            // Variables may run off without any change of the objective.
+            let is_unbounded = is_fallen || self.objective < -WITH_THEM;
+            return Some(if is_unbounded { Status::Unbounded } else { Status::StepTooSmall });
         }
         if let Some(watch) = &options.on_iteration {
             let progress = Progress {

@@ -49,14 +49,9 @@ impl Report {
             structure.continuations.clear();
         });
         let mut nlp = Transcription::new(&mesh)?;
-        let Some((doubt, missed)) = self.doubts(&nlp, settings)? else {
+        let Some((doubt, missed, most)) = self.doubts(&nlp, settings)? else {
             self.seconds += began.elapsed().as_secs_f64();
             return Ok(self.advised());
-        };
-        // What keeps a limit is a neighbour, which is found in as many iterations as from any solution, or is another solution.
-        let most = match doubt {
-            Doubt::Motion(_) | Doubt::Objective => (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations),
-            Doubt::Limit(_) => warm(settings).max_iterations,
         };
         let mut found = Confirmation {
             doubt,
@@ -122,8 +117,16 @@ impl Report {
     }
 
     /// Looks at a solution on its own mesh: what it may not keep, if it misses that by more than is worth a warning and crosses
-    /// no pole, which is told.
-    pub(crate) fn doubts(&mut self, nlp: &Transcription, settings: &Settings) -> Result<Option<(Doubt, f64)>, Error> {
+    /// no pole, which is told; by how much; and how many iterations a solve on shorter intervals has.
+    pub(crate) fn doubts(
+        &mut self,
+        nlp: &Transcription,
+        settings: &Settings,
+    ) -> Result<Option<(Doubt, f64, usize)>, Error> {
+        // What keeps a limit, or costs a little more, is a neighbour, which is found in as many iterations as from any solution,
+        // or is another solution.
+        let few = warm(settings).max_iterations;
+        let many = (PATIENCE * self.iterations).max(LEAST).min(settings.max_iterations);
         self.poles = crossed(nlp, self.solution.coefficients())?;
         if !self.poles.is_empty() {
             return Ok(None);
@@ -132,17 +135,19 @@ impl Report {
         if let Some(Defect { phase, output, relative }) = moved.filter(|own| own.relative > settings.between_tolerance)
         {
             let output = names::output(&nlp.model.structure, &nlp.model.layout, phase, output);
-            return Ok(Some((Doubt::Motion(output), relative)));
+            return Ok(Some((Doubt::Motion(output), relative, many)));
         }
         if let Some((limit, missed)) = self.limit_in_doubt(nlp) {
-            return Ok(Some((Doubt::Limit(limit), missed)));
+            return Ok(Some((Doubt::Limit(limit), missed, few)));
         }
         // Where the scheme does not converge, as two Gauss points for equations between states alone, the objective is off by
         // far more than to first order. No motion can be simulated there.
         let missed = self.correction_part();
         let of_motion = |own: &&ConstraintReport| own.is_equation && own.block == Block::Trajectory;
-        let is_followed = moved.is_some() || !self.violated_between().iter().any(of_motion);
-        Ok((missed > settings.between_tolerance || !is_followed).then_some((Doubt::Objective, missed)))
+        if moved.is_none() && self.violated_between().iter().any(of_motion) {
+            return Ok(Some((Doubt::Objective, missed, many)));
+        }
+        Ok((missed > settings.between_tolerance).then_some((Doubt::Objective, missed, few)))
     }
 }
 

@@ -81,10 +81,9 @@ impl Confirmation {
             (Doubt::Motion(_), false) => self.status != Status::Cancelled,
             (Doubt::Objective, true) => is_apart(),
             (Doubt::Limit(_), true) => self.resolution == Some(Resolution::Unresolved) || is_apart(),
-            // A solve that comes to no end tells nothing of a limit.
-            (Doubt::Limit(_) | Doubt::Objective, false) => {
-                matches!(self.status, Status::Infeasible { .. } | Status::Contradiction { .. })
-            }
+            // A solve that comes to no end tells nothing of a limit, and none that finds nothing tells of an objective.
+            (Doubt::Limit(_), false) => matches!(self.status, Status::Infeasible { .. } | Status::Contradiction { .. }),
+            (Doubt::Objective, false) => false,
         }
     }
 
