@@ -199,7 +199,8 @@ fn rounds(
         };
         match measure {
             Measure::Holds | Measure::Saddle(_) if !is_damped && has_lost_digits(nlp, &outcome, &options) => {
-                (resized, start, undamped) = (Resized::new(nlp), None, Some(outcome));
+                let is_saddle = matches!(measure, Measure::Saddle(_));
+                (resized, start, undamped) = (Resized::new(nlp), None, Some(Outcome { is_saddle, ..outcome }));
                 continue;
             }
             Measure::Holds if beside.is_some() && left_saddle.is_some() && is_astray(&outcome.status) => {
