@@ -76,13 +76,8 @@ pub(crate) enum Measure {
     Objective(f64),
     /// They hold, and the end is a saddle; beside it, at this point, the Lagrangian is less.
     Saddle(Vec<f64>),
-    /// Variables have outgrown their sizes on the way.
-    Outgrown {
-        /// Larger ones.
-        sizes: Vec<f64>,
-        /// Whether the objective has fallen far below 0.
-        is_falling: bool,
-    },
+    /// Variables have outgrown their sizes on the way; these are larger.
+    Outgrown(Vec<f64>),
 }
 
 /// One of several solves in a row.
@@ -109,40 +104,8 @@ pub(crate) fn until_measured(
     options: &Options,
     mut solve: impl FnMut(&Erased<'_>, Round<'_>, &Options) -> (Outcome, Measure),
 ) -> Outcome {
-    let mut first = None;
-    rounds(nlp, options, |resized, round, options| {
-        let (mut outcome, measure) = solve(resized, round, options);
-        let factor = *first.get_or_insert(outcome.objective_factor);
-        let fallen = -factor * outcome.objective;
-        let is_stopped = matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
-        if fallen > FALLEN && !is_stopped && (outcome.status.has_solution() || is_feasible_by(&outcome, options)) {
-            outcome.status = Status::Unbounded;
-            return (outcome, Measure::Holds);
-        }
-        let measure = match measure {
-            Measure::Outgrown { sizes, .. } => {
-                let is_falling = fallen > FALLING && outcome.residuals.scaled.primal <= NEAR_ROWS;
-                Measure::Outgrown { sizes, is_falling }
-            }
-            measure => measure,
-        };
-        (outcome, measure)
-    })
-}
-
-/// Whether the end of a solve whose objective has fallen far is feasible, as [`residuals::is_feasible_by`].
-fn is_feasible_by(end: &Outcome, options: &Options) -> bool {
-    let scaled = end.objective_factor * end.objective;
-    residuals::is_feasible_by(end.residuals.scaled.primal, scaled, options.constraint_tolerance)
-}
-
-/// All solves in a row.
-fn rounds(
-    nlp: &Erased<'_>,
-    options: &Options,
-    mut solve: impl FnMut(&Erased<'_>, Round<'_>, &Options) -> (Outcome, Measure),
-) -> Outcome {
     let began = Instant::now();
+    let mut first = None;
     let mut resized = Resized::new(nlp);
     let mut start: Option<Vec<f64>> = None;
     let (mut iterations, mut rounds, mut restarts, mut saddles) = (0, 0, 0, 0);
@@ -165,7 +128,12 @@ fn rounds(
         let tolerance = options.tolerance * wide.as_ref().map_or(1.0, |(_, objective)| *objective);
         let most = if large.is_some() { left.min(MAGNIFIED) } else { left };
         let options = Options { max_iterations: most, tolerance, ..options.after(began.elapsed()) };
-        let (mut outcome, measure) = solve(&Erased::of(&resized), round, &options);
+        let (mut outcome, mut measure) = solve(&Erased::of(&resized), round, &options);
+        let fallen = -*first.get_or_insert(outcome.objective_factor) * outcome.objective;
+        let is_stopped = matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
+        if fallen > FALLEN && !is_stopped && (outcome.status.has_solution() || is_feasible_by(&outcome, &options)) {
+            (outcome.status, measure) = (Status::Unbounded, Measure::Holds);
+        }
         // By its earlier sizes the start was no solution: that larger ones make it one says nothing.
         let is_end = outcome.iterations == 0 && outcome.status.has_solution() && measure == Measure::Holds;
         let is_start_again = std::mem::take(&mut is_again) && is_end;
@@ -251,11 +219,12 @@ fn rounds(
                 large = Some(outcome);
                 continue;
             }
-            Measure::Outgrown { sizes, is_falling } => {
+            Measure::Outgrown(sizes) => {
                 restarts += 1;
-                is_again = !is_falling;
-                if is_falling {
-                    start = Some(outcome.x);
+                let is_falling = fallen > FALLING && outcome.residuals.scaled.primal <= NEAR_ROWS;
+                match is_falling {
+                    true => start = Some(outcome.x),
+                    false => is_again = true,
                 }
                 resized.resize(sizes);
                 continue;
@@ -269,6 +238,12 @@ fn rounds(
         rounds += 1;
         start = Some(outcome.x);
     }
+}
+
+/// Whether the end of a solve whose objective has fallen far is feasible, as [`residuals::is_feasible_by`].
+fn is_feasible_by(end: &Outcome, options: &Options) -> bool {
+    let scaled = end.objective_factor * end.objective;
+    residuals::is_feasible_by(end.residuals.scaled.primal, scaled, options.constraint_tolerance)
 }
 
 /// A saddle, and the point beside it from which a solve goes on.

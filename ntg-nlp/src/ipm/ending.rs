@@ -107,7 +107,7 @@ impl<'a, N: Nlp> State<'a, N> {
     /// Ends the solve at the present point, where variables have outgrown their sizes; `sizes` are larger.
     pub(super) fn end_outgrown(self, sizes: Vec<f64>) -> Outcome {
         let (outcome, kept) = self.leave(Status::IterationLimit);
-        kept.measure = Measure::Outgrown { sizes, is_falling: false };
+        kept.measure = Measure::Outgrown(sizes);
         outcome
     }
 

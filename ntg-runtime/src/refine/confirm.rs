@@ -24,8 +24,9 @@ const LEAST: usize = 300;
 
 impl Report {
     /// The report with what solves on shorter intervals say, where a solution leaves its equations of motion, misses limits of
-    /// what is continuous or has another objective between the points, by more than is worth a warning. What equations miss between the points does not tell of that: a jump
-    /// over a pole falls between all samples. Only where the settings ask nothing else of such a solution.
+    /// what is continuous or has another objective between the points, by more than is worth a warning. What equations miss
+    /// between the points does not tell of that: a jump over a pole falls between all samples. Only where the settings ask
+    /// nothing else of such a solution.
     /// [`solve`](crate::solve) does this by itself, a [`Solver`](crate::Solver) does not.
     ///
     /// # Errors
