@@ -49,6 +49,8 @@ struct Terms {
     least: f64,
     /// The largest variation of a term in which a slot stands linearly.
     variation: f64,
+    /// The same with terms whose slope is the same at all points, in a block with rows in which their slot is curved.
+    steady: f64,
     /// The steepest slope of a row by a variable of its size.
     slope: f64,
     /// Of a limit: the least and the largest value at the points.
@@ -61,7 +63,11 @@ impl Terms {
     fn size(&self) -> Option<Size> {
         let at_points = [self.largest, self.slope].into_iter().find(|size| *size > 0.0)?;
         // Of a sine of a thousand turns the slope times the angle says nothing, nor an offset of a temperature.
-        let seen = self.rate.max(self.variation);
+        let mut seen = self.rate.max(self.variation);
+        if seen < LEAST_BETWEEN * at_points {
+            // What is at rest is held by what varies: a temperature by the heat that is taken away.
+            seen = seen.max(self.steady);
+        }
         let between = match self.limited {
             _ if self.rate > 0.0 => seen.min(at_points).max(LEAST_BETWEEN * at_points).max(self.least),
             // Neither a height above the sea nor the slope of a wall says how high the wall is.
@@ -111,14 +117,18 @@ impl Ranges {
         }
     }
 
-    /// Raises the variations of relations to those of these terms, of which a curved one counts where it is nearly linear.
-    fn raise(&self, all: &mut [Terms], is_linear: impl Fn(usize) -> bool) {
-        for (own, ranges) in all[self.first..].iter_mut().zip(self.ranges.chunks_exact(self.terms.max(1))) {
+    /// Raises the variations of relations to those of these terms, of which a curved one counts where it is nearly linear in a row
+    /// that is posed in another form.
+    fn raise(&self, all: &mut [Terms], is_posed: &[bool], is_linear: impl Fn(usize) -> bool) {
+        let relations = all.iter_mut().zip(is_posed).skip(self.first);
+        for ((own, is_posed), ranges) in relations.zip(self.ranges.chunks_exact(self.terms.max(1))) {
             for (term, [(low, high), (flat, steep)]) in ranges.iter().enumerate() {
-                if is_linear(term)
-                    || flat * steep > 0.0 && flat.abs().max(steep.abs()) <= BENT * flat.abs().min(steep.abs())
-                {
+                let bent = flat.abs().max(steep.abs()) / flat.abs().min(steep.abs());
+                if is_linear(term) || *is_posed && flat * steep > 0.0 && bent <= BENT {
                     own.variation = own.variation.max(high - low);
+                }
+                if flat == steep {
+                    own.steady = own.steady.max(high - low);
                 }
             }
         }
@@ -185,8 +195,7 @@ impl Sizes {
                             ranges.add((relation, entry), (slope * value, slope));
                             rest[row] -= slope * value;
                         }
-                        (false, false) if is_posed[relation] => ranges.add((relation, entry), (slope * value, slope)),
-                        (false, false) => {}
+                        (false, false) => ranges.add((relation, entry), (slope * value, slope)),
                     }
                 }
                 for (row, rest) in rest.iter().enumerate().filter(|(row, rest)| two_sided[*row] && rest.is_finite()) {
@@ -196,7 +205,7 @@ impl Sizes {
                     (*low, *high) = (low.min(*rest), high.max(*rest));
                 }
             }
-            ranges.raise(&mut terms, |entry| kinds[block.jacobian[entry].1].1);
+            ranges.raise(&mut terms, &is_posed, |entry| kinds[block.jacobian[entry].1].1);
         }
         let bounds = nlp.limits.row_lower.iter().zip(&nlp.limits.row_upper);
         for ((relation, value), (lower, upper)) in relations.of_row.iter().zip(&at.rows).zip(bounds) {

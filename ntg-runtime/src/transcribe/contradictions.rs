@@ -8,11 +8,12 @@
 
 use super::elements::{Elements, GroupBatch};
 use super::error::{SetupError, Why};
+use super::folded;
 use super::frame::Frame;
 use super::implied;
 use super::linear::{Combination, LinearSystem};
 use super::names;
-use super::rows::{RowKind, constraint_words};
+use super::rows::{Pair, RowKind, constraint_words};
 use super::slots::AffineMap;
 use ntg_nlp::{Block, BlockValues, Target};
 use ntg_structure::{Degree, Domain};
@@ -24,13 +25,22 @@ const ROUNDING: f64 = 1e-7;
 pub(crate) struct Decided {
     /// The linear equalities that stand at single points.
     pub(crate) system: LinearSystem,
-    /// The rows at the ends of phases that are not linear, whose inputs are all fixed, and that are met on a bound: they say
-    /// nothing, a cone at its apex has no gradient to say it with, and an equation would depend on those that fix its inputs.
+    /// The rows at the ends of phases that are not linear, or equations along a path, whose inputs are all fixed, and that are met
+    /// on a bound: they say nothing, a cone at its apex has no gradient to say it with, and an equation would depend on those that
+    /// fix its inputs.
     pub(crate) met: Vec<usize>,
 }
 
-/// Collects what boundary conditions decide.
-pub(crate) fn decided(frame: &Frame, elements: &Elements, bounds: &[(f64, f64)]) -> Result<Decided, SetupError> {
+/// Collects what boundary conditions decide, and fixes variables of which rows at the ends leave a single value.
+pub(crate) fn decided(frame: &Frame, elements: &Elements, bounds: &mut [Pair]) -> Result<Decided, SetupError> {
+    let decided = decided_within(frame, elements, bounds)?;
+    match folded::fix(frame, elements, &decided.system, bounds) {
+        true => decided_within(frame, elements, bounds),
+        false => Ok(decided),
+    }
+}
+
+fn decided_within(frame: &Frame, elements: &Elements, bounds: &[Pair]) -> Result<Decided, SetupError> {
     let mut system = LinearSystem::default();
     for (variable, (lower, upper)) in bounds.iter().enumerate() {
         if lower == upper {
@@ -133,6 +143,7 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
     let mut met = vec![];
     for (index, group) in elements.batches.iter().enumerate() {
         let block = &elements.blocks[index];
+        let is_path = is_path(frame, group);
         let mut u = vec![f64::NAN; block.slots * block.elements];
         // What rounding leaves of each.
         let mut tolerance = vec![0.0; u.len()];
@@ -172,7 +183,8 @@ fn known_rows(frame: &Frame, elements: &Elements, system: &LinearSystem) -> Resu
                     group.batch.node.values(frame.problem, frame.tables, &u, &mut work);
                 }
                 check(frame, elements, (target, value), rounding, Why::Conditions)?;
-                if group.degree[row] > Degree::Linear && is_on_bound(frame, elements, target, value) {
+                let is_equation = is_path && elements.lower[target] == elements.upper[target];
+                if (is_equation || group.degree[row] > Degree::Linear) && is_on_bound(frame, elements, target, value) {
                     met.push(target);
                 }
             }
@@ -190,16 +202,21 @@ fn is_on_bound(frame: &Frame, elements: &Elements, row: usize, value: f64) -> bo
     near(lower) || near(upper)
 }
 
+/// Whether a batch is of a path; no row at the ends alone is.
+fn is_path(frame: &Frame, group: &GroupBatch) -> bool {
+    frame.structure.groups.get(group.group).is_some_and(|own| matches!(own.domain, Domain::Path { .. }))
+}
+
 /// The slots on which a row depends.
-fn slots_of(block: &Block, row: usize) -> impl Iterator<Item = usize> {
+pub(super) fn slots_of(block: &Block, row: usize) -> impl Iterator<Item = usize> {
     block.jacobian.iter().filter(move |entry| entry.0 == row).map(|entry| entry.1)
 }
 
-fn at_end(tau: f64) -> bool {
+pub(super) fn at_end(tau: f64) -> bool {
     tau == 0.0 || tau == 1.0
 }
 
-fn slot_map(block: &Block, element: usize, slot: usize) -> AffineMap {
+pub(super) fn slot_map(block: &Block, element: usize, slot: usize) -> AffineMap {
     let variables = block.variables(element);
     let row = &block.map(element)[slot * variables.len()..][..variables.len()];
     let terms = variables.iter().copied().zip(row.iter().copied()).filter(|t| t.1 != 0.0).collect();

@@ -23,6 +23,7 @@ pub(crate) mod elements;
 mod error;
 mod evaluate;
 mod fault;
+mod folded;
 pub(crate) mod frame;
 mod implied;
 pub(crate) mod instances;
@@ -140,9 +141,9 @@ impl<'p> Transcription<'p> {
         let tables = interpolants(&structure.tables)?.into();
         let model = Model::new(problem, structure, tables)?;
         let frame = model.frame(problem);
-        let bounds = rows::variable_bounds(&frame)?;
+        let mut bounds = rows::variable_bounds(&frame)?;
         let elements = elements::elements(&frame)?;
-        let Decided { system: linear, met } = contradictions::decided(&frame, &elements, &bounds)?;
+        let Decided { system: linear, met } = contradictions::decided(&frame, &elements, &mut bounds)?;
         let mut limits = limits(&model.structure, &elements, (&bounds, &met));
         limits.angles = angles(&model.structure, &model.layout);
         limits.definitions = elements.definitions(&model.layout, &limits);
@@ -177,9 +178,9 @@ impl<'p> Transcription<'p> {
             return Ok(Change::All);
         }
         let frame = model.frame(self.problem);
-        let bounds = rows::variable_bounds(&frame)?;
+        let mut bounds = rows::variable_bounds(&frame)?;
         self.elements.take_data(&frame)?;
-        let decided = contradictions::decided(&frame, &self.elements, &bounds)?;
+        let decided = contradictions::decided(&frame, &self.elements, &mut bounds)?;
         self.linear = decided.system;
         let Limits { alike, angles, .. } = std::mem::take(&mut self.limits);
         self.limits = Limits { alike, angles, ..limits(&model.structure, &self.elements, (&bounds, &decided.met)) };
