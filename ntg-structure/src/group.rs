@@ -102,7 +102,8 @@ pub enum Block {
     /// Continuity where one phase follows another.
     Continuity,
     /// In none: the compiler's own, which holds a helper above a corner of the objective at the points (docs/maths.md,
-    /// section 18). Such constraints come last, and reports leave them out.
+    /// section 18), or is a derivative of an equation between states (section 4.9). Such constraints come last, and reports leave
+    /// them out.
     Corner,
 }
 

@@ -6,6 +6,7 @@
 
 mod angles;
 mod car;
+mod constrained;
 mod constructs;
 mod corners;
 mod curved_corners;

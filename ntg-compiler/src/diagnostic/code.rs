@@ -133,6 +133,7 @@ codes! {
     UnitInDoubt "E096" "a unit in a list that can be read two ways";
     MissesJumps "E097" "a derivative that misses the jumps of what it is taken of";
     TooLarge "E098" "a problem too large to be solved";
+    FewPoints "E099" "an equation between states on too few points";
 
     GradientJumps "N001" "a gradient that may jump";
     DerivativeJumps "N002" "a derivative that jumps at the knots";
@@ -146,6 +147,7 @@ codes! {
     GuessOutside "N010" "a guess outside of its bounds";
     SoftName "N011" "a constraint named `soft` that has no price";
     Invariant "N012" "an equation that follows from the equations of motion";
+    Reduced "N013" "an equation between states that inputs keep";
 }
 
 impl Code {

@@ -9,7 +9,10 @@ use ntg_structure::{Block, Unit};
 
 use super::corners::{Corners, Site, squares};
 use super::elaborator::Elaborator;
-use super::problem::{At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, Variable};
+use super::problem::{
+    At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, PhaseAt, Variable,
+};
+use super::soft::Members;
 use super::unknowns::{is_affine, is_given};
 use crate::expr::{Binary, Fold, Node, NodeId, Unary};
 use crate::source::Span;
@@ -166,13 +169,13 @@ impl Elaborator<'_> {
 
     /// A number for each point and for each member of the loops at a place.
     fn helper_leaf(&mut self, pass: &mut Corners, corner: NodeId, site: &Site, span: Span) -> Option<NodeId> {
-        let members = self.members_missed(&own_loops(site), span)?;
         pass.helpers += 1;
         let (name, doc) = (format!("corner({})", pass.helpers), format!("Stands for `{}`.", self.text(span)));
-        let count = members.family.as_ref().map(|(count, _)| *count);
-        let index = members.family.map(|(_, member)| member);
         let unit = self.unit_within(pass, corner);
         let Some(at) = &site.along else {
+            let members = self.members_missed(&own_loops(site), span)?;
+            let count = members.family.as_ref().map(|(count, _)| *count);
+            let index = members.family.map(|(_, member)| member);
             let place = self.problem.variables.len();
             let family = count.map(|count| self.new_index(Form::number(1), Form::number(count)));
             let bounds = Bounds::default();
@@ -183,12 +186,20 @@ impl Elaborator<'_> {
             Collocation::Gauss { points, .. } => points,
             Collocation::Uniform { .. } => 2,
         };
+        let members = self.members_missed(&own_loops(site), span)?;
         let spline = self.slack_spline(at.phase, order);
+        let helper = Output { name, doc, unit, family: None, grid: None, vector: None, spline, span };
+        Some(self.helper_output(at, members, helper))
+    }
+
+    /// A helper of the compiler's own along a phase, one for each member.
+    pub(super) fn helper_output(&mut self, at: &PhaseAt, members: Members, helper: Output) -> NodeId {
+        let family = members.family.as_ref().map(|(count, _)| (1, *count));
+        let index = members.family.map(|(_, member)| member);
         let outputs = &mut self.problem.phases[at.phase].outputs;
         let place = outputs.len();
-        let family = count.map(|count| (1, count));
-        outputs.push(Output { name, doc, unit, family, grid: None, vector: None, spline, span });
-        Some(self.leaf(Leaf::Flat { phase: at.clone(), at: At::Here, output: place, index, order: 0 }))
+        outputs.push(Output { family, ..helper });
+        self.leaf(Leaf::Flat { phase: at.clone(), at: At::Here, output: place, index, order: 0 })
     }
 
     /// The unit of the first output or variable in a corner, which is the corner's own where that is affine; where it is curved,
@@ -237,9 +248,14 @@ impl Elaborator<'_> {
 
 /// The loops at a place that do not say which phase it is.
 fn own_loops(site: &Site) -> Vec<Loop> {
+    loops_within(&site.loops, site.along.as_ref())
+}
+
+/// The loops that do not say which phase it is.
+pub(super) fn loops_within(loops: &[Loop], along: Option<&PhaseAt>) -> Vec<Loop> {
     let of_phase = |over: &&Loop| {
-        let forms = site.along.iter().flat_map(|at| [&at.agent, &at.index]).flatten();
+        let forms = along.into_iter().flat_map(|at| [&at.agent, &at.index]).flatten();
         forms.flat_map(|form| &form.terms).all(|(index, _)| *index != over.index)
     };
-    site.loops.iter().filter(of_phase).cloned().collect()
+    loops.iter().filter(of_phase).cloned().collect()
 }

@@ -9,6 +9,8 @@
 mod junctions;
 mod motion;
 pub(super) mod number;
+mod reduced;
+mod regular;
 mod sample;
 mod surface;
 
@@ -19,8 +21,11 @@ use super::problem::{At, Domain, Imposed, Leaf, PhaseAt, Problem};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{InputId, NodeId};
 use crate::source::Span;
+use junctions::Joined;
 use motion::{Indices, Motion, each_member};
+use ntg_structure::Block;
 use number::Number;
+use reduced::Kept;
 use sample::{Budget, Draw, Point, State};
 use surface::Row;
 
@@ -36,6 +41,8 @@ const ORDINARY: Draw = Draw { seed: 0, decades: 0.0, is_positive: true, is_turne
 const MOST_MEMBERS: usize = 4096;
 /// The most leaves of formulas that are evaluated for one spec. A choice: a spec of that many is compiled in seconds anyway.
 const MOST_LEAVES: usize = 500_000;
+
+const NOTHING: &str = "nothing is to be done: reports look at it everywhere; in `initial { }` it would say the same";
 
 /// An equation that follows from the equations of motion.
 struct Invariant {
@@ -60,14 +67,22 @@ impl Elaborator<'_> {
             return;
         }
         let mut budget = Budget::new(MOST_LEAVES);
-        let mut found = vec![];
+        let (mut found, mut reduced, mut implied) = (vec![], vec![], vec![]);
         for phase in 0..self.problem.phases.len() {
-            found.extend(self.invariants_of(phase, &mut budget));
+            let (kept, left) = self.invariants_of(phase, &mut budget);
+            found.extend(kept);
+            reduced.extend(left.reduced);
+            implied.extend(left.implied);
         }
-        if found.is_empty() {
+        if found.is_empty() && reduced.is_empty() {
             return;
         }
         let joined = self.joined_states();
+        self.impose_reduced(reduced, &joined, &mut budget);
+        for constraint in implied {
+            self.problem.constraints[constraint].imposed = Imposed::Nowhere;
+            self.note_implied(self.problem.constraints[constraint].span);
+        }
         let imposed: Vec<Imposed> = found.iter().map(|own| self.imposed(own, &found, &joined, &mut budget)).collect();
         let mut told: Vec<Span> = vec![];
         for (own, imposed) in found.iter().zip(imposed) {
@@ -82,7 +97,8 @@ impl Elaborator<'_> {
 
     fn note_invariant(&mut self, span: Span, found: &[Invariant]) {
         let of_span = |k: &usize| self.problem.constraints[*k].span == span;
-        let all = (0..self.problem.constraints.len()).filter(of_span).count();
+        let is_written = |k: &usize| self.problem.constraints[*k].block != Block::Corner;
+        let all = (0..self.problem.constraints.len()).filter(of_span).filter(is_written).count();
         let own = found.iter().map(|own| own.constraint).filter(of_span).count();
         let message = match own {
             own if own < all => format!(
@@ -92,36 +108,47 @@ impl Elaborator<'_> {
             _ => "this equation follows from the equations of motion once it holds at the start, and is imposed there alone"
                 .to_owned(),
         };
-        let help = "nothing is to be done: reports look at it everywhere; in `initial { }` it would say the same";
-        self.report(Diagnostic::new(Code::Invariant, span, message).help(help));
+        self.report(Diagnostic::new(Code::Invariant, span, message).help(NOTHING));
     }
 
-    fn invariants_of(&mut self, phase: usize, budget: &mut Budget) -> Vec<Invariant> {
+    fn note_implied(&mut self, span: Span) {
+        let message = "this equation follows from the others along the phase, and is imposed by them";
+        self.report(Diagnostic::new(Code::Invariant, span, message).help(NOTHING));
+    }
+
+    fn invariants_of(&mut self, phase: usize, budget: &mut Budget) -> (Vec<Invariant>, Kept) {
         let mut motion = self.states_in_motion(phase);
         if !motion.has_states() {
-            return vec![];
+            return (vec![], Kept::default());
         }
         let of_states = |this: &Self, k: &usize| this.is_of_states(*k, &motion);
         let numbers: Vec<usize> = (0..self.problem.constraints.len()).filter(|k| of_states(self, k)).collect();
         if numbers.is_empty() {
-            return vec![];
+            return (vec![], Kept::default());
         }
         self.find_equations(&mut motion);
         let mut candidates: Vec<Candidate> = numbers.into_iter().map(|k| self.candidate(k)).collect();
         candidates.retain(|own| !own.rows.is_empty());
         if candidates.iter().map(|own| own.rows.len()).sum::<usize>() > MOST_MEMBERS {
-            return vec![];
+            return (vec![], Kept::default());
         }
         let rates: Vec<NodeId> = candidates.iter().flat_map(|own| own.rows.first()).map(|row| row.rate).collect();
         motion.find_branches(&self.problem.dag, &rates);
         let motion = Rc::new(motion);
+        let mut regular = vec![];
+        for own in candidates {
+            let vanishes = always_vanishes(&self.problem, &motion, &own, budget);
+            if vanishes || self.is_regular(&motion, &own, budget) {
+                regular.push((own, vanishes));
+            }
+        }
+        let (candidates, vanishes): (Vec<Candidate>, Vec<bool>) = regular.into_iter().unzip();
         let problem = &self.problem;
-        let vanishes: Vec<bool> = candidates.iter().map(|own| always_vanishes(problem, &motion, own, budget)).collect();
         let holds = together(problem, &motion, &candidates, vanishes, budget);
         if budget.is_spent() {
-            return vec![];
+            return (vec![], Kept::default());
         }
-        let kept = candidates.into_iter().zip(holds).filter(|(_, holds)| *holds);
+        let (kept, left): (Vec<_>, Vec<_>) = candidates.into_iter().zip(holds).partition(|(_, holds)| *holds);
         let mut invariant = |own: Candidate| {
             let mut point = Point::new(problem, &motion, ORDINARY, budget);
             own.rows.iter().for_each(|row| {
@@ -131,7 +158,9 @@ impl Elaborator<'_> {
             states.dedup();
             Invariant { constraint: own.constraint, motion: motion.clone(), row: own.rows[0].clone(), states }
         };
-        kept.map(|(own, _)| invariant(own)).collect()
+        let kept = kept.into_iter().map(|(own, _)| invariant(own)).collect();
+        let reduced = self.reduced(&motion, left.into_iter().map(|(own, _)| own).collect(), budget);
+        (kept, reduced)
     }
 
     /// Whether a constraint is an equation along all of a phase between its states, without their highest derivatives.
@@ -249,7 +278,7 @@ fn together(
 
 /// The equations that the motion leaves from points at which all rows hold, and those for which there are no such points.
 fn leaving(problem: &Problem, motion: &Motion, rows: &[Row], budget: &mut Budget) -> Vec<usize> {
-    let groups = surface::groups(rows, &mut Point::new(problem, motion, ORDINARY, budget));
+    let groups = surface::groups(rows, &surface::states, &mut Point::new(problem, motion, ORDINARY, budget));
     let mut left: Vec<usize> = vec![];
     let mut seen = vec![false; rows.len()];
     for (members, states) in groups {
@@ -259,7 +288,7 @@ fn leaving(problem: &Problem, motion: &Motion, rows: &[Row], budget: &mut Budget
         let mut leaves = vec![false; own.len()];
         for draw in draws(100, motion.has_branches) {
             let mut point = Point::new(problem, motion, draw, budget);
-            if !surface::reach(&own, &states, &mut point) {
+            if !surface::reach(&own, &states, &mut point, surface::STEPS) {
                 continue;
             }
             for (k, row) in own.iter().enumerate() {

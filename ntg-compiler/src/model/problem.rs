@@ -272,6 +272,9 @@ pub enum Imposed {
     Everywhere,
     /// At the start of its phase, for the members of these loops: from there the equations of motion keep it.
     AtStart(Vec<Loop>),
+    /// At the ends of the intervals of parts of its phase, for the members of the loops beside each: what drifts in between is taken
+    /// back there (docs/maths.md, section 4.9).
+    AtBreakpoints(Vec<(Vec<Loop>, Part)>),
     /// At none: the phase before ends where it holds.
     Nowhere,
 }

@@ -16,14 +16,14 @@ impl Elaborator<'_> {
         }
         let mut total = None;
         for member in first..=last {
-            let own = self.with_index(body, (over.index, member))?;
+            let own = self.with_index(body, (over.index, &Form::number(member)))?;
             total = Some(total.map_or(own, |sum| self.problem.dag.add(sum, own)));
         }
         total
     }
 
-    /// A node in which an index has a value.
-    fn with_index(&mut self, node: NodeId, known: (IndexId, i64)) -> Option<NodeId> {
+    /// A node in which a form stands for an index; none where the index stands within an integral or in a point of time.
+    pub(super) fn with_index(&mut self, node: NodeId, known: (IndexId, &Form)) -> Option<NodeId> {
         let mut images = Map::default();
         for input in self.problem.dag.inputs_of(&[node]) {
             let leaf = self.problem.leaves.leaf(input).clone();
@@ -37,8 +37,8 @@ impl Elaborator<'_> {
     }
 }
 
-/// A leaf in which an index has a value.
-fn leaf_with(mut leaf: Leaf, known: (IndexId, i64)) -> Option<Leaf> {
+/// A leaf in which a form stands for an index.
+fn leaf_with(mut leaf: Leaf, known: (IndexId, &Form)) -> Option<Leaf> {
     match &mut leaf {
         Leaf::Flat { phase, at, index, .. } => {
             if matches!(at, At::Among { .. }) {
@@ -49,20 +49,20 @@ fn leaf_with(mut leaf: Leaf, known: (IndexId, i64)) -> Option<Leaf> {
         }
         Leaf::Time(phase) | Leaf::Duration(phase) | Leaf::Start(phase) => set_in_phase(phase, known),
         Leaf::Parameter { index, .. } | Leaf::Variable { index, .. } => set(index, known),
-        Leaf::Index(form) => *form = form.with(known.0, known.1),
+        Leaf::Index(form) => *form = form.replacing(known.0, known.1),
         Leaf::Tau => {}
         Leaf::Integral { .. } | Leaf::Symbol(_) => return None,
     }
     Some(leaf)
 }
 
-fn set_in_phase(phase: &mut PhaseAt, known: (IndexId, i64)) {
+fn set_in_phase(phase: &mut PhaseAt, known: (IndexId, &Form)) {
     set(&mut phase.agent, known);
     set(&mut phase.index, known);
 }
 
-fn set(form: &mut Option<Form>, known: (IndexId, i64)) {
+fn set(form: &mut Option<Form>, known: (IndexId, &Form)) {
     if let Some(form) = form {
-        *form = form.with(known.0, known.1);
+        *form = form.replacing(known.0, known.1);
     }
 }

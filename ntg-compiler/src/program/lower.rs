@@ -101,12 +101,20 @@ impl Lowering<'_> {
 
     /// The pieces of a constraint with a given body.
     fn constraint_pieces(&mut self, number: usize, of: Constraint, body: NodeId) -> Vec<Piece> {
-        let role = Role::Constraint { constraint: number, bounds: of.bounds };
+        let role = Role::Constraint { constraint: number, bounds: of.bounds.clone() };
         match (of.imposed, &of.domain) {
             (Imposed::Nowhere, _) => return vec![],
             (Imposed::AtStart(loops), model::Domain::Path(phase, _)) => {
                 let domain = model::Domain::Start(phase.clone());
                 return vec![Piece { loops, domain, body, role, span: of.span }];
+            }
+            (Imposed::AtBreakpoints(parts), model::Domain::Path(phase, _)) => {
+                let role = Role::AtBreakpoints { constraint: number, bounds: of.bounds.clone() };
+                let at = |(loops, part)| {
+                    let domain = model::Domain::Path(phase.clone(), part);
+                    Piece { loops, domain, body, role: role.clone(), span: of.span }
+                };
+                return parts.into_iter().map(at).collect();
             }
             _ => {}
         }
@@ -209,7 +217,8 @@ impl Lowering<'_> {
 
     /// Whether a constraint is about shared outputs alone: its rows are the same for several members.
     fn is_common(&self, piece: &Piece) -> bool {
-        if self.problem.shared.is_empty() || !matches!(piece.role, Role::Constraint { .. }) {
+        if self.problem.shared.is_empty() || !matches!(piece.role, Role::Constraint { .. } | Role::AtBreakpoints { .. })
+        {
             return false;
         }
         let is_shared = |phase: usize, output: usize| {
@@ -277,11 +286,13 @@ impl Lowering<'_> {
             .iter()
             .map(|piece| match &piece.role {
                 Role::Cost { term } => Row::Cost { term: *term },
-                Role::Constraint { constraint, bounds } => Row::Constraint {
-                    constraint: *constraint,
-                    lower: row_of(bounds.lower, piece, &mut list),
-                    upper: row_of(bounds.upper, piece, &mut list),
-                },
+                Role::Constraint { constraint, bounds } | Role::AtBreakpoints { constraint, bounds } => {
+                    Row::Constraint {
+                        constraint: *constraint,
+                        lower: row_of(bounds.lower, piece, &mut list),
+                        upper: row_of(bounds.upper, piece, &mut list),
+                    }
+                }
                 Role::Part { constraint, index } => Row::Part { constraint: *constraint, index: index.clone() },
                 Role::Integral { integral, index } => Row::Integral { integral: *integral, index: index.clone() },
             })

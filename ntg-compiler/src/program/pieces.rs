@@ -23,6 +23,8 @@ pub(super) enum Role {
     Cost { term: usize },
     /// A constraint row of its own.
     Constraint { constraint: usize, bounds: Bounds },
+    /// Constraint rows at the ends of intervals alone.
+    AtBreakpoints { constraint: usize, bounds: Bounds },
     /// A constraint row that another piece makes.
     Part { constraint: usize, index: Vec<Affine> },
     /// An integral that is a variable.

@@ -18,6 +18,7 @@ pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> V
         Collocation::Gauss { points, equalities, ends } => (points, equalities, ends),
     };
     match &piece.role {
+        Role::AtBreakpoints { .. } => vec![Points::Breakpoints],
         Role::Constraint { constraint, .. } if holds_helper(problem, *constraint, piece) => {
             vec![Points::Gauss { points }]
         }

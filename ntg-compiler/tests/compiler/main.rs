@@ -21,6 +21,7 @@ mod model_limits;
 mod model_meaning;
 mod model_mission;
 mod model_places;
+mod model_reduced;
 mod model_refusals;
 mod model_robust;
 mod model_scenarios;

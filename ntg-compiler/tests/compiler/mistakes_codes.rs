@@ -85,6 +85,10 @@ pub(crate) const MEANING: Section = (
         ),
         ("minimize integral(norm(der(u))^2) * 1 [s/N^2];", "E097"),
         ("trajectory { for i in 1 .. 1000000000 { x <= i * 1 [m]; } }", "E098"),
+        (
+            "problem Bead { duration T = 1; state x, y; input u, force; collocation gauss(points = 1, intervals = 4); minimize integral(u^2); dynamics { der(x, 2) == u - force; der(y, 2) == force; } initial { x == 0; } trajectory { x == y; } }",
+            "E099",
+        ),
     ],
 );
 
@@ -110,6 +114,10 @@ pub(crate) const NOTES: Section = (
         (
             "problem Balance { duration T = 5; state a, b; collocation gauss(points = 3, intervals = 4); minimize final(a); dynamics { der(a) == -a; der(b) == a; } initial { a == 1; } trajectory { a + b == 1; } }",
             "N012",
+        ),
+        (
+            "problem Bead { duration T = 1; state x, y; input u, force; collocation gauss(points = 3, intervals = 4); minimize integral(u^2); dynamics { der(x, 2) == u - force; der(y, 2) == force; } initial { x == 0; } trajectory { x == y; } }",
+            "N013",
         ),
     ],
 );

@@ -16,7 +16,7 @@ use crate::syntax::ast::Role;
 pub(super) type Indices = HashMap<IndexId, i64>; // Looked up, never iterated.
 
 /// An element of an output of one member of a phase: members of agent and phase, the output, and the element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Element {
     pub(super) agent: Option<i64>,
     pub(super) index: Option<i64>,
@@ -38,6 +38,10 @@ pub(super) struct Motion {
     /// For each output that is a state whose spline is that of the collocation: how often it is differentiated.
     orders: Vec<Option<usize>>,
     equations: Vec<Equation>,
+    /// The derivative that each equation determines, under the loops of its constraint.
+    leaves: Vec<Leaf>,
+    /// The outputs whose highest derivatives stand in equations.
+    moved: Vec<usize>,
     of: HashMap<Element, (usize, Indices)>, // Looked up, never iterated.
     /// Whether a condition stands in the equations, or in what is asked about.
     pub(super) has_branches: bool,
@@ -55,6 +59,46 @@ impl Motion {
     /// What determines the highest derivative of an element.
     pub(super) fn equation(&self, element: &Element) -> Option<(Equation, &Indices)> {
         self.of.get(element).map(|(equation, indices)| (self.equations[*equation], indices))
+    }
+
+    /// Whether a highest derivative of an output stands in any equation.
+    pub(super) fn moves(&self, output: usize) -> bool {
+        self.moved.contains(&output)
+    }
+
+    /// What determines a highest derivative whose indices may be open: the equation, and a form for each of its indices. None
+    /// where there is no equation, or another one for other members.
+    pub(super) fn equation_of(&self, leaf: &Leaf) -> Option<(Equation, Vec<(IndexId, Form)>)> {
+        let Leaf::Flat { phase, output, index, .. } = leaf else { return None };
+        let is_closed =
+            [&phase.agent, &phase.index, index].into_iter().flatten().all(|form| form.as_number().is_some());
+        if is_closed && let Some((own, _)) = element(leaf, &Indices::new()) {
+            let (number, indices) = self.of.get(&own)?;
+            let forms = indices.iter().map(|(index, value)| (*index, Form::number(*value))).collect();
+            return Some((self.equations[*number], forms));
+        }
+        let mut own = self
+            .leaves
+            .iter()
+            .zip(&self.equations)
+            .filter(|(leaf, _)| matches!(leaf, Leaf::Flat { output: own, .. } if own == output));
+        let ((Leaf::Flat { phase: of, index: member, .. }, equation), None) = (own.next()?, own.next()) else {
+            return None;
+        };
+        let pairs = [(&of.agent, &phase.agent), (&of.index, &phase.index), (member, index)];
+        let mut forms = vec![];
+        for (own, wanted) in pairs {
+            match (own, wanted) {
+                (None, None) => {}
+                (Some(own), Some(wanted)) => match own.terms.as_slice() {
+                    [(index, 1)] => forms.push((*index, wanted.plus(-1, &Form::number(own.constant))?)),
+                    _ if own == wanted => {}
+                    _ => return None,
+                },
+                _ => return None,
+            }
+        }
+        Some((*equation, forms))
     }
 
     /// Looks for conditions in the equations and in what is asked about.
@@ -105,16 +149,32 @@ impl Elaborator<'_> {
                 orders[k] = (role == Role::State && is_determined).then_some(spline.smoothness);
             }
         }
-        Motion { phase, orders, equations: vec![], of: HashMap::new(), has_branches: false }
+        Motion {
+            phase,
+            orders,
+            equations: vec![],
+            leaves: vec![],
+            moved: vec![],
+            of: HashMap::new(),
+            has_branches: false,
+        }
     }
 
     /// Finds the equations of motion.
     pub(super) fn find_equations(&mut self, motion: &mut Motion) {
         for k in 0..self.problem.constraints.len() {
             let Some(bound) = self.equation_along(k, motion.phase) else { continue };
+            for input in self.problem.dag.inputs_of(&[self.problem.constraints[k].body]) {
+                if let Leaf::Flat { output, order, .. } = self.problem.leaves.leaf(input)
+                    && motion.order(*output) == Some(*order)
+                {
+                    motion.moved.push(*output);
+                }
+            }
             let Some((leaf, equation)) = self.solved_for(k, bound, motion) else { continue };
             let number = motion.equations.len();
             motion.equations.push(equation);
+            motion.leaves.push(leaf.clone());
             let loops = self.problem.constraints[k].loops.clone();
             each_member(&loops, &mut Indices::new(), &mut |indices| {
                 if let Some((element, _)) = element(&leaf, indices) {

@@ -58,6 +58,9 @@ pub(super) struct Point<'p> {
     pub(super) blur: f64,
     /// The states that were met, in order.
     pub(super) met: Vec<State>,
+    /// What was met that no equation determines, inputs and highest derivatives without an equation of their own, where these have
+    /// values.
+    pub(super) free: Option<Vec<State>>,
     rates: HashMap<Element, Number>, // Looked up, never iterated.
     open: Vec<Element>,
 }
@@ -67,7 +70,7 @@ const NO_NUMBER: f64 = f64::NAN;
 impl<'p> Point<'p> {
     pub(super) fn new(problem: &'p Problem, motion: &'p Motion, draw: Draw, budget: &'p mut Budget) -> Self {
         let (indices, moved, met, rates, open) = (Indices::new(), HashMap::new(), vec![], HashMap::new(), vec![]);
-        Self { problem, motion, draw, budget, indices, moved, blur: 0.0, met, rates, open }
+        Self { problem, motion, draw, budget, indices, moved, blur: 0.0, met, free: None, rates, open }
     }
 
     /// The value of a node under loops whose indices have values; none where there is none.
@@ -97,6 +100,12 @@ impl<'p> Point<'p> {
         let name = name.bytes().fold(0, |seed, byte| mixed(seed ^ u64::from(byte)));
         let numbers = [at.agent, at.member].map(|number| number.map_or(u64::MAX, i64::cast_unsigned));
         self.drawn(numbers.into_iter().chain([*order as u64]).fold(name, |seed, n| mixed(seed ^ n)))
+    }
+
+    /// The value of what no equation determines.
+    fn freed(&mut self, state: State) -> Option<Number> {
+        self.free.as_mut()?.push(state);
+        Some(Number::new(self.state(&state)))
     }
 
     /// The value of something by its key.
@@ -156,10 +165,14 @@ impl Point<'_> {
                 if highest.is_some_and(|highest| *order > highest) {
                     return Number::new(NO_NUMBER);
                 }
-                if highest == Some(*order) {
-                    return self.rate(element).unwrap_or(Number::new(NO_NUMBER));
-                }
                 let state = (element, *order);
+                if highest == Some(*order) {
+                    let rate = self.rate(element);
+                    return rate.or_else(|| self.freed(state)).unwrap_or(Number::new(NO_NUMBER));
+                }
+                if highest.is_none() {
+                    return self.freed(state).unwrap_or_else(|| Number::new(self.state(&state)));
+                }
                 self.met.push(state);
                 Number::new(self.state(&state)).blurred(self.blur)
             }

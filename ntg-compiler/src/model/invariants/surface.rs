@@ -34,26 +34,34 @@ impl Row {
 /// The most equations, and the most states, that are solved together: a rotation matrix has nine.
 const MOST: usize = 48;
 /// Steps of Newton's method: those to a sphere that is `10^k` times as large or small halve the distance, three a decade.
-const STEPS: usize = 60;
+pub(super) const STEPS: usize = 60;
 /// The step of differences, relative to the state.
 const DIFFERENCE: f64 = 1e-6;
 /// What is added to a diagonal, relative to its mean, so that equations that follow from one another have a step.
 const DAMPING: f64 = 1e-8;
+/// What elimination leaves that is this part of the largest pivot is 0: far from rounding of differences, 1e-9. A choice.
+pub(super) const DEPENDENT: f64 = 1e-5;
 /// A state that has come to this part of what it was is on its way to 0, where nothing else has a size.
 const NOTHING: f64 = 1e-30;
 /// States are where equations hold within rounding: by so many units of the last digit of the largest.
 const BLUR: f64 = 64.0;
 
-/// Rows that have states in common, directly or by others; each group with its states. None where a row has no value.
-pub(super) fn groups(rows: &[Row], point: &mut Point<'_>) -> Vec<(Vec<usize>, Vec<State>)> {
+/// What a row is made of; none where it has no value.
+pub(super) type Touched<'a> = &'a dyn Fn(&Row, &mut Point<'_>) -> Option<Vec<State>>;
+
+/// The states of a row.
+pub(super) fn states(row: &Row, point: &mut Point<'_>) -> Option<Vec<State>> {
+    point.met.clear();
+    row.miss(point)?;
+    Some(std::mem::take(&mut point.met))
+}
+
+/// Rows that touch the same, directly or by others; each group with what it touches. Those that have no value are in no group.
+pub(super) fn groups(rows: &[Row], touched: Touched<'_>, point: &mut Point<'_>) -> Vec<(Vec<usize>, Vec<State>)> {
     let mut group_of: HashMap<State, usize> = HashMap::new(); // Looked up, never iterated.
     let mut groups: Vec<(Vec<usize>, Vec<State>)> = vec![];
     for (k, row) in rows.iter().enumerate() {
-        point.met.clear();
-        if row.miss(point).is_none() {
-            continue;
-        }
-        let met = std::mem::take(&mut point.met);
+        let Some(met) = touched(row, point) else { continue };
         let mut own = (vec![k], vec![]);
         let mut joined: Vec<usize> = met.iter().filter_map(|state| group_of.get(state).copied()).collect();
         joined.sort_unstable();
@@ -78,13 +86,13 @@ pub(super) fn groups(rows: &[Row], point: &mut Point<'_>) -> Vec<(Vec<usize>, Ve
     groups
 }
 
-/// Leads states to where all rows hold; whether they got there.
-pub(super) fn reach(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> bool {
+/// Leads states to where all rows hold; whether they got there in so many steps.
+pub(super) fn reach(rows: &[&Row], states: &[State], point: &mut Point<'_>, steps: usize) -> bool {
     if rows.len() > MOST || states.len() > MOST {
         return false;
     }
     let drawn: Vec<f64> = states.iter().map(|state| point.state(state)).collect();
-    for _ in 0..STEPS {
+    for _ in 0..steps {
         let Some(missed) = misses(rows, point) else { return false };
         if missed.iter().all(|number| number.is_rounding()) {
             let largest = states.iter().fold(0.0_f64, |most, state| most.max(point.state(state).abs()));
@@ -108,7 +116,7 @@ fn misses(rows: &[&Row], point: &mut Point<'_>) -> Option<Vec<Number>> {
 }
 
 /// The derivatives of each row by every state, by differences.
-fn slopes(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> Option<Vec<Vec<f64>>> {
+pub(super) fn slopes(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> Option<Vec<Vec<f64>>> {
     let mut slopes = vec![vec![0.0; states.len()]; rows.len()];
     for (k, state) in states.iter().enumerate() {
         let at = point.state(state);
@@ -149,4 +157,24 @@ fn weights(slopes: &[Vec<f64>], mut right: Vec<f64>) -> Option<Vec<f64>> {
         right[i] = (right[i] - known) / matrix[i][i];
     }
     Some(right)
+}
+
+/// How many of some rows are independent: by elimination with the largest entry of all as pivot.
+pub(super) fn rank(mut rows: Vec<Vec<f64>>) -> usize {
+    let all = rows.len();
+    let mut first = None;
+    while !rows.is_empty() {
+        let entries =
+            rows.iter().enumerate().flat_map(|(i, row)| row.iter().enumerate().map(move |(k, v)| (v.abs(), i, k)));
+        let Some((size, row, column)) = entries.max_by(|one, other| one.0.total_cmp(&other.0)) else { break };
+        if size <= DEPENDENT * *first.get_or_insert(size) {
+            break;
+        }
+        let pivot = rows.swap_remove(row);
+        for row in &mut rows {
+            let factor = row[column] / pivot[column];
+            row.iter_mut().zip(&pivot).for_each(|(own, other)| *own -= factor * other);
+        }
+    }
+    all - rows.len()
 }

@@ -2,7 +2,6 @@
 
 use super::call::AtPlaces;
 use super::radau::{Instant, Linear, Motion};
-use crate::transcribe::Transcription;
 use crate::transcribe::batch::batches;
 use crate::transcribe::elements::domain_sites;
 use crate::transcribe::frame::Frame;
@@ -11,8 +10,9 @@ use crate::transcribe::points::Point;
 use crate::transcribe::rows::group_bounds;
 use crate::transcribe::shape::trace;
 use crate::transcribe::slots::Source;
+use crate::transcribe::{Model, Transcription};
 use nalgebra::{DMatrix, DVector};
-use ntg_structure::{At, Domain, Group, Row};
+use ntg_structure::{At, Block, Domain, Group, Points, Row};
 use std::collections::BTreeMap;
 
 /// One member of a group with equalities.
@@ -25,6 +25,11 @@ pub(super) struct Member<'a> {
     pub(super) rows: Vec<(usize, f64)>,
     /// Row and slot of every first derivative.
     pub(super) pattern: Vec<(usize, usize)>,
+}
+
+/// Whether a row is the compiler's own: a derivative of an equation between states (docs/maths.md, section 4.9).
+fn is_derived(frame: &Frame, row: &Row) -> bool {
+    matches!(row, Row::Constraint { constraint, .. } if frame.structure.constraints[*constraint].block == Block::Corner)
 }
 
 impl<'a> Member<'a> {
@@ -50,6 +55,12 @@ impl<'a> Member<'a> {
     }
 }
 
+/// Whether a member of a phase is a helper of the compiler's.
+fn is_helper(model: &Model, (phase, output): (usize, usize)) -> bool {
+    let phase = &model.layout.phases[phase];
+    model.structure.phases[phase.phase].outputs[phase.outputs[output].output].is_helper()
+}
+
 /// The equations of one phase for given times, variables and inputs.
 pub(super) struct Equations<'a> {
     frame: Frame<'a>,
@@ -72,8 +83,10 @@ impl<'a> Equations<'a> {
         let middle = Point { tau: 0.5, ..Point::start(phase) };
         let mut members = vec![];
         for group in &frame.structure.groups {
-            let Domain::Path { part, .. } = &group.domain else { continue };
-            if !part.is_whole() {
+            let Domain::Path { phase: of, points, part } = &group.domain else { continue };
+            // What holds at the ends of intervals alone is taken back there and moves nothing.
+            let is_at_ends = frame.structure.phases[of.phase].points.get(*points) == Some(&Points::Breakpoints);
+            if !part.is_whole() || is_at_ends {
                 continue;
             }
             let here = |_: &_, _: &[f64], of: usize| if of == phase { vec![middle] } else { vec![] };
@@ -85,15 +98,28 @@ impl<'a> Equations<'a> {
             for source in member.rows.iter().flat_map(|(row, _)| member.sources_of(*row)) {
                 if let Source::Flat { phase: of, at: At::Here, output, derivative } = source {
                     debug_assert_eq!(of, phase, "a point is of one phase");
+                    // What the mesh lets drift is no motion.
+                    if is_helper(&nlp.model, (phase, output)) {
+                        continue;
+                    }
                     let order = orders.entry(output).or_insert(0);
                     *order = derivative.max(*order);
                 }
             }
         }
         // What has no derivative is an input, unless the equations decide that too.
-        let equations: usize = members.iter().map(|member| member.rows.len()).sum();
+        let mut equations: usize = members.iter().map(|member| member.rows.len()).sum();
         if equations != orders.len() {
             orders.retain(|_, order| *order > 0);
+        }
+        if equations != orders.len() {
+            // Where constraint forces are given no equation decides them.
+            for member in &mut members {
+                let group = member.group;
+                member.rows.retain(|(row, _)| !is_derived(&frame, &group.rows[*row]));
+            }
+            members.retain(|member| !member.rows.is_empty());
+            equations = members.iter().map(|member| member.rows.len()).sum();
         }
         if equations != orders.len() || orders.is_empty() {
             return None;
