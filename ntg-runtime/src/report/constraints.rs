@@ -3,7 +3,7 @@
 use super::ending::Missed;
 use super::fine::{Checked, Plan, Wanted};
 use super::foreseen::Foreseen;
-use super::jumped::{Jumped, is_continuous};
+use super::jumped::{Jumped, is_of_states};
 use super::sides::Sides;
 use super::sizes::{Sizes, with_side};
 use super::{ConstraintReport, Worst, multipliers};
@@ -81,7 +81,7 @@ pub(super) fn constraints(
     means.write(nlp, &mut reports);
     // What may not jump does so where an equation of it is missed by all of it in one interval of many.
     let gross = reports.iter_mut().enumerate().filter(|(_, report)| report.is_equation && report.mean_between > 0.0);
-    for (_, report) in gross.filter(|(number, _)| is_continuous(nlp, *number)) {
+    for (_, report) in gross.filter(|(number, _)| is_of_states(nlp, *number)) {
         report.mean_between = report.between.as_ref().map_or(report.mean_between, |worst| worst.relative);
     }
     sides.visit(nlp, (fine, &outcome.x), |place, side| {

@@ -120,6 +120,16 @@ impl<'a> Jumped<'a> {
 
 /// Whether a constraint depends on nothing along phases that may jump by itself, as an input does.
 pub(super) fn is_continuous(nlp: &Transcription, constraint: usize) -> bool {
+    has_only(nlp, constraint, &|of| !may_jump(of))
+}
+
+/// Whether a constraint depends on nothing along phases but what equations of motion move: neither inputs nor highest derivatives.
+pub(super) fn is_of_states(nlp: &Transcription, constraint: usize) -> bool {
+    has_only(nlp, constraint, &|(output, derivative)| derivative < output.spline.smoothness)
+}
+
+/// Whether all outputs and derivatives on which a constraint depends along phases are of a kind.
+fn has_only(nlp: &Transcription, constraint: usize, kind: &dyn Fn((&Output, usize)) -> bool) -> bool {
     let own = |info: &&RowInfo| {
         matches!(info.kind, RowKind::Constraint(of) if of == constraint) && info.point.phase.is_some()
     };
@@ -130,7 +140,7 @@ pub(super) fn is_continuous(nlp: &Transcription, constraint: usize) -> bool {
         };
         let sources = batch.batch.sources();
         let mut slots = block.jacobian.iter().filter(|(of, _)| *of == function).map(|(_, slot)| *slot);
-        !slots.any(|slot| sources.get(slot).and_then(|source| declared(nlp, source)).is_some_and(may_jump))
+        slots.all(|slot| sources.get(slot).and_then(|source| declared(nlp, source)).is_none_or(kind))
     })
 }
 

@@ -12,7 +12,7 @@ use crate::transcribe::shape::trace;
 use crate::transcribe::slots::Source;
 use crate::transcribe::{Model, Transcription};
 use nalgebra::{DMatrix, DVector};
-use ntg_structure::{At, Block, Domain, Group, Points, Row};
+use ntg_structure::{At, Domain, Group, Points, Row};
 use std::collections::BTreeMap;
 
 /// One member of a group with equalities.
@@ -25,11 +25,6 @@ pub(super) struct Member<'a> {
     pub(super) rows: Vec<(usize, f64)>,
     /// Row and slot of every first derivative.
     pub(super) pattern: Vec<(usize, usize)>,
-}
-
-/// Whether a row is the compiler's own: a derivative of an equation between states (docs/maths.md, section 4.9).
-fn is_derived(frame: &Frame, row: &Row) -> bool {
-    matches!(row, Row::Constraint { constraint, .. } if frame.structure.constraints[*constraint].block == Block::Corner)
 }
 
 impl<'a> Member<'a> {
@@ -108,18 +103,9 @@ impl<'a> Equations<'a> {
             }
         }
         // What has no derivative is an input, unless the equations decide that too.
-        let mut equations: usize = members.iter().map(|member| member.rows.len()).sum();
+        let equations: usize = members.iter().map(|member| member.rows.len()).sum();
         if equations != orders.len() {
             orders.retain(|_, order| *order > 0);
-        }
-        if equations != orders.len() {
-            // Where constraint forces are given no equation decides them.
-            for member in &mut members {
-                let group = member.group;
-                member.rows.retain(|(row, _)| !is_derived(&frame, &group.rows[*row]));
-            }
-            members.retain(|member| !member.rows.is_empty());
-            equations = members.iter().map(|member| member.rows.len()).sum();
         }
         if equations != orders.len() || orders.is_empty() {
             return None;
