@@ -5,6 +5,7 @@
 //! what the equations of motion say there, or contradict them by the order of the mesh.
 //! Takes equations of states alone along a whole phase. Those whose rate along the motion is 0, for all states and inputs or
 //! wherever all of these equations hold, are imposed at the start of the phase, and noted; reports look at them everywhere.
+//! Those that inputs keep are differentiated (`reduced`); those whose branches meet are left as they are (`regular`).
 
 mod junctions;
 mod motion;
@@ -41,8 +42,6 @@ const ORDINARY: Draw = Draw { seed: 0, decades: 0.0, is_positive: true, is_turne
 const MOST_MEMBERS: usize = 4096;
 /// The most leaves of formulas that are evaluated for one spec. A choice: a spec of that many is compiled in seconds anyway.
 const MOST_LEAVES: usize = 500_000;
-
-const NOTHING: &str = "nothing is to be done: reports look at it everywhere; in `initial { }` it would say the same";
 
 /// An equation that follows from the equations of motion.
 struct Invariant {
@@ -108,12 +107,14 @@ impl Elaborator<'_> {
             _ => "this equation follows from the equations of motion once it holds at the start, and is imposed there alone"
                 .to_owned(),
         };
-        self.report(Diagnostic::new(Code::Invariant, span, message).help(NOTHING));
+        let help = "nothing is to be done: reports look at it everywhere; in `initial { }` it would say the same";
+        self.report(Diagnostic::new(Code::Invariant, span, message).help(help));
     }
 
     fn note_implied(&mut self, span: Span) {
         let message = "this equation follows from the others along the phase, and is imposed by them";
-        self.report(Diagnostic::new(Code::Invariant, span, message).help(NOTHING));
+        let help = "nothing is to be done: reports look at it everywhere";
+        self.report(Diagnostic::new(Code::Invariant, span, message).help(help));
     }
 
     fn invariants_of(&mut self, phase: usize, budget: &mut Budget) -> (Vec<Invariant>, Kept) {

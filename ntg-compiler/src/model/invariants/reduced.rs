@@ -384,29 +384,17 @@ fn are_decided(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> Option
     let mut free = point.free.replace(vec![])?;
     free.sort_unstable();
     free.dedup();
-    let mut slopes = vec![vec![0.0; free.len()]; rows.len()];
-    let mut largest = vec![0.0_f64; rows.len()];
-    for (k, state) in free.iter().chain(states).enumerate() {
-        let at = point.state(state);
-        let step = DIFFERENCE * if at == 0.0 { 1.0 } else { at.abs() };
-        point.put(*state, at + step);
-        let above = values(rows, point)?;
-        point.put(*state, at - step);
-        let below = values(rows, point)?;
-        point.put(*state, at);
-        for (row, (above, below)) in above.iter().zip(&below).enumerate() {
-            let change = (above - below) / DIFFERENCE;
-            largest[row] = largest[row].max(change.abs());
-            if let Some(slope) = slopes[row].get_mut(k) {
-                *slope = change;
-            }
-        }
-    }
-    for (row, size) in slopes.iter_mut().zip(&largest) {
-        let own = row.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        if own <= surface::DEPENDENT * size {
+    let all: Vec<State> = free.iter().chain(states).copied().collect();
+    let sizes: Vec<f64> = all.iter().map(|state| surface::size(point.state(state))).collect();
+    let mut slopes = surface::differences(&|point| values(rows, point), &all, point, DIFFERENCE)?;
+    for row in &mut slopes {
+        row.iter_mut().zip(&sizes).for_each(|(slope, size)| *slope *= size);
+        let most = |slopes: &[f64]| slopes.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
+        let (largest, own) = (most(row), most(&row[..free.len()]));
+        if own <= surface::DEPENDENT * largest {
             return Some(false);
         }
+        row.truncate(free.len());
         row.iter_mut().for_each(|slope| *slope /= own);
     }
     Some(surface::rank(slopes) == rows.len())

@@ -115,22 +115,38 @@ fn misses(rows: &[&Row], point: &mut Point<'_>) -> Option<Vec<Number>> {
     rows.iter().map(|row| row.miss(point)).collect()
 }
 
-/// The derivatives of each row by every state, by differences.
+/// The derivatives of each row by every state.
 pub(super) fn slopes(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> Option<Vec<Vec<f64>>> {
-    let mut slopes = vec![vec![0.0; states.len()]; rows.len()];
-    for (k, state) in states.iter().enumerate() {
+    let values = |point: &mut Point<'_>| Some(misses(rows, point)?.iter().map(|number| number.value).collect());
+    differences(&values, states, point, DIFFERENCE)
+}
+
+/// The derivatives of values by every state, by central differences of a part of the state.
+pub(super) fn differences(
+    values: &dyn Fn(&mut Point<'_>) -> Option<Vec<f64>>,
+    states: &[State],
+    point: &mut Point<'_>,
+    part: f64,
+) -> Option<Vec<Vec<f64>>> {
+    let mut columns = vec![];
+    for state in states {
         let at = point.state(state);
-        let step = DIFFERENCE * if at == 0.0 { 1.0 } else { at.abs() };
+        let step = part * size(at);
         point.put(*state, at + step);
-        let above = misses(rows, point)?;
+        let above = values(point)?;
         point.put(*state, at - step);
-        let below = misses(rows, point)?;
+        let below = values(point)?;
         point.put(*state, at);
-        for (row, (above, below)) in above.iter().zip(&below).enumerate() {
-            slopes[row][k] = (above.value - below.value) / (2.0 * step);
-        }
+        columns
+            .push(above.iter().zip(&below).map(|(above, below)| (above - below) / (2.0 * step)).collect::<Vec<f64>>());
     }
-    Some(slopes)
+    let rows = columns.first().map_or(0, Vec::len);
+    Some((0..rows).map(|row| columns.iter().map(|column| column[row]).collect()).collect())
+}
+
+/// What a state's changes are compared with: itself, or 1 where it is 0.
+pub(super) fn size(at: f64) -> f64 {
+    if at == 0.0 { 1.0 } else { at.abs() }
 }
 
 /// How much of each row's slope the least step is: `(J J^T + d) y = c`, by elimination.
