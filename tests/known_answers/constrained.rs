@@ -319,7 +319,8 @@ fn a_jump_to_the_other_side_is_no_solution() {
     let text = by_its_rod(
         ", a",
         60,
-        "minimize integral(a^2);  initial { x == 0;  y == -1;  u == 0;  v == 0; }  final { y == 1;  u == 0; }",
+        "minimize integral(a^2);  initial { x == 0;  y == -1;  u == 0;  v == 0; }  final { y == 1;  u == 0; }
+         guess { x = 0;  y = 2 * tau - 1; }",
     );
     let report = solved(&text);
     let is_wrong = report.objective < 30.0;

@@ -41,6 +41,7 @@ mod scenarios;
 mod simulations;
 mod sizes;
 mod support;
+mod through_the_centre;
 mod tips;
 mod unbounded;
 mod unresolved;

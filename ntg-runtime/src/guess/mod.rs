@@ -6,6 +6,7 @@
 //!
 //! Finds: names that nothing bears, values that are not finite, wrong numbers of coefficients.
 
+mod aside;
 mod earlier;
 mod program;
 mod route;

@@ -2,6 +2,7 @@
 //!
 //! Takes a transcription and what a program says; gives a vector of variables within their bounds.
 
+use super::aside;
 use super::earlier;
 use super::program::{Base, Guess};
 use super::statements::Statements;
@@ -66,6 +67,7 @@ pub fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, Set
     }
     curves.extend(statements.program_curves(&x)?);
     apply(layout, &curves, &mut x)?;
+    aside::bend(nlp, &curves, &mut x)?;
     finish(nlp, x)
 }
 

@@ -86,7 +86,9 @@ impl Place<'_> {
         let [one, other] = starts.map(|start| row.fold_from(start));
         let (one, other) = (one?, other?);
         let is_same = (&one - &other).amax() <= VANISHED.sqrt() * size;
-        is_same.then(|| open.iter().map(|(_, variable)| *variable).zip(one.iter().copied()).collect())
+        // Differences know a fold to 1e-12 of the size; a rest like this would be taken for a slope in other rows.
+        let rounded = |value: &f64| if value.abs() <= VANISHED * size { 0.0 } else { *value };
+        is_same.then(|| open.iter().map(|(_, variable)| *variable).zip(one.iter().map(rounded)).collect())
     }
 }
 
