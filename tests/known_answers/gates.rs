@@ -98,7 +98,7 @@ fn a_limit_that_is_missed_is_told_of_with_what_shorter_intervals_say() {
     let confirmation = found.confirmation.as_ref().expect("the limit is missed");
     let Doubt::Limit(limit) = confirmation.doubt else { panic!("{confirmation:?}") };
     assert_eq!(found.constraints[limit].name, "v <= 4 - 2.9 * exp(-((x - 5) / 0.3)^2)");
-    assert!(!confirmation.refutes(found.objective) && confirmation.iterations > 0, "{confirmation:?}");
+    assert!(!confirmation.refutes(found.cost()) && confirmation.iterations > 0, "{confirmation:?}");
     let told = |warning: &ntg::runtime::report::Warning| {
         warning.message.contains(" relative) at t = 2.") && warning.message.contains("; on intervals half as long by ")
     };

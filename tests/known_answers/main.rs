@@ -24,6 +24,7 @@ mod gates;
 mod integrals;
 mod invariants;
 mod jumped;
+mod least_of_zero;
 mod limits;
 mod missile;
 mod norms;

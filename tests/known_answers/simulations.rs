@@ -228,3 +228,49 @@ fn a_motion_that_its_own_simulation_does_not_follow_is_none() {
     let report = relay(1.0);
     assert!(report.is_solved() && report.resolution() != Some(Resolution::Unresolved), "{report}");
 }
+
+/// Growth to a bound: the integral of n = K / (1 + (K / n0 - 1) e^-t) is K ln((e^T + K / n0 - 1) n0 / K). And motions of which only
+/// iterations are asked: from a guess that stays at the start they take hundreds.
+#[test]
+fn with_nothing_to_choose_an_objective_is_that_of_the_simulation() {
+    let bounded = "duration T = 15;  state n;  minimize integral(n);  dynamics { der(n) == n * (1 - n / 1000); }  initial { n == 1; }";
+    let optimum = 1e3 * ((15.0_f64.exp() + 999.0) / 1e3).ln();
+    let pendulum = "duration T = 10;  state a, w;  maximize integral(a^2);
+        dynamics { der(a) == w;  der(w) == -9.81 * sin(a) - 0.1 * w; }  initial { a == 2;  w == 0; }";
+    let second_order = "duration T = 10;  state a;  minimize integral(max(0, a));
+        dynamics { der(a, 2) == -9.81 * sin(a) - 0.1 * der(a); }  initial { a == 2;  der(a) == 0; }";
+    let two_phases = "state x, y;  minimize integral(x^2);
+        dynamics { der(x) == y;  der(y) == 2 * (1 - x^2) * y - x; }
+        phase one { duration Ta = 4;  initial { x == 2;  y == 0; } }
+        phase two after one { duration Tb = 8; }";
+    for mesh in ["points = 2, intervals = 40", "points = 3, intervals = 60", "points = 4, intervals = 30"] {
+        for (text, known) in [(bounded, Some(optimum)), (pendulum, None), (second_order, None), (two_phases, None)] {
+            let report = Shipped::text(&format!("problem Motion {{ collocation gauss({mesh});  {text} }}")).solve();
+            assert!(report.is_solved() && report.iterations <= 20, "{report}");
+            if let Some(known) = known {
+                close(report.objective, known, 1e-4);
+            }
+        }
+    }
+}
+
+/// Robertson's reaction: of the second substance there is 1e-5 of the first, and Gauss points without damping leave it below 0. Its
+/// size is that of the simulation, with an objective and without.
+#[test]
+fn a_substance_of_which_there_is_little_counts_as_much() {
+    for objective in ["", "minimize final(a);"] {
+        let report = Shipped::text(&format!(
+            "problem Robertson {{
+                duration T = 40;  state a, b, c;  collocation gauss(points = 3, intervals = 60);  {objective}
+                dynamics {{
+                    der(a) == -0.04 * a + 1e4 * b * c;
+                    der(b) == 0.04 * a - 1e4 * b * c - 3e7 * b^2;
+                    der(c) == 3e7 * b^2;
+                }}
+                initial {{ a == 1;  b == 0;  c == 0; }}
+            }}"
+        ))
+        .solve();
+        assert_eq!(report.resolution(), Some(Resolution::Unresolved), "{report}");
+    }
+}

@@ -72,7 +72,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
             (name): of, (missed): confirmation.missed, "halvings": confirmation.halvings,
             "status": confirmation.status.label(), "objective": confirmation.objective,
             "iterations": confirmation.iterations, "seconds": confirmation.seconds,
-            "refuted": confirmation.refutes(report.objective),
+            "refuted": confirmation.refutes(report.cost()),
         });
     }
     if let Some(refined) = &report.refined {

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::spec::{State, state};
 use super::tables::{number, place_words, prose, with_unit};
 use crate::run::{Constraint, Run};
-use ntg_runtime::report::{Missed, Resolution};
+use ntg_runtime::report::{Cost, Missed, Resolution};
 
 /// What `ntg solve --refine` is told where the objective is off: an error that nobody would see.
 const REFINED: &str = "1e-3";
@@ -19,7 +19,7 @@ fn missed_between(run: &Run) -> Vec<&Constraint> {
 /// The relative difference of the objective and its finer integral, where it is worth a warning. A refined solution tells
 /// of its objective there.
 fn off(run: &Run) -> Option<f64> {
-    let apart = ntg_runtime::report::cost_apart(run.objective, run.objective_fine);
+    let apart = Cost { value: run.objective, zero: run.objective_zero }.apart(run.objective_fine);
     (run.has_solution() && run.refinement.is_none() && apart > run.tolerance()).then_some(apart)
 }
 

@@ -73,6 +73,9 @@ pub struct Run {
     /// The objective integrated on a finer grid.
     #[serde(with = "numbers::one")]
     pub objective_fine: f64,
+    /// What of the objective is 0, in its unit; infinite where it does not vary.
+    #[serde(with = "numbers::one")]
+    pub objective_zero: f64,
     /// The objective's terms.
     pub terms: Vec<Term>,
     /// Iterations of all steps of a continuation.

@@ -72,6 +72,7 @@ impl Recording<'_> {
             objective: report.objective,
             objective_unit: report.objective_unit.symbol.clone(),
             objective_fine: report.objective_fine,
+            objective_zero: report.objective_zero,
             terms: report.terms.iter().map(term).collect(),
             iterations: report.iterations,
             seconds: report.seconds,

@@ -66,7 +66,7 @@ impl Report {
         };
         let until = settings.time_limit.map(|limit| began + limit);
         let mut last = None;
-        while found.halvings < HALVINGS && found.asks_more(self.objective, settings.between_tolerance) {
+        while found.halvings < HALVINGS && found.asks_more(self.cost(), settings.between_tolerance) {
             let marks = halved(&nlp);
             drop(nlp);
             let finer = mesh.edited(|structure| split(structure, &marks));

@@ -1,8 +1,7 @@
 //! What solves on shorter intervals say of a solution that leaves its own equations of motion, its limits between the points, or
 //! the objective that it has there (docs/maths.md, section 9).
 
-use super::Resolution;
-use super::cost::cost_apart;
+use super::{Cost, Resolution};
 use crate::digits::brief;
 use crate::status::Status;
 
@@ -49,17 +48,15 @@ impl Confirmation {
     /// unresolved by itself; that of a goal out of reach falls at most by chance.
     const FALLS: f64 = 0.7;
 
-    /// Whether one more solve, on intervals half as long again, has something to tell. `objective` is that of the solution,
+    /// Whether one more solve, on intervals half as long again, has something to tell. `cost` is the objective of the solution,
     /// `tolerance` what is worth a warning. A limit is missed less on shorter intervals wherever it can be kept, but how fast
     /// the miss falls tells nothing: it does not at all where what is limited would jump, as an acceleration. The objective
     /// does: the way through what is closed hangs on the length of the intervals.
-    pub(crate) fn asks_more(&self, objective: f64, tolerance: f64) -> bool {
+    pub(crate) fn asks_more(&self, cost: Cost, tolerance: f64) -> bool {
         match self.doubt {
             Doubt::Motion(_) => self.falls() && self.missed.last() > Some(&tolerance),
             Doubt::Limit(_) | Doubt::Objective if self.halvings == 0 => true,
-            Doubt::Limit(_) | Doubt::Objective => {
-                !self.refutes(objective) && cost_apart(objective, self.objective) > tolerance
-            }
+            Doubt::Limit(_) | Doubt::Objective => !self.refutes(cost) && cost.apart(self.objective) > tolerance,
         }
     }
 
@@ -73,9 +70,9 @@ impl Confirmation {
     const APART: f64 = 0.25;
 
     /// Whether the solution is one of the points alone, as far as is known: nothing like it was found on shorter intervals.
-    /// `objective` is that of the solution.
-    pub fn refutes(&self, objective: f64) -> bool {
-        let is_apart = || cost_apart(objective, self.objective) > Self::APART;
+    /// `cost` is the objective of the solution.
+    pub fn refutes(&self, cost: Cost) -> bool {
+        let is_apart = || cost.apart(self.objective) > Self::APART;
         match (&self.doubt, self.status.has_solution()) {
             (Doubt::Motion(_), true) => !self.falls() || is_apart(),
             (Doubt::Motion(_), false) => self.status != Status::Cancelled,
@@ -87,13 +84,13 @@ impl Confirmation {
         }
     }
 
-    /// Whether the objective on shorter intervals is another one than `objective` by more than `tolerance`, or nothing is.
-    pub(super) fn is_another(&self, objective: f64, tolerance: f64) -> bool {
-        self.refutes(objective) || self.status.has_solution() && cost_apart(objective, self.objective) > tolerance
+    /// Whether the objective on shorter intervals is another one than `cost` by more than `tolerance`, or nothing is.
+    pub(super) fn is_another(&self, cost: Cost, tolerance: f64) -> bool {
+        self.refutes(cost) || self.status.has_solution() && cost.apart(self.objective) > tolerance
     }
 
     /// What a person should know; of a limit, and of an objective, what follows upon how it is missed.
-    pub(super) fn words(&self, objective: f64) -> String {
+    pub(super) fn words(&self, cost: Cost) -> String {
         let percent = |part: &f64| match part.is_finite() {
             true => format!("by {} %", brief((1e3 * part).round() / 10.0)),
             false => "by more than can be followed".to_owned(),
@@ -121,7 +118,7 @@ impl Confirmation {
             Doubt::Objective => "more points in each interval are needed, or more intervals",
             _ => "the points are too few, and what is asked may be out of reach",
         };
-        match (self.status.has_solution(), self.refutes(objective)) {
+        match (self.status.has_solution(), self.refutes(cost)) {
             (true, false) => format!("{left}; on intervals {length} {found}"),
             (true, true) => format!("{left}; on intervals {length} {found}: {doubt}"),
             (false, true) if self.status == Status::TimeLimit => {

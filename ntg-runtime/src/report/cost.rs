@@ -1,22 +1,51 @@
 //! The objective by terms, as discretised and on the finer grid.
 
 use super::TermReport;
-use crate::transcribe::Transcription;
-use ntg_nlp::Evaluation;
+use crate::transcribe::{Transcription, Workspace};
+use ntg_nlp::scaling::beside;
+use ntg_nlp::{Evaluation, Nlp};
 use ntg_structure::{Row, Structure, Term};
 
-/// An objective below this, in its unit, is what a solve to tolerances of 1e-8 leaves of zero. A fit.
-const ZERO: f64 = 1e-9;
+/// An objective below this part of what it varies by beside the solution is 0. A law: the tolerance of an acceptable end.
+const ZERO: f64 = 1e-6;
 
-/// The difference of an objective and its finer integral, relative to the larger of both; 0 where both are next to nothing
-/// or the objective is no number, 1 where only the finer integral is none.
-pub fn cost_apart(objective: f64, fine: f64) -> f64 {
-    if objective.is_finite() && !fine.is_finite() {
-        return 1.0;
+/// An objective, to be compared with another value of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// In the user's sense and unit.
+    pub value: f64,
+    /// What is below this is 0, in the same unit (docs/maths.md, equation 9.2a); infinite where the objective does not vary.
+    pub zero: f64,
+}
+
+impl Cost {
+    /// The difference from another value, as its finer integral or the objective on another mesh, relative to the larger of both;
+    /// 0 where both are next to nothing or the objective is no number, 1 where only the other one is none.
+    pub fn apart(self, other: f64) -> f64 {
+        if self.value.is_finite() && !other.is_finite() {
+            return 1.0;
+        }
+        let size = self.value.abs().max(other.abs());
+        let apart = (other - self.value).abs() / size;
+        if size > self.zero && apart.is_finite() { apart } else { 0.0 }
     }
-    let size = objective.abs().max(fine.abs());
-    let apart = (fine - objective).abs() / size;
-    if size > ZERO && apart.is_finite() { apart } else { 0.0 }
+}
+
+/// What of an objective is 0 at a solution, SI. `objective` is its value there; `at` and `work` are overwritten.
+pub(super) fn zero(
+    nlp: &Transcription,
+    (x, objective): (&[f64], f64),
+    work: &mut Workspace,
+    at: &mut Evaluation,
+) -> f64 {
+    let mut near = x.to_vec();
+    beside(x, &nlp.limits, &nlp.limits.scale, &mut near);
+    let varies = nlp.values(&near, work, at).map_or(0.0, |()| (at.objective - objective).abs());
+    match varies {
+        0.0 => f64::INFINITY,
+        varies if varies.is_finite() => ZERO * varies,
+        _ => 0.0,
+    }
 }
 
 /// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.

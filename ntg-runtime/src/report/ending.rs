@@ -1,6 +1,6 @@
 //! How a solve ended, as the heads of texts, pages and files say it: what is missed between the points is no good end.
 
-use super::cost::cost_apart;
+use super::Cost;
 use super::{Confirmation, Report};
 use crate::settings::Settings;
 use crate::status::Status;
@@ -124,7 +124,7 @@ impl Report {
         });
         let cost = Missed::Objective(self.cost_missed());
         let equations = Missed::Objective(self.correction_part());
-        let refutes = |confirmation: &Confirmation| confirmation.refutes(self.objective);
+        let refutes = |confirmation: &Confirmation| confirmation.refutes(self.cost());
         let is_elsewhere = self.simulation.as_ref().is_some_and(|simulated| simulated.apart > Elsewhere::OTHER);
         if is_elsewhere || !self.poles.is_empty() || self.confirmation.as_ref().is_some_and(refutes) {
             return Some(Resolution::Unresolved);
@@ -132,17 +132,22 @@ impl Report {
         Some(Resolution::of(constraints.chain([cost, equations]), self.between_tolerance))
     }
 
+    /// The objective, to be compared with other values of it.
+    pub fn cost(&self) -> Cost {
+        Cost { value: self.objective, zero: self.objective_zero }
+    }
+
     /// What equations that are missed between the points are worth of the objective, as a part of the larger of the
     /// objectives without and with it.
     pub(crate) fn correction_part(&self) -> f64 {
-        cost_apart(self.objective, self.objective + self.objective_correction)
+        self.cost().apart(self.objective + self.objective_correction)
     }
 
     /// How far the objective is from its finer integral, as a part of the larger of both; after refinement as that has
     /// measured it.
     pub(super) fn cost_missed(&self) -> f64 {
         match &self.refined {
-            None => cost_apart(self.objective, self.objective_fine),
+            None => self.cost().apart(self.objective_fine),
             Some(refined) => {
                 let own = refined.rounds.iter().rev().find(|round| round.fine == self.objective_fine);
                 own.map_or(0.0, |round| round.quadrature)

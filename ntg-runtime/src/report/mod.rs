@@ -27,7 +27,7 @@ mod warnings;
 
 pub use crate::transcribe::rows::member_words;
 pub use confirmation::{Confirmation, Doubt};
-pub use cost::cost_apart;
+pub use cost::Cost;
 pub(crate) use ending::Elsewhere;
 pub use ending::{Missed, Resolution};
 pub use estimate::{Deviation, Estimate, MeasurementReport, Residual};
@@ -88,9 +88,11 @@ pub struct Report {
     /// The objective integrated on the finer grid: closer to what flying would cost.
     pub objective_fine: f64,
     /// What is to be added to the objective, to first order, for what equations along phases miss between the points
-    /// (docs/maths.md, equation 9.3c); 0 where there are none.
+    /// (docs/maths.md, equation 9.3c); 0 where there are none, or the objective does not vary.
     pub objective_correction: f64,
-    /// The unit of all three.
+    /// What of the objective is 0 (docs/maths.md, equation 9.2a); infinite where the objective does not vary.
+    pub objective_zero: f64,
+    /// The unit of all four.
     pub objective_unit: Unit,
     /// The objective's terms; they add up to it.
     pub terms: Vec<TermReport>,
@@ -314,6 +316,7 @@ impl Report {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };
         let violation = Violations { points: largest(|c| c.points.as_ref()), between: largest(|c| c.between.as_ref()) };
+        let zero = cost::zero(nlp, (&outcome.x, outcome.objective), work, at) / structure.objective_unit.factor;
         let mut told = warnings::shortest(nlp, &outcome.x);
         let solution = Solution {
             inner: Arc::new(Inner {
@@ -338,9 +341,11 @@ impl Report {
             told.extend(hints::integrated_norm(nlp));
         }
         let (objective, objective_fine) = (user(nlp, outcome.objective), user(nlp, on_fine.terms.iter().sum()));
-        let objective_correction = user(nlp, on_fine.correction);
+        // Without an objective that varies multipliers say nothing.
+        let objective_correction = if zero.is_finite() { user(nlp, on_fine.correction) } else { 0.0 };
+        let cost = Cost { value: objective, zero };
         let tolerance = Settings::default().between_tolerance;
-        let is_off = status.has_solution() && cost_apart(objective, objective_fine) > tolerance;
+        let is_off = status.has_solution() && cost.apart(objective_fine) > tolerance;
         // Where an equation is missed by more than its terms, or the cost is another, there may be a pole.
         if is_off || (status.has_solution() && violation.between > 1.0 - tolerance) || status == Status::Unbounded {
             told.extend(hints::poles(nlp, solution.coefficients())?);
@@ -352,6 +357,7 @@ impl Report {
             objective,
             objective_fine,
             objective_correction,
+            objective_zero: cost.zero,
             objective_unit: structure.objective_unit.clone(),
             terms,
             estimate,

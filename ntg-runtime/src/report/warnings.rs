@@ -64,7 +64,7 @@ impl Report {
         });
         let motion = self.confirmation.iter().filter(|confirmation| matches!(confirmation.doubt, Doubt::Motion(_)));
         let left = motion.map(|confirmation| Warning {
-            message: confirmation.words(self.objective),
+            message: confirmation.words(self.cost()),
             place: equation.map_or_else(Place::default, |constraint| constraint.place.clone()),
             constraint: String::new(),
             time: None,
@@ -73,7 +73,7 @@ impl Report {
         let between = self.violated().into_iter().map(|(number, constraint)| {
             let own = self.confirmation.as_ref().filter(|confirmation| confirmation.doubt == Doubt::Limit(number));
             let mut warning = violated_between(constraint, independent);
-            warning.message += &own.map_or(String::new(), |own| own.words(self.objective));
+            warning.message += &own.map_or(String::new(), |own| own.words(self.cost()));
             warning
         });
         let unmet = self.refined.iter().filter(|refined| refined.status != RefineStatus::Met).map(|refined| Warning {
@@ -103,13 +103,13 @@ impl Report {
         let own = self.confirmation.as_ref().filter(|confirmation| confirmation.doubt == Doubt::Objective);
         let Some(own) = own else { return };
         let is_silent = cost.is_empty() && !own.status.has_solution();
-        if own.is_another(self.objective, self.between_tolerance) || is_silent {
+        if own.is_another(self.cost(), self.between_tolerance) || is_silent {
             let lead = if is_silent { "may depend" } else { "depends" };
             let objective = brief(self.objective);
-            let message = format!("the objective, {objective}, {lead} on the mesh{}", own.words(self.objective));
+            let message = format!("the objective, {objective}, {lead} on the mesh{}", own.words(self.cost()));
             *cost = vec![self.of_objective(message)];
         } else if let Some(last) = cost.last_mut() {
-            last.message += &own.words(self.objective);
+            last.message += &own.words(self.cost());
         }
     }
 

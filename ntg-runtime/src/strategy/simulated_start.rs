@@ -1,5 +1,5 @@
-//! A simulation first: where a spec has no objective, so that there is one motion to find, which is mostly the simulation
-//! itself (docs/maths.md, section 8.6).
+//! A simulation first: where a spec has no objective, or leaves nothing free, so that there is one motion to find, which is mostly
+//! the simulation itself (docs/maths.md, section 8.6).
 
 use super::budget::Budget;
 use super::session::{FirstPoint, Session, Task};
@@ -7,11 +7,13 @@ use crate::digits::brief;
 use crate::guess::{Guess, simulated};
 use crate::report::Elsewhere;
 use crate::settings::{Method, Settings};
+use crate::transcribe::points::Point;
+use crate::transcribe::slots::AffineMap;
 use crate::transcribe::{SetupError, Transcription, names};
-use ntg_nlp::{Outcome, Start};
+use ntg_nlp::{Nlp, Outcome, Start};
 
 impl Session {
-    /// An attempt from a simulation for the guess `x`, where there is no objective; none elsewhere. Scales are those of the
+    /// An attempt from a simulation for the guess `x`, where there is one motion to find; none elsewhere. Scales are those of the
     /// simulation afterwards.
     pub(super) fn solve_simulated(
         &mut self,
@@ -31,9 +33,50 @@ impl Session {
     }
 }
 
-/// Whether there is no objective: one motion is to be found.
+/// Whether one motion is to be found: there is no objective, or nothing that it could choose.
 fn is_only_motion(nlp: &Transcription) -> bool {
-    nlp.model.structure.terms.is_empty()
+    nlp.model.structure.terms.is_empty() || has_no_freedom(nlp) && begins_as_given(nlp)
+}
+
+/// Whether all that moves is given where its agent starts: a motion between conditions at both ends may be far from the one that
+/// follows from a guess of its start.
+fn begins_as_given(nlp: &Transcription) -> bool {
+    let layout = &nlp.model.layout;
+    layout.agents.iter().all(|agent| {
+        let phase = agent.phases.start;
+        let (member, at) = (&layout.phases[phase], Point::start(phase));
+        let declared = |output: usize| &nlp.model.structure.phases[member.phase].outputs[member.outputs[output].output];
+        let is_given = |output: usize, derivative: usize| {
+            let terms = layout.basis(phase, output, derivative, at.tau, at.side);
+            nlp.linear.value(&AffineMap { terms, offset: 0.0 }).is_some()
+        };
+        let mut moving = (0..member.outputs.len()).filter(|output| !declared(*output).is_helper());
+        moving.all(|output| (0..declared(output).spline.smoothness).all(|derivative| is_given(output, derivative)))
+    })
+}
+
+/// Whether equations are as many as the variables that are not fixed and stand in them. What stands in none, as the helper of a
+/// corner, moves nothing.
+fn has_no_freedom(nlp: &Transcription) -> bool {
+    let limits = nlp.limits();
+    let mut stands = vec![false; limits.lower.len()];
+    let mut equations = 0;
+    for (row, info) in nlp.elements.rows.iter().enumerate() {
+        if limits.row_lower[row] != limits.row_upper[row] {
+            continue;
+        }
+        equations += 1;
+        let (number, element, function) = info.maker;
+        let block = &nlp.blocks()[number];
+        let variables = block.variables(element);
+        for (_, slot) in block.jacobian.iter().filter(|(of, _)| *of == function) {
+            let map = &block.map(element)[slot * variables.len()..][..variables.len()];
+            let own = variables.iter().zip(map).filter(|(_, c)| **c != 0.0);
+            own.for_each(|(variable, _)| stands[*variable as usize] = true);
+        }
+    }
+    let is_open = |(j, stands): (usize, &bool)| *stands && limits.lower[j] < limits.upper[j];
+    stands.iter().enumerate().filter(|own| is_open(*own)).count() <= equations
 }
 
 /// How much further than this part of their sizes outputs may be from the simulation. A law: a hundred times its tolerance.

@@ -87,6 +87,8 @@ impl Session {
                 }
             }
             match &guessed {
+                // Sizes are those of the simulation.
+                _ if is_simulated => {}
                 Some(guessed) => nlp.set_scales_near(&first, guessed, settings)?,
                 // A saved solution may lie at bounds as one on coarser knots does.
                 None if i == 0 && guess.is_some_and(Guess::is_near) => {
