@@ -5,13 +5,14 @@
 //! bends one of these to the side, by as much as the equation asks for where its slope is least.
 
 use super::start::{Curve, apply, pointwise};
+use crate::transcribe::elements::GroupBatch;
 use crate::transcribe::layout::Layout;
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::slots::Source;
 use crate::transcribe::{SetupError, Transcription, Workspace};
 use nalgebra::DVector;
 use ntg_nlp::{Evaluation, Nlp};
-use ntg_structure::{Block, Degree, Domain};
+use ntg_structure::{Block, Degree, Domain, Row};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::PI;
 
@@ -25,11 +26,12 @@ const SWEEPS: usize = 8;
 
 /// Bends outputs that nobody guesses to the side where an equation would have next to no slope.
 pub(super) fn bend(nlp: &Transcription, guessed: &[Curve], x: &mut [f64]) -> Result<(), SetupError> {
-    let mut chains = Chains::new(nlp, guessed);
-    let equations = equations(nlp, &chains);
-    if equations.is_empty() {
+    let candidates = candidates(nlp);
+    if !candidates.iter().flatten().any(|is_one| *is_one) {
         return Ok(());
     }
+    let mut chains = Chains::new(nlp, guessed);
+    let equations = equations(nlp, &candidates, &chains);
     equations.values().flat_map(|places| chains_of(places)).for_each(|chain| chains.all[chain].equations += 1);
     let mut program = Program::new(nlp);
     // A body that hangs on another one moves to the side with it, and then by its own length.
@@ -57,29 +59,48 @@ struct Place {
     slots: Vec<(usize, usize)>,
 }
 
-/// The equations between values of outputs alone along whole phases that are not linear: by constraint, indices and agent the rows
-/// in order of time.
-fn equations(nlp: &Transcription, chains: &Chains) -> BTreeMap<(usize, Vec<i64>, usize), Vec<Place>> {
-    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+/// By block and function, whether it is an equation between values of outputs alone along whole phases that is not linear.
+fn candidates(nlp: &Transcription) -> Vec<Vec<bool>> {
+    let structure = &nlp.model.structure;
+    let is_one = |(group, block): (&GroupBatch, &ntg_nlp::Block), function: usize| {
+        let declared = &structure.groups[group.group];
+        let is_equation = match &declared.rows[function] {
+            Row::Constraint { constraint, lower: Some(lower), upper: Some(upper) } => {
+                lower == upper && structure.constraints[*constraint].block != Block::Corner
+            }
+            _ => false,
+        };
+        let sources = group.batch.sources();
+        let is_value = |slot: usize| matches!(sources.get(slot), Some(Source::Flat { derivative: 0, .. }));
+        let mut slots = block.jacobian.iter().filter(|(of, _)| *of == function).map(|(_, slot)| *slot);
+        is_equation
+            && matches!(declared.domain, Domain::Path { .. })
+            && group.degree[function] > Degree::Linear
+            && slots.all(is_value)
+    };
+    let pairs = nlp.elements.batches.iter().zip(&nlp.elements.blocks);
+    pairs.map(|pair| (0..pair.1.rows).map(|function| is_one(pair, function)).collect()).collect()
+}
+
+/// These equations: by constraint, indices and agent their rows in order of time.
+fn equations(
+    nlp: &Transcription,
+    candidates: &[Vec<bool>],
+    chains: &Chains,
+) -> BTreeMap<(usize, Vec<i64>, usize), Vec<Place>> {
+    let layout = &nlp.model.layout;
     let mut found: BTreeMap<_, Vec<Place>> = BTreeMap::new();
     for (row, info) in nlp.elements.rows.iter().enumerate() {
         let (RowKind::Constraint(constraint), Some(phase)) = (info.kind, info.point.phase) else { continue };
         let (number, element, function) = info.maker;
-        let (Some(group), Some(block)) = (nlp.elements.batches.get(number), nlp.elements.blocks.get(number)) else {
-            continue;
-        };
-        let is_equation = nlp.limits.row_lower[row] == nlp.limits.row_upper[row]
-            && structure.constraints[constraint].block != Block::Corner
-            && matches!(structure.groups[group.group].domain, Domain::Path { .. })
-            && group.degree[function] > Degree::Linear;
-        if !is_equation {
+        if !candidates.get(number).is_some_and(|own| own[function]) {
             continue;
         }
-        let (sources, variables) = (group.batch.sources(), block.variables(element));
+        let block = &nlp.elements.blocks[number];
+        let variables = block.variables(element);
         let own = block.jacobian.iter().enumerate().filter(|(_, (of, _))| *of == function);
         let slots = own.map(|(entry, (_, slot))| {
-            let Some(Source::Flat { derivative: 0, .. }) = sources.get(*slot) else { return None };
-            let map = block.map(element).chunks_exact(variables.len().max(1)).nth(*slot)?;
+            let map = &block.map(element)[slot * variables.len()..][..variables.len()];
             let (variable, _) = variables.iter().zip(map).find(|(_, c)| **c != 0.0)?;
             Some((entry, *chains.owner.get(variable)?))
         });
