@@ -150,3 +150,83 @@ fn a_duration_that_is_worth_its_length_ends_at_its_bound() {
     assert!(report.is_solved(), "{report}");
     close(report.objective * 1e9, 1.2, 1e-6);
 }
+
+/// Round a disc in the middle of the way, with a limit of speed that is flat at rest: two tangents of sqrt(9.01 - 1) and the arc
+/// between them, in seconds, microseconds and days.
+#[test]
+fn a_limit_that_is_flat_at_rest_tells_how_long_a_duration_is() {
+    for seconds in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+        for (points, intervals) in [(3, 20), (4, 25)] {
+            let report = Shipped::text(&format!(
+                "problem Disc {{
+                    let s = {seconds} [s];
+                    duration T in 0 ..;
+                    state x, y [m];  input a, c [m/s];  collocation gauss(points = {points}, intervals = {intervals});
+                    minimize T / s;
+                    dynamics {{ der(x) == a;  der(y) == c; }}
+                    trajectory {{ a^2 + c^2 <= (1 [m] / s)^2;  x^2 + (y - 0.1 [m])^2 >= 1 [m^2]; }}
+                    initial {{ x == -3 [m];  y == 0; }}
+                    final {{ x == 3 [m];  y == 0; }}
+                }}"
+            ))
+            .solve();
+            let centre = (9.01_f64).sqrt();
+            let arc = std::f64::consts::PI - 2.0 * (1.0 / centre).acos() - 2.0 * 0.1_f64.atan2(3.0);
+            assert!(report.is_solved() && report.iterations < 80, "{report}");
+            close(report.objective, 2.0 * 8.01_f64.sqrt() + arc, 1e-3);
+        }
+    }
+}
+
+/// A car that is parked sideways. Without a range for its duration the solve ran off to 1e6 seconds, from a guess of it too.
+#[test]
+fn a_duration_does_not_run_off() {
+    for guess in ["", "guess { T = 12; }"] {
+        for intervals in [12, 20, 40] {
+            let report = Shipped::text(&format!(
+                "problem Park {{
+                    duration T in 0 ..;
+                    state x, y, psi, v in -2 .. 2, d in -0.57 .. 0.57;
+                    input a in -1 .. 1, w in -0.5 .. 0.5;
+                    collocation gauss(points = 3, intervals = {intervals});
+                    minimize T;
+                    dynamics {{
+                        der(x) == v * cos(psi);  der(y) == v * sin(psi);  der(psi) == v * tan(d) / 2.8;
+                        der(v) == a;  der(d) == w;
+                    }}
+                    initial {{ x == 0;  y == 0;  psi == 0;  v == 0;  d == 0; }}
+                    final {{ x == 0;  y == 2;  psi == 0;  v == 0;  d == 0; }}
+                    {guess}
+                }}"
+            ))
+            .solve();
+            assert!(report.is_solved() && report.iterations < 500, "{report}");
+            close(report.objective, 9.36, 0.02);
+        }
+    }
+}
+
+/// From 7000 km to 10500 km by a thrust along a free direction, in km and s: the time is that of canonical units.
+#[test]
+fn a_transfer_takes_an_hour_in_seconds() {
+    for intervals in [12, 20, 40] {
+        let report = Shipped::text(&format!(
+            "problem Transfer {{
+                duration T in 0 [s] ..;
+                state r in 1000 [km] .., vr [km/s], vt [km/s];  input al [rad];
+                collocation gauss(points = 3, intervals = {intervals});
+                minimize T;
+                dynamics {{
+                    der(r) == vr;
+                    der(vr) == vt^2 / r - 398600.4418 [km^3/s^2] / r^2 + 8.13470289387755e-4 [km/s^2] * sin(al);
+                    der(vt) == -vr * vt / r + 8.13470289387755e-4 [km/s^2] * cos(al);
+                }}
+                initial {{ r == 7000 [km];  vr == 0;  vt == 7.546053290107541 [km/s]; }}
+                final {{ r == 10500 [km];  vr == 0;  vt == 6.161326710871226 [km/s]; }}
+            }}"
+        ))
+        .solve();
+        assert!(report.is_solved() && report.iterations < 250, "{report}");
+        close(report.objective, 3730.7, 1e-4);
+    }
+}

@@ -76,6 +76,11 @@ impl<'a> Budget<'a> {
         self.at_most(self.share(COARSE))
     }
 
+    /// Settings of an attempt with durations in a range that may be too short; none where nothing is left.
+    pub(super) fn range(&self) -> Option<Settings> {
+        self.at_most(self.share(FURTHER))
+    }
+
     /// Settings of a solve with corners held at their sides; none where nothing is left.
     pub(super) fn held(&self) -> Option<Settings> {
         self.at_most(self.share(HELD))

@@ -115,6 +115,15 @@ impl Session {
         };
         let guessed = guessed.filter(|_| settings.method == Method::Auto);
         let spent = budget.spent();
+        if settings.method == Method::Auto && matches!(first.from, Start::Cold) && simulated.is_none() {
+            if let Some(outcome) = self.solve_within_ranges(nlp, (task, first.x), budget)? {
+                return Ok(Outcome { iterations: budget.spent() - spent, ..outcome });
+            }
+            nlp.set_scales(first.x, &settings)?;
+        }
+        let Some(settings) = budget.attempt() else {
+            return Ok(Outcome::failed(nlp, first.x, budget.reached()));
+        };
         let near = guessed.and_then(|_| budget.near());
         let (mut outcome, moved) = self.begin(nlp, first, near.as_ref().unwrap_or(&settings))?;
         budget.spend(outcome.iterations);

@@ -21,6 +21,7 @@ mod fallback;
 mod feasible_guess;
 mod held_sides;
 mod one_sided;
+mod open_durations;
 mod relaxation;
 mod session;
 mod simulated_start;

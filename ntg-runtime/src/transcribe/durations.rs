@@ -62,19 +62,22 @@ impl Transcription<'_> {
             durations.push(FreeDuration { variable, guess, reach: upper, is_guarded });
         }
         self.durations = durations;
-        let Some(typical) = self.typical_duration() else { return };
+        let typical = self.typical_duration();
         for i in 0..self.durations.len() {
             let known = self.durations[i];
-            let guess = self.duration_near(&known, typical);
-            let is_far = |bound: f64| bound > 10f64.powi(FAR) * guess || bound.is_infinite();
-            if guess == known.guess && !known.reach.is_infinite() || !is_far(known.reach) {
+            let is_open = known.reach.is_infinite();
+            let guess = typical.map_or(known.guess, |typical| self.duration_near(&known, typical));
+            let is_far = |bound: f64| bound > 10f64.powi(FAR) * guess;
+            if guess == known.guess && !is_open || !is_far(known.reach) {
                 continue;
             }
-            let reach = 2.0 * guess;
-            self.durations[i] = FreeDuration { guess, reach, ..known };
             if known.is_guarded {
-                self.limits.lower[known.variable as usize] = shortest_duration(reach);
+                self.limits.lower[known.variable as usize] = shortest_duration(2.0 * guess);
             }
+            let reach = if is_open { 10f64.powi(FAR) * guess } else { 2.0 * guess };
+            // Where nothing is known of a duration, from the middle, as where this range is declared.
+            let guess = if is_open && known.is_guarded && typical.is_none() { 0.5 * reach } else { guess };
+            self.durations[i] = FreeDuration { guess, reach, ..known };
         }
     }
 
@@ -109,9 +112,42 @@ impl Transcription<'_> {
             self.imbalance(&x, &groups, (&mut work, &mut at))
         };
         let is_open = self.durations.iter().any(|duration| duration.reach.is_infinite());
-        let ways: &[i32] = if is_open { &[-PARTS, PARTS] } else { &[-PARTS] };
-        search(&mut trial, ways).map(|tenths| first * 10f64.powf(tenths / f64::from(PARTS)))
+        let tenths = match is_open {
+            true => shortest(&mut trial).or_else(|| search(&mut trial, &[-PARTS, PARTS])),
+            false => search(&mut trial, &[-PARTS]),
+        };
+        tenths.map(|tenths| first * 10f64.powf(tenths / f64::from(PARTS)))
     }
+}
+
+/// Where equations tell how short a duration may be and nothing how long, as limits of speed do: the shortest of those that balance
+/// them best, in parts of a decade.
+fn shortest(trial: &mut impl FnMut(i32) -> Option<Trial>) -> Option<f64> {
+    let here = trial(0)?.decades;
+    let (mut best, mut least) = (0, here);
+    // Upwards as long as that is better, else downwards as long as it is as good.
+    while best < RANGE * PARTS {
+        let there = trial(best + PARTS)?.decades;
+        if there >= least - EQUAL {
+            break;
+        }
+        (best, least) = (best + PARTS, there);
+    }
+    let is_good = |there: Trial| (there.decades - least).abs() <= EQUAL;
+    if !is_good(trial(RANGE * PARTS)?) {
+        return None;
+    }
+    while is_good(trial(best - PARTS)?) {
+        best -= PARTS;
+        if best <= -RANGE * PARTS {
+            return None;
+        }
+    }
+    let is_worse = |there: Trial| there.decades > least + EQUAL;
+    if !is_worse(trial(best - PARTS)?) {
+        return None;
+    }
+    (best - PARTS..=best).find_map(|tenths| trial(tenths).filter(|there| is_good(*there)).map(|_| f64::from(tenths)))
 }
 
 /// The best duration in parts of a decade, if it is far from 0: by bounds. `ways` are downwards and, where no bound tells

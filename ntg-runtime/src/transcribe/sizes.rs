@@ -126,7 +126,8 @@ impl Transcription<'_> {
         self.collect_slopes(at, &mut balance);
         balance.forget_rounding();
         balance.propagate(&[Balance::balanced]);
-        let decades = (0..balance.groups.len()).map(|constraint| balance.decades(constraint, &durations)).sum();
+        let mut decades: Vec<f64> =
+            (0..balance.groups.len()).map(|constraint| balance.decades(constraint, &durations)).collect();
         // From the guess there and back again, by the size of each output.
         let mut motion = x.to_vec();
         for variables in groups {
@@ -137,7 +138,16 @@ impl Transcription<'_> {
             }
         }
         self.values(&motion, workspace, at).ok()?;
-        Some(Trial { decades, objective: at.objective })
+        // What is flat at the guess, as a square of speeds at rest, is exceeded by the motion.
+        for (row, constraint) in balance.constraint_of.iter().enumerate().filter(|own| balance.is_inequality[*own.1]) {
+            let (lower, upper, value) = (self.limits.row_lower[row], self.limits.row_upper[row], at.rows[row]);
+            let (bound, missed) = if value > upper { (upper, value - upper) } else { (lower, lower - value) };
+            let exceeded = (1.0 + missed.max(0.0) / bound.abs()).log10();
+            if exceeded.is_finite() {
+                decades[*constraint] = decades[*constraint].max(exceeded);
+            }
+        }
+        Some(Trial { decades: decades.iter().sum(), objective: at.objective })
     }
 
     /// Sizes of what has none. `scale` has those that are taken until then.

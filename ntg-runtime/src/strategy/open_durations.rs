@@ -1,0 +1,81 @@
+//! Durations without an upper bound (docs/maths.md, section 11.9).
+//!
+//! Where nothing holds a duration it runs off: a start at which the constraints do not hold is left towards durations of a million
+//! times the right one, along which nothing changes any more. So a range is looked at that a person might have written, and a longer
+//! one where that holds no solution.
+
+use super::beside::beside_infeasible;
+use super::budget::Budget;
+use super::session::{FirstPoint, Session, Task};
+use crate::guess::start;
+use crate::transcribe::{SetupError, Transcription};
+use ntg_nlp::{Outcome, Start, Status};
+
+/// By how much a range is longer than the one before, and a guess of a person's is shorter than its range. That of section 8.1: a
+/// duration within two decades is looked for where it begins.
+const LONGER: f64 = 100.0;
+/// How many ranges are looked at. A choice: six decades.
+const RANGES: usize = 3;
+/// A solution within this part of a range is one without an upper bound. A choice.
+const WITHIN: f64 = 0.9;
+
+impl Session {
+    /// A solution with durations in ranges that end; none where all durations have an upper bound, or no range holds a solution
+    /// within. `x` is the guess. Bounds are as before afterwards; sizes are those of the solution's range.
+    pub(super) fn solve_within_ranges(
+        &mut self,
+        nlp: &mut Transcription,
+        (task, x): (Task<'_>, &[f64]),
+        budget: &mut Budget<'_>,
+    ) -> Result<Option<Outcome>, SetupError> {
+        let durations = nlp.durations.clone();
+        let open = |nlp: &Transcription| -> Vec<usize> {
+            (0..durations.len()).filter(|i| nlp.limits.upper[durations[*i].variable as usize].is_infinite()).collect()
+        };
+        let open = open(nlp);
+        if open.is_empty() {
+            return Ok(None);
+        }
+        let (mut x, mut found) = (x.to_vec(), None);
+        for range in 0..RANGES {
+            let Some(settings) = budget.range() else { break };
+            let longer = LONGER.powi(range as i32);
+            if range > 0 {
+                for i in &open {
+                    nlp.durations[*i].guess = longer * durations[*i].guess;
+                    nlp.limits.upper[durations[*i].variable as usize] = f64::INFINITY;
+                }
+                x = start(nlp, task.guess)?;
+            }
+            for i in &open {
+                let (duration, guess) = (durations[*i], x[durations[*i].variable as usize]);
+                let is_guessed = guess != nlp.durations[*i].guess;
+                let reach = if is_guessed { LONGER * guess } else { duration.reach };
+                nlp.limits.upper[duration.variable as usize] = longer * reach;
+            }
+            let longest = nlp.limits.upper.clone();
+            nlp.set_scales(&x, &settings)?;
+            let is_within = |x: &[f64]| {
+                let own = |i: &usize| durations[*i].variable as usize;
+                open.iter().all(|i| x[own(i)] < WITHIN * longest[own(i)])
+            };
+            let mut outcome = self.solve_measured(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings);
+            budget.spend(outcome.iterations);
+            // Beside the guess, where an attempt has ended as infeasible whatever the duration.
+            if !outcome.status.has_solution()
+                && let Some(settings) = budget.range()
+            {
+                let beside = beside_infeasible(nlp, &x);
+                outcome = self.solve_measured(nlp, FirstPoint { x: &beside, from: Start::Cold }, &settings);
+                budget.spend(outcome.iterations);
+            }
+            if outcome.status == Status::Solved && !outcome.is_saddle && is_within(&outcome.x) {
+                found = Some(outcome);
+                break;
+            }
+        }
+        open.iter().for_each(|i| nlp.limits.upper[durations[*i].variable as usize] = f64::INFINITY);
+        nlp.durations = durations;
+        Ok(found)
+    }
+}
