@@ -262,3 +262,39 @@ fn a_scheme_that_does_not_converge_is_seen_on_any_mesh() {
         assert!((report.objective / optimum - 1.0).abs() < 2e-3, "{} for {optimum}", report.objective);
     }
 }
+
+/// What runs through decades on few points: growth from 1 to 1e6 by least effort, ln(1e6)^2 / 10, and a tumour that is brought down
+/// to a millionth, 27.469 by its logarithm. Objectives of 17.9 and 23.1 were solved, with what shorter intervals say in a warning.
+#[test]
+fn decades_that_equations_do_not_follow_are_unresolved() {
+    let growth = |points: usize, intervals: usize| {
+        format!(
+            "problem Growth {{
+                duration T = 10;  state x in 1 .. 1e6;  input u;
+                collocation gauss(points = {points}, intervals = {intervals});
+                minimize integral(u^2);
+                dynamics {{ der(x) == u * x; }}
+                initial {{ x == 1; }}
+                final {{ x == 1e6; }}
+            }}"
+        )
+    };
+    let tumour = "problem Tumour {
+        duration T = 30;  state x in 1 ..;  input u in 0 .. 5;  collocation gauss(points = 4, intervals = 20);
+        minimize integral(u^2);
+        dynamics { der(x) == 0.5 * x * (1 - x / 1e9) - u * x; }
+        initial { x == 1e8; }
+        final { x == 1e2; }
+    }";
+    for (text, optimum) in [(growth(5, 10), 1e6_f64.ln().powi(2) / 10.0), (tumour.to_owned(), 27.469)] {
+        let (found, report) = resolution(&text);
+        assert!((report.objective - optimum).abs() > 0.05 * optimum, "now it is solved: {report}");
+        assert_eq!(found, Resolution::Unresolved, "{report}");
+    }
+    // A decade for each interval is followed: nothing is told of it.
+    let (found, report) = resolution(&growth(5, 10).replace("1e6", "1e3"));
+    assert!(
+        found < Resolution::Unresolved && (report.objective * 10.0 / 1e3_f64.ln().powi(2) - 1.0).abs() < 0.01,
+        "{report}"
+    );
+}

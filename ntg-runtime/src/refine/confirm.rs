@@ -17,6 +17,9 @@ use std::time::{Duration, Instant};
 
 /// How often intervals are halved: a defect that falls once may do so by chance. A choice.
 const HALVINGS: usize = 2;
+/// What a motion misses of the decades that it runs through says nothing of where it ends, where that is large: it is asked whether
+/// it is worth anything of the objective from this on. A choice.
+const DECADES: f64 = 0.1;
 /// A solve on shorter intervals has so many times the iterations of the solve, and so many at least. A choice: neighbours on
 /// finer meshes take fewer. No clock, so that what a report says does not hang on what else a machine does.
 const PATIENCE: usize = 5;
@@ -133,13 +136,18 @@ impl Report {
             return Ok(None);
         }
         let moved = defect(nlp, self.solution.coefficients());
-        if let Some(Defect { phase, output, relative }) = moved.filter(|own| own.relative > settings.between_tolerance)
+        if let Some(Defect { phase, output, relative, .. }) =
+            moved.filter(|own| own.relative > settings.between_tolerance)
         {
             let output = names::output(&nlp.model.structure, &nlp.model.layout, phase, output);
             return Ok(Some((Doubt::Motion(output), relative, many)));
         }
         if let Some((limit, missed)) = self.limit_in_doubt(nlp) {
             return Ok(Some((Doubt::Limit(limit), missed, few)));
+        }
+        let of_decades = moved.map_or(0.0, |own| own.of_decades);
+        if of_decades > DECADES {
+            return Ok(Some((Doubt::Objective, of_decades, few)));
         }
         // Where the scheme does not converge, as two Gauss points for equations between states alone, the objective is off by
         // far more than to first order. No motion can be simulated there.

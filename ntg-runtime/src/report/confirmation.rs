@@ -1,6 +1,7 @@
 //! What solves on shorter intervals say of a solution that leaves its own equations of motion, its limits between the points, or
 //! the objective that it has there (docs/maths.md, section 9).
 
+use super::ending::Missed;
 use super::{Cost, Resolution};
 use crate::digits::brief;
 use crate::status::Status;
@@ -69,18 +70,30 @@ impl Confirmation {
     /// 199 specs none differs by more than 0.06.
     const APART: f64 = 0.25;
 
+    /// Where so much is in doubt, objectives that differ by more than this are those of other motions. A law: what is worth a warning.
+    const OTHER: f64 = 0.01;
+
+    /// Whether so much of the solution is in doubt that any other objective refutes it: more than half of what an output varies by, a
+    /// quarter of the objective or of the decades that an output runs through. Choices.
+    fn is_gross(&self) -> bool {
+        let most = if matches!(self.doubt, Doubt::Objective) { Self::APART } else { Missed::GROSS };
+        self.missed.first().is_some_and(|missed| *missed > most)
+    }
+
     /// Whether the solution is one of the points alone, as far as is known: nothing like it was found on shorter intervals.
     /// `cost` is the objective of the solution.
     pub fn refutes(&self, cost: Cost) -> bool {
         let is_apart = || cost.apart(self.objective) > Self::APART;
         match (&self.doubt, self.status.has_solution()) {
-            (Doubt::Motion(_), true) => !self.falls() || is_apart(),
+            (Doubt::Motion(_), true) => {
+                !self.falls() || is_apart() || self.is_gross() && cost.apart(self.objective) > Self::OTHER
+            }
             (Doubt::Motion(_), false) => self.status != Status::Cancelled,
-            (Doubt::Objective, true) => is_apart(),
+            (Doubt::Objective, true) => is_apart() || self.is_gross() && cost.apart(self.objective) > Self::OTHER,
             (Doubt::Limit(_), true) => self.resolution == Some(Resolution::Unresolved) || is_apart(),
-            // A solve that comes to no end tells nothing of a limit, and none that finds nothing tells of an objective.
+            // A solve that comes to no end tells nothing of a limit, nor of an objective that is little in doubt.
             (Doubt::Limit(_), false) => matches!(self.status, Status::Infeasible { .. } | Status::Contradiction { .. }),
-            (Doubt::Objective, false) => false,
+            (Doubt::Objective, false) => self.is_gross() && self.status != Status::Cancelled,
         }
     }
 

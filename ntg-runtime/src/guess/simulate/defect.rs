@@ -19,6 +19,45 @@ pub(crate) struct Defect {
     /// The sum over intervals, relative to what the output or its derivative varies by in the phase; infinite where the motion
     /// cannot be followed through an interval.
     pub(crate) relative: f64,
+    /// Of outputs that keep their sign and run through decades, as what grows from little: the largest sum over intervals of the
+    /// logarithms, relative to those that are run through; 0 where there are none.
+    pub(crate) of_decades: f64,
+}
+
+/// What runs through so many times its least value runs through decades. A choice.
+const DECADES: f64 = 1e3;
+/// Below this part of its largest value an output counts as that. A law: simulations are exact to a hundredth of it.
+const LITTLE: f64 = 1e-4;
+
+/// An output that keeps its sign.
+#[derive(Clone, Copy)]
+struct Signed {
+    least: f64,
+    most: f64,
+    keeps_sign: bool,
+    missed: f64,
+}
+
+impl Signed {
+    fn of(start: f64) -> Self {
+        Self { least: start, most: start, keeps_sign: start != 0.0, missed: 0.0 }
+    }
+
+    /// With one more end of an interval, and where the motion leads there.
+    fn add(&mut self, end: f64, simulated: f64) {
+        self.keeps_sign &= end * self.least > 0.0;
+        let of_two = |a: f64, b: f64, is_less: bool| if (a.abs() < b.abs()) == is_less { a } else { b };
+        (self.least, self.most) = (of_two(self.least, end, true), of_two(self.most, end, false));
+        let floor = LITTLE * self.most.abs();
+        let logarithm = |value: f64| (value * self.most.signum()).max(floor).ln();
+        self.missed += (logarithm(end) - logarithm(simulated)).abs();
+    }
+
+    /// What is missed of the decades; 0 where there are few, or the sign changes.
+    fn relative(&self) -> f64 {
+        let span = self.most / self.least;
+        if self.keeps_sign && span > DECADES { self.missed / span.min(1.0 / LITTLE).ln() } else { 0.0 }
+    }
 }
 
 /// The largest defect of all outputs that equations move: over the intervals of a phase, the sum of the distances between
@@ -26,7 +65,12 @@ pub(crate) struct Defect {
 /// where the equations of no phase decide how it moves.
 pub(crate) fn defect(nlp: &Transcription, x: &[f64]) -> Option<Defect> {
     let phases = (0..nlp.model.layout.phases.len()).filter_map(|phase| of_phase(nlp, phase, x));
-    phases.reduce(|most, own| if own.relative > most.relative { own } else { most })
+    phases.reduce(larger)
+}
+
+fn larger(one: Defect, other: Defect) -> Defect {
+    let of_decades = one.of_decades.max(other.of_decades);
+    Defect { of_decades, ..if other.relative > one.relative { other } else { one } }
 }
 
 /// The largest defect in one phase.
@@ -43,12 +87,14 @@ fn of_phase(nlp: &Transcription, phase: usize, x: &[f64]) -> Option<Defect> {
         return None;
     }
     let mut high = low.clone();
+    let mut signed: Vec<Signed> = low.iter().map(|start| Signed::of(*start)).collect();
     let mut missed = vec![0.0; columns.len()];
     for pair in layout.phases[phase].breakpoints.windows(2) {
         let end = at(pair[1], Side::Left);
         match integrate(&mut equations, at(pair[0], Side::Right), pair) {
             Some(track) => {
-                missed.iter_mut().zip(end.iter().zip(&track.end)).for_each(|(m, (a, b))| *m += (a - b).abs())
+                missed.iter_mut().zip(end.iter().zip(&track.end)).for_each(|(m, (a, b))| *m += (a - b).abs());
+                signed.iter_mut().zip(end.iter().zip(&track.end)).for_each(|(own, (a, b))| own.add(*a, *b));
             }
             None => missed.fill(f64::INFINITY),
         }
@@ -64,7 +110,8 @@ fn of_phase(nlp: &Transcription, phase: usize, x: &[f64]) -> Option<Defect> {
         // By scaled time; the value of an output may be far from 0 while it rests.
         let own = if of == 0 { 0.0 } else { high[column].abs().max(low[column].abs()) };
         let rest = AT_REST * size.max(own);
-        Defect { phase, output, relative: missed[column] / (high[column] - low[column]).max(rest) }
+        let of_decades = if of == 0 { signed[column].relative() } else { 0.0 };
+        Defect { phase, output, relative: missed[column] / (high[column] - low[column]).max(rest), of_decades }
     });
-    own.reduce(|most, own| if own.relative > most.relative { own } else { most })
+    own.reduce(larger)
 }
