@@ -76,6 +76,12 @@ impl Session {
         }
         open.iter().for_each(|i| nlp.limits.upper[durations[*i].variable as usize] = f64::INFINITY);
         nlp.durations = durations;
-        Ok(found)
+        let Some(outcome) = found else { return Ok(None) };
+        // The barrier of a range moves what is flat: the last steps are those of the program itself.
+        let Some(settings) = budget.range() else { return Ok(Some(outcome)) };
+        let from = Start::Warm(outcome.multipliers());
+        let next = self.solve_measured(nlp, FirstPoint { x: &outcome.x, from }, &settings);
+        budget.spend(next.iterations);
+        Ok(Some(if next.status == Status::Solved && !next.is_saddle { next } else { outcome }))
     }
 }
