@@ -20,8 +20,8 @@ const RANGES: usize = 3;
 const WITHIN: f64 = 0.9;
 
 impl Session {
-    /// A solution with durations in ranges that end; none where all durations have an upper bound, or no range holds a solution
-    /// within. `x` is the guess. Bounds are as before afterwards; sizes are those of the solution's range.
+    /// A solution with durations in ranges that end, or where it was stopped; none where all durations have an upper bound, or no range
+    /// holds a solution. `x` is the guess. Bounds are as before afterwards; sizes are those of the solution's range.
     pub(super) fn solve_within_ranges(
         &mut self,
         nlp: &mut Transcription,
@@ -29,10 +29,8 @@ impl Session {
         budget: &mut Budget<'_>,
     ) -> Result<Option<Outcome>, SetupError> {
         let durations = nlp.durations.clone();
-        let open = |nlp: &Transcription| -> Vec<usize> {
-            (0..durations.len()).filter(|i| nlp.limits.upper[durations[*i].variable as usize].is_infinite()).collect()
-        };
-        let open = open(nlp);
+        let own = |i: &usize| durations[*i].variable as usize;
+        let open: Vec<usize> = (0..durations.len()).filter(|i| nlp.limits.upper[own(i)].is_infinite()).collect();
         if open.is_empty() {
             return Ok(None);
         }
@@ -43,40 +41,40 @@ impl Session {
             if range > 0 {
                 for i in &open {
                     nlp.durations[*i].guess = longer * durations[*i].guess;
-                    nlp.limits.upper[durations[*i].variable as usize] = f64::INFINITY;
+                    nlp.limits.upper[own(i)] = f64::INFINITY;
                 }
                 x = start(nlp, task.guess)?;
             }
             for i in &open {
-                let (duration, guess) = (durations[*i], x[durations[*i].variable as usize]);
+                let guess = x[own(i)];
                 let is_guessed = guess != nlp.durations[*i].guess;
-                let reach = if is_guessed { LONGER * guess } else { duration.reach };
-                nlp.limits.upper[duration.variable as usize] = longer * reach;
+                let reach = if is_guessed { LONGER * guess } else { durations[*i].reach };
+                nlp.limits.upper[own(i)] = longer * reach;
             }
             let longest = nlp.limits.upper.clone();
             nlp.set_scales(&x, &settings)?;
-            let is_within = |x: &[f64]| {
-                let own = |i: &usize| durations[*i].variable as usize;
-                open.iter().all(|i| x[own(i)] < WITHIN * longest[own(i)])
-            };
+            let is_within = |x: &[f64]| open.iter().all(|i| x[own(i)] < WITHIN * longest[own(i)]);
             let mut outcome = self.solve_measured(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings);
             budget.spend(outcome.iterations);
             // Beside the guess, where an attempt has ended as infeasible whatever the duration.
-            if !outcome.status.has_solution()
-                && let Some(settings) = budget.range()
-            {
+            let is_failed = !outcome.status.has_solution() && outcome.status != Status::Cancelled;
+            if is_failed && let Some(settings) = budget.range() {
                 let beside = beside_infeasible(nlp, &x);
                 outcome = self.solve_measured(nlp, FirstPoint { x: &beside, from: Start::Cold }, &settings);
                 budget.spend(outcome.iterations);
             }
-            if outcome.status == Status::Solved && !outcome.is_saddle && is_within(&outcome.x) {
+            let is_stopped = matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
+            if is_stopped || outcome.status == Status::Solved && !outcome.is_saddle && is_within(&outcome.x) {
                 found = Some(outcome);
                 break;
             }
         }
-        open.iter().for_each(|i| nlp.limits.upper[durations[*i].variable as usize] = f64::INFINITY);
+        open.iter().for_each(|i| nlp.limits.upper[own(i)] = f64::INFINITY);
         nlp.durations = durations;
         let Some(outcome) = found else { return Ok(None) };
+        if outcome.status != Status::Solved {
+            return Ok(Some(outcome));
+        }
         // The barrier of a range moves what is flat: the last steps are those of the program itself.
         let Some(settings) = budget.range() else { return Ok(Some(outcome)) };
         let from = Start::Warm(outcome.multipliers());
