@@ -136,6 +136,11 @@ impl Report {
             return Ok(None);
         }
         let moved = defect(nlp, self.solution.coefficients());
+        // What is missed of decades says more where it is more: growth that is off by half is little of where it ends.
+        let of_decades = moved.map_or(0.0, |own| if own.of_decades > own.relative { own.of_decades } else { 0.0 });
+        if of_decades > DECADES {
+            return Ok(Some((Doubt::Objective, of_decades, many)));
+        }
         if let Some(Defect { phase, output, relative, .. }) =
             moved.filter(|own| own.relative > settings.between_tolerance)
         {
@@ -144,10 +149,6 @@ impl Report {
         }
         if let Some((limit, missed)) = self.limit_in_doubt(nlp) {
             return Ok(Some((Doubt::Limit(limit), missed, few)));
-        }
-        let of_decades = moved.map_or(0.0, |own| own.of_decades);
-        if of_decades > DECADES {
-            return Ok(Some((Doubt::Objective, of_decades, few)));
         }
         // Where the scheme does not converge, as two Gauss points for equations between states alone, the objective is off by
         // far more than to first order. No motion can be simulated there.
