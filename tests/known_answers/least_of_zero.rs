@@ -45,3 +45,21 @@ fn without_an_objective_there_is_no_correction() {
         assert_eq!(report.objective_correction, 0.0);
     }
 }
+
+/// Beside the solution a root has no value: then nothing counts as 0, and what two values of the objective differ by counts.
+#[test]
+fn where_nothing_is_known_beside_a_solution_nothing_counts_as_zero() {
+    let report = Shipped::text(
+        "problem Root {
+            duration T = 1;  state x;  input u in -2 .. 2;  collocation gauss(points = 3, intervals = 10);
+            minimize integral(u^2 + sqrt(x));
+            dynamics { der(x) == u; }
+            initial { x == 0.01; }
+            final { x == 1; }
+        }",
+    )
+    .solve();
+    assert!(report.is_solved(), "{report}");
+    assert_eq!(report.objective_zero, 0.0, "{report}");
+    assert!(report.cost().apart(2.0 * report.objective + 1.0) > 0.5, "{report}");
+}

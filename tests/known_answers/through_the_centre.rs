@@ -11,7 +11,7 @@ const PENDULUM: &str = "duration T = 1;  state x, y, u, v;  input tension, a;  m
     trajectory { x^2 + y^2 == 1; }
     initial { x == 0;  y == -1;  u == 0;  v == 0; }  final { y == 1;  u == 0; }";
 
-/// The same in kilometres and by second derivatives: forces are 1e-3 of what they are per metre.
+/// The same in kilometres and by second derivatives. The torque by length and mass is in 1/s^2 as before, and so is the optimum.
 const IN_KILOMETRES: &str =
     "let L = 1 [m];  duration T = 1 [s];  state x [km], y [km];  input tension [1/s^2], a [1/s^2];
     minimize integral(a^2);
@@ -19,7 +19,7 @@ const IN_KILOMETRES: &str =
     trajectory { x^2 + y^2 == L^2; }
     initial { x == 0;  y == -L;  der(x) == 0;  der(y) == 0; }  final { y == L;  der(x) == 0; }";
 
-/// Two phases meet at the height of the pivot or nowhere in particular.
+/// The same in two phases: the straight way meets the pivot where they join.
 const TWO_PHASES: &str = "state x, y, u, v;  input tension, a;  minimize integral(a^2);
     dynamics { der(x) == u;  der(y) == v;  der(u) == -tension * x - a * y;  der(v) == -tension * y + a * x - 9.81; }
     trajectory { x^2 + y^2 == 1; }

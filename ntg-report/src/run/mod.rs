@@ -73,7 +73,7 @@ pub struct Run {
     /// The objective integrated on a finer grid.
     #[serde(with = "numbers::one")]
     pub objective_fine: f64,
-    /// What of the objective is 0, in its unit; infinite where it does not vary.
+    /// What of the objective is 0, in its unit; infinite where it depends on nothing.
     #[serde(with = "numbers::one")]
     pub objective_zero: f64,
     /// The objective's terms.

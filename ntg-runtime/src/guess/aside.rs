@@ -9,7 +9,7 @@ use crate::transcribe::elements::GroupBatch;
 use crate::transcribe::layout::Layout;
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::slots::Source;
-use crate::transcribe::{SetupError, Transcription, Workspace};
+use crate::transcribe::{Quantity, SetupError, Transcription, Workspace};
 use nalgebra::DVector;
 use ntg_nlp::{Evaluation, Nlp};
 use ntg_structure::{Block, Degree, Domain, Row};
@@ -66,7 +66,9 @@ fn candidates(nlp: &Transcription) -> Vec<Vec<bool>> {
         let declared = &structure.groups[group.group];
         let is_equation = match &declared.rows[function] {
             Row::Constraint { constraint, lower: Some(lower), upper: Some(upper) } => {
-                lower == upper && structure.constraints[*constraint].block != Block::Corner
+                lower == upper
+                    && structure.is_posed(*constraint)
+                    && structure.constraints[*constraint].block != Block::Corner
             }
             _ => false,
         };
@@ -115,66 +117,51 @@ fn equations(
 }
 
 /// One output in all phases of its agent.
-struct Chain {
-    /// The phases, and the number of the output in each.
-    members: Vec<(usize, usize)>,
+struct Chain<'a> {
+    output: Quantity<'a>,
     is_guessed: bool,
     /// How many equations between values of outputs depend on it.
     equations: usize,
 }
 
-impl Chain {
+impl Chain<'_> {
     /// The coefficients of a half wave over the whole time of the agent.
     fn bend(&self, layout: &Layout) -> Result<Vec<f64>, SetupError> {
         let mut direction = vec![0.0; layout.variables];
         let function = pointwise(|part| Ok((PI * part).sin()));
         let curve = |&(phase, output)| Curve { phase, output, whole: true, function: function.clone() };
-        apply(layout, &Vec::from_iter(self.members.iter().map(curve)), &mut direction)?;
+        apply(layout, &Vec::from_iter(self.output.members.iter().map(curve)), &mut direction)?;
         Ok(direction)
     }
 }
 
 /// The outputs of all agents.
-struct Chains {
-    all: Vec<Chain>,
+struct Chains<'a> {
+    all: Vec<Chain<'a>>,
     /// The chain of a coefficient.
     owner: HashMap<u32, usize>, // Looked up, never iterated.
 }
 
-impl Chains {
-    fn new(nlp: &Transcription, guessed: &[Curve]) -> Self {
-        let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
+impl<'a> Chains<'a> {
+    fn new(nlp: &'a Transcription, guessed: &[Curve]) -> Self {
         let guessed: BTreeSet<_> = guessed.iter().map(|curve| (curve.phase, curve.output)).collect();
-        let (mut numbers, mut chains) = (BTreeMap::new(), Self { all: vec![], owner: HashMap::new() });
-        for (phase, member) in layout.phases.iter().enumerate() {
-            for (output, own) in member.outputs.iter().enumerate() {
-                let name = &structure.phases[member.phase].outputs[own.output].name;
-                let number = *numbers.entry((member.agent, name, own.index)).or_insert(chains.all.len());
-                if number == chains.all.len() {
-                    chains.all.push(Chain { members: vec![], is_guessed: false, equations: 0 });
-                }
-                let chain = &mut chains.all[number];
-                chain.members.push((phase, output));
-                chain.is_guessed |= guessed.contains(&(phase, output));
-                for variable in &own.coefficients {
-                    chains.owner.entry(*variable).or_insert(number);
-                }
+        let mut chains = Self { all: vec![], owner: HashMap::new() };
+        let agents = nlp.model.layout.agents.iter();
+        for output in agents.flat_map(|agent| nlp.outputs_of(agent.phases.clone())) {
+            for variable in &output.coefficients {
+                chains.owner.entry(*variable).or_insert(chains.all.len());
             }
+            let is_guessed = output.members.iter().any(|member| guessed.contains(member));
+            chains.all.push(Chain { output, is_guessed, equations: 0 });
         }
         chains
     }
 
     /// The chains of an equation, each with the largest value that is guessed of those of its unit, or its unit where that is 0.
-    fn sizes(&self, nlp: &Transcription, places: &[Place], x: &[f64]) -> BTreeMap<usize, f64> {
-        let layout = &nlp.model.layout;
-        let unit = |chain: usize| {
-            let (phase, output) = self.all[chain].members[0];
-            let phase = &layout.phases[phase];
-            &nlp.model.structure.phases[phase.phase].outputs[phase.outputs[output].output].unit
-        };
+    fn sizes(&self, places: &[Place], x: &[f64]) -> BTreeMap<usize, f64> {
+        let unit = |chain: usize| self.all[chain].output.unit;
         let largest = |chain: usize| {
-            let members = self.all[chain].members.iter();
-            let coefficients = members.flat_map(|(phase, output)| &layout.phases[*phase].outputs[*output].coefficients);
+            let coefficients = self.all[chain].output.coefficients.iter();
             coefficients.fold(0.0_f64, |most, variable| most.max(x[*variable as usize].abs()))
         };
         let own: BTreeMap<usize, f64> = chains_of(places).into_iter().map(|chain| (chain, largest(chain))).collect();
@@ -217,7 +204,7 @@ impl<'a> Program<'a> {
         (chains, bent): (&Chains, &BTreeSet<usize>),
         x: &[f64],
     ) -> Result<Option<(usize, Vec<f64>)>, SetupError> {
-        let sizes = chains.sizes(self.nlp, places, x);
+        let sizes = chains.sizes(places, x);
         let Some(singular) = self.standing(places, &sizes, x).filter(|standing| standing.least < NONE) else {
             return Ok(None);
         };

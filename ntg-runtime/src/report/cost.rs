@@ -4,7 +4,7 @@ use super::TermReport;
 use crate::transcribe::{Transcription, Workspace};
 use ntg_nlp::scaling::beside;
 use ntg_nlp::{Evaluation, Nlp};
-use ntg_structure::{Row, Structure, Term};
+use ntg_structure::{Degree, Row, Structure, Term};
 
 /// An objective below this part of what it varies by beside the solution is 0. A law: the tolerance of an acceptable end.
 const ZERO: f64 = 1e-6;
@@ -14,7 +14,7 @@ const ZERO: f64 = 1e-6;
 pub struct Cost {
     /// In the user's sense and unit.
     pub value: f64,
-    /// What is below this is 0, in the same unit (docs/maths.md, equation 9.2a); infinite where the objective does not vary.
+    /// What is below this is 0, in the same unit (docs/maths.md, equation 9.2a); infinite where the objective depends on nothing.
     pub zero: f64,
 }
 
@@ -31,21 +31,29 @@ impl Cost {
     }
 }
 
-/// What of an objective is 0 at a solution, SI. `objective` is its value there; `at` and `work` are overwritten.
+/// Whether the objective depends on nothing, or there is none.
+fn is_constant(nlp: &Transcription) -> bool {
+    nlp.elements.batches.iter().all(|group| {
+        let rows = nlp.model.structure.groups[group.group].rows.iter().zip(&group.degree);
+        rows.into_iter().all(|(row, degree)| !matches!(row, Row::Cost { .. }) || *degree == Degree::Constant)
+    })
+}
+
+/// What of an objective is 0 at a solution, SI. `objective` is its value there; `at` and `work` are overwritten. Where nothing is known
+/// of it beside the solution, as it has no value there, nothing counts as 0.
 pub(super) fn zero(
     nlp: &Transcription,
     (x, objective): (&[f64], f64),
     work: &mut Workspace,
     at: &mut Evaluation,
 ) -> f64 {
+    if is_constant(nlp) {
+        return f64::INFINITY;
+    }
     let mut near = x.to_vec();
     beside(x, &nlp.limits, &nlp.limits.scale, &mut near);
     let varies = nlp.values(&near, work, at).map_or(0.0, |()| (at.objective - objective).abs());
-    match varies {
-        0.0 => f64::INFINITY,
-        varies if varies.is_finite() => ZERO * varies,
-        _ => 0.0,
-    }
+    if varies.is_finite() { ZERO * varies } else { 0.0 }
 }
 
 /// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.

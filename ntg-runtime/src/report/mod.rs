@@ -88,9 +88,9 @@ pub struct Report {
     /// The objective integrated on the finer grid: closer to what flying would cost.
     pub objective_fine: f64,
     /// What is to be added to the objective, to first order, for what equations along phases miss between the points
-    /// (docs/maths.md, equation 9.3c); 0 where there are none, or the objective does not vary.
+    /// (docs/maths.md, equation 9.3c); 0 where there are none, or the objective depends on nothing.
     pub objective_correction: f64,
-    /// What of the objective is 0 (docs/maths.md, equation 9.2a); infinite where the objective does not vary.
+    /// What of the objective is 0 (docs/maths.md, equation 9.2a); infinite where the objective depends on nothing.
     pub objective_zero: f64,
     /// The unit of all four.
     pub objective_unit: Unit,
@@ -341,7 +341,7 @@ impl Report {
             told.extend(hints::integrated_norm(nlp));
         }
         let (objective, objective_fine) = (user(nlp, outcome.objective), user(nlp, on_fine.terms.iter().sum()));
-        // Without an objective that varies multipliers say nothing.
+        // Without an objective that depends on anything multipliers say nothing.
         let objective_correction = if zero.is_finite() { user(nlp, on_fine.correction) } else { 0.0 };
         let cost = Cost { value: objective, zero };
         let tolerance = Settings::default().between_tolerance;

@@ -115,11 +115,12 @@ impl Session {
         };
         let guessed = guessed.filter(|_| settings.method == Method::Auto);
         let spent = budget.spent();
-        if settings.method == Method::Auto && matches!(first.from, Start::Cold) && simulated.is_none() {
-            if let Some(outcome) = self.solve_within_ranges(nlp, (task, first.x), budget)? {
-                return Ok(Outcome { iterations: budget.spent() - spent, ..outcome });
-            }
-            nlp.set_scales(first.x, &settings)?;
+        let is_first = matches!(first.from, Start::Cold) && simulated.is_none();
+        if settings.method == Method::Auto
+            && is_first
+            && let Some(outcome) = self.solve_within_ranges(nlp, (task, first.x), budget)?
+        {
+            return Ok(Outcome { iterations: budget.spent() - spent, ..outcome });
         }
         let Some(settings) = budget.attempt() else {
             return Ok(Outcome::failed(nlp, first.x, budget.reached()));

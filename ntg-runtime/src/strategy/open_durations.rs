@@ -21,7 +21,7 @@ const WITHIN: f64 = 0.9;
 
 impl Session {
     /// A solution with durations in ranges that end, or where it was stopped; none where all durations have an upper bound, or no range
-    /// holds a solution. `x` is the guess. Bounds are as before afterwards; sizes are those of the solution's range.
+    /// holds a solution. `x` is the guess. Bounds are as before afterwards, and sizes are where there is none; else those of its range.
     pub(super) fn solve_within_ranges(
         &mut self,
         nlp: &mut Transcription,
@@ -34,7 +34,8 @@ impl Session {
         if open.is_empty() {
             return Ok(None);
         }
-        let (mut x, mut found) = (x.to_vec(), None);
+        let scales = nlp.limits.clone();
+        let (guess, mut x, mut found) = (x, x.to_vec(), None);
         for range in 0..RANGES {
             let Some(settings) = budget.range() else { break };
             let longer = LONGER.powi(range as i32);
@@ -46,9 +47,9 @@ impl Session {
                 x = start(nlp, task.guess)?;
             }
             for i in &open {
-                let guess = x[own(i)];
-                let is_guessed = guess != nlp.durations[*i].guess;
-                let reach = if is_guessed { LONGER * guess } else { durations[*i].reach };
+                let first = x[own(i)];
+                let is_guessed = first != nlp.durations[*i].guess;
+                let reach = if is_guessed { LONGER * first } else { durations[*i].reach };
                 nlp.limits.upper[own(i)] = longer * reach;
             }
             let longest = nlp.limits.upper.clone();
@@ -71,7 +72,14 @@ impl Session {
         }
         open.iter().for_each(|i| nlp.limits.upper[own(i)] = f64::INFINITY);
         nlp.durations = durations;
-        let Some(outcome) = found else { return Ok(None) };
+        let Some(outcome) = found else {
+            // Origins are those of the guess again, and sizes those of the caller, which may not be by the guess alone.
+            if let Some(settings) = budget.rest() {
+                nlp.set_scales(guess, &settings)?;
+            }
+            nlp.limits = scales;
+            return Ok(None);
+        };
         if outcome.status != Status::Solved {
             return Ok(Some(outcome));
         }

@@ -12,11 +12,10 @@ use ntg_nlp::Nlp;
 /// gallery and other specs with free durations none is further off.
 const FAR: i32 = 2;
 
-/// Where equations tell a duration without an upper bound, its guess is so many times as long, and it is looked for up to so many
-/// times it. A fit: of 685 solves of 60 problems whose durations have no upper bound most are solved, between once and a hundred times
-/// and ten and twenty times; what equations tell is right to a factor of 20.
-const LONGER: f64 = 2.0;
-const TOLD: f64 = 20.0;
+/// Where equations tell a duration without an upper bound, its guess is so many times what they tell, and its range so many times.
+/// Choices: what they tell is right to a decade, and motions that are too slow are nearer to a solution than those that are too fast.
+const TOLD_GUESS: f64 = 2.0;
+const TOLD_RANGE: f64 = 20.0;
 
 /// By so many decades in sum the equations have to be balanced better there, and worse beyond. A choice: two factors of ten.
 const BETTER: f64 = 2.0;
@@ -83,7 +82,7 @@ impl Transcription<'_> {
             let (guess, reach) = match (is_open, typical.is_some()) {
                 (false, _) => (guess, 2.0 * guess),
                 (true, false) => (guess, 10f64.powi(FAR) * guess),
-                (true, true) => (LONGER * guess, TOLD * guess),
+                (true, true) => (TOLD_GUESS * guess, TOLD_RANGE * guess),
             };
             self.durations[i] = FreeDuration { guess, reach, ..known };
         }
@@ -145,14 +144,17 @@ fn shortest(trial: &mut impl FnMut(i32) -> Option<Trial>) -> Option<f64> {
     if !is_good(trial(RANGE * PARTS)?) {
         return None;
     }
-    while is_good(trial(best - PARTS)?) {
+    let before = loop {
+        let there = trial(best - PARTS)?;
+        if !is_good(there) {
+            break there;
+        }
         best -= PARTS;
         if best <= -RANGE * PARTS {
             return None;
         }
-    }
-    let is_worse = |there: Trial| there.decades > least + EQUAL;
-    if !is_worse(trial(best - PARTS)?) {
+    };
+    if before.decades < least {
         return None;
     }
     (best - PARTS..=best).find_map(|tenths| trial(tenths).filter(|there| is_good(*there)).map(|_| f64::from(tenths)))

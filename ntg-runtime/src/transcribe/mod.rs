@@ -69,6 +69,7 @@ use ntg_nlp::Limits;
 use ntg_splines::Table;
 use ntg_structure::{Degree, Place, Row, Structure, Unit};
 use rows::{RowInfo, RowKind};
+pub(crate) use scale::Quantity;
 use std::sync::Arc;
 use times::Clock;
 

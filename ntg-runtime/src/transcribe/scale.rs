@@ -37,12 +37,14 @@ const OTHER_KIND: f64 = 1e6;
 const OFFSET: Range<f64> = 1e-10..1e-3;
 
 /// What has a size of its own: an output in all phases of an agent, or a variable.
-struct Quantity<'a> {
+pub(crate) struct Quantity<'a> {
     name: &'a str,
     family: Option<Family>,
     index: Option<i64>,
-    unit: &'a Unit,
-    coefficients: Vec<u32>,
+    pub(crate) unit: &'a Unit,
+    /// Of an output its phases, and its number among the outputs of each.
+    pub(crate) members: Vec<(usize, usize)>,
+    pub(crate) coefficients: Vec<u32>,
 }
 
 impl Transcription<'_> {
@@ -137,6 +139,7 @@ impl Transcription<'_> {
                 family: declared.family,
                 index,
                 unit: &declared.unit,
+                members: vec![],
                 coefficients: vec![variable],
             })
         });
@@ -296,19 +299,23 @@ impl Transcription<'_> {
     }
 
     /// Every output of some phases once, with the coefficients of all of them.
-    fn outputs_of(&self, phases: Range<usize>) -> Vec<Quantity<'_>> {
+    pub(crate) fn outputs_of(&self, phases: Range<usize>) -> Vec<Quantity<'_>> {
         let mut found: Vec<Quantity> = vec![];
         for phase in phases {
             let member = &self.model.layout.phases[phase];
-            for output in &member.outputs {
+            for (number, output) in member.outputs.iter().enumerate() {
                 let declared = &self.model.structure.phases[member.phase].outputs[output.output];
                 match found.iter_mut().find(|f| f.name == declared.name && f.index == output.index) {
-                    Some(known) => known.coefficients.extend(&output.coefficients),
+                    Some(known) => {
+                        known.members.push((phase, number));
+                        known.coefficients.extend(&output.coefficients);
+                    }
                     None => found.push(Quantity {
                         name: &declared.name,
                         family: declared.family,
                         index: output.index,
                         unit: &declared.unit,
+                        members: vec![(phase, number)],
                         coefficients: output.coefficients.clone(),
                     }),
                 }
