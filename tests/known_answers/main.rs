@@ -11,6 +11,7 @@ mod constructs;
 mod corners;
 mod curved_corners;
 mod data;
+mod decades;
 mod degenerate;
 mod durations;
 mod equation_corners;

@@ -27,6 +27,10 @@ const BENT: f64 = 3.0;
 /// size. A choice: the points may not see a hill, and what is missed by 3e-5 of all is no hill.
 const LEAST_SIDE: f64 = 3e-3;
 
+/// Below this part of the size of its terms what an equation says is 0, as `sin(pi)`, and so is what is missed of it. A law:
+/// rounding of some terms.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// The sizes of one member of a constraint, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Size {
@@ -53,6 +57,8 @@ struct Terms {
     steady: f64,
     /// The steepest slope of a row by a variable of its size.
     slope: f64,
+    /// Of an equation that holds at single points: what it says, if more is missed than rounding.
+    value: f64,
     /// Of a limit: the least and the largest value at the points.
     limited: Option<(f64, f64)>,
     /// Of rows that have linear slots and others: the least and the largest value of what is left without the linear terms.
@@ -62,6 +68,9 @@ struct Terms {
 impl Terms {
     fn size(&self) -> Option<Size> {
         let at_points = [self.largest, self.slope].into_iter().find(|size| *size > 0.0)?;
+        if self.value > ROUNDING * at_points {
+            return Some(Size { at_points: self.value, between: self.value });
+        }
         // Of a sine of a thousand turns the slope times the angle says nothing, nor an offset of a temperature.
         let mut seen = self.rate.max(self.variation);
         if seen < LEAST_BETWEEN * at_points {
@@ -84,6 +93,19 @@ impl Terms {
 /// The size of a limit of which one side varies by this much, and all of it by `whole`.
 pub(super) fn with_side(whole: f64, side: f64) -> f64 {
     side.clamp(LEAST_SIDE * whole, whole)
+}
+
+/// Adds what the equations of a block say whose constraints hold at single points, where more is missed than rounding.
+fn add_values(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation), block: &Block, terms: &mut [Terms]) {
+    let limits = &nlp.limits;
+    for target in &block.target {
+        let Target::Row(row) = *target else { continue };
+        let (row, relation) = (row as usize, nlp.elements.relations.of_row[row as usize] as usize);
+        let missed = (at.rows[row] - limits.row_lower[row]).abs() * outcome.row_factors[row];
+        if limits.row_lower[row] == limits.row_upper[row] && missed > ROUNDING {
+            terms[relation].value = limits.row_lower[row].abs();
+        }
+    }
 }
 
 /// The least and largest value of each term of each relation of a block, and of its slope.
@@ -150,6 +172,7 @@ impl Sizes {
         for (batch, (block, values)) in blocks {
             let group = &groups[batch.group];
             if !matches!(group.domain, Domain::Path { .. }) {
+                add_values(nlp, (outcome, at), block, &mut terms);
                 continue;
             }
             let is_rate = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Flat { derivative: 1.., .. }));

@@ -10,7 +10,7 @@
 use super::beside::beside_infeasible;
 use super::budget::{Budget, QUADRATIC, better};
 use super::coarse_start::start_from_fewer;
-use super::session::{FirstPoint, Session, Task, solution};
+use super::session::{FirstPoint, Session, Task, holds_along, solution};
 use crate::guess::{Guess, simulated, start};
 use crate::settings::{InertiaCorrection, Method, Scaling, Settings, Violations};
 use crate::transcribe::{SetupError, Transcription};
@@ -236,7 +236,10 @@ impl Session {
             Attempt::Rays | Attempt::Sqp => {
                 let max_subproblems = QUADRATIC;
                 let options = ntg_nlp::Options { method: Method::Sqp, max_subproblems, ..settings.solver_options() };
-                method::solve(nlp, x, &options)
+                let found = method::solve(nlp, x, &options);
+                // A linear program may be solved by its tolerances and by no others.
+                let is_none = found.status.has_solution() && !holds_along(nlp, &found, &settings);
+                if is_none { Outcome { status: Status::StepTooSmall, ..found } } else { found }
             }
         };
         budget.spend(next.iterations);

@@ -150,8 +150,8 @@ impl Session {
         }
     }
 
-    /// As [`Session::solve_once`]; where the solution shows that sizes were too large, and is none by smaller ones, the solve
-    /// goes on with these (docs/maths.md, section 11.12).
+    /// As [`Session::solve_once`]; where the solution shows that sizes were too large, everywhere or along a part of the motion,
+    /// and is none by smaller ones, the solve goes on with these (docs/maths.md, section 11.12).
     pub(super) fn solve_measured(
         &mut self,
         nlp: &mut Transcription,
@@ -160,8 +160,11 @@ impl Session {
     ) -> Outcome {
         let mut outcome = self.solve_once(nlp, first, settings);
         for round in 0.. {
-            let sizes = Some(&outcome).filter(|outcome| outcome.status.has_solution());
-            let Some(sizes) = sizes.and_then(|outcome| nlp.smaller_sizes(&outcome.x)) else { break };
+            if !outcome.status.has_solution() {
+                break;
+            }
+            let sizes = sizes_along(nlp, &outcome).or_else(|| nlp.smaller_sizes(&outcome.x));
+            let Some(sizes) = sizes else { break };
             if is_solution_by(nlp, &sizes, &outcome, &settings.solver_options()) {
                 break;
             }
@@ -252,6 +255,21 @@ impl Session {
         self.kept = Some(nlp.keep());
         Ok(report)
     }
+}
+
+/// Whether a solution is one by the sizes along its motion, where these count.
+pub(super) fn holds_along(nlp: &Transcription, outcome: &Outcome, settings: &Settings) -> bool {
+    let along = sizes_along(nlp, outcome);
+    along.is_none_or(|sizes| is_solution_by(nlp, &sizes, outcome, &settings.solver_options()))
+}
+
+/// The sizes along the motion of a solution, where what its equations miss within their tolerance is worth a part of the
+/// objective that counts, or the objective is 0 beside what it varied by (docs/maths.md, section 11.12).
+fn sizes_along(nlp: &Transcription, outcome: &Outcome) -> Option<Vec<f64>> {
+    let objective = outcome.objective.abs();
+    let is_nothing = outcome.objective_factor * objective < f64::EPSILON;
+    let counts = is_nothing || outcome.residuals.unscaled.worth > SAME * objective;
+    if counts { nlp.sizes_along(&outcome.x) } else { None }
 }
 
 /// Whether two outcomes have one objective, and differ at most in variables whose size is not the same.

@@ -45,6 +45,7 @@ pub(crate) mod shifted;
 mod shrinking;
 pub(crate) mod singular;
 mod sizes;
+mod sizes_along;
 pub(crate) mod slot_maps;
 pub(crate) mod slots;
 mod tables;
