@@ -186,7 +186,7 @@ pub struct Measurement {
     pub sigma: Call,
 }
 
-/// An output that formulas know by the sines and cosines of its multiples alone.
+/// An output whose values formulas know by the sines and cosines of its multiples alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angle {
     /// Index into `Structure::phases`.
@@ -197,6 +197,8 @@ pub struct Angle {
     pub radian: f64,
     /// The change of the output, SI, that formulas do not see, but for bounds of the output; none where there is none.
     pub turn: Option<f64>,
+    /// Whether formulas know its derivatives by time too.
+    pub moves: bool,
 }
 
 /// An integral that enters some function nonlinearly.

@@ -22,6 +22,7 @@ mod fleet;
 mod flight;
 mod flight_phases;
 mod gates;
+mod headings;
 mod integrals;
 mod invariants;
 mod jumped;

@@ -113,7 +113,7 @@ structs! {
     Integral { loops, place }
     Loop { first, last }
     Measurement { term, unit, loops, residual, sigma }
-    Angle { phase, output, radian, turn }
+    Angle { phase, output, radian, turn, moves }
     Named { name, doc, unit, family, agent, loops, domain, call }
     Output { name, doc, unit, family, vector, spline }
     Parameter { name, doc, unit, array, grid, value }

@@ -1,4 +1,4 @@
-//! Which outputs are angles that formulas know by their sines and cosines alone (docs/maths.md, section 11.15).
+//! Which outputs are angles whose values formulas know by their sines and cosines alone (docs/maths.md, sections 8.7 and 11.15).
 
 use std::collections::BTreeMap;
 
@@ -21,21 +21,23 @@ type Output = (usize, usize);
 struct Uses {
     /// The factors with which an output stands in arguments of sines, cosines and tangents.
     turned: BTreeMap<Output, Vec<f64>>,
-    /// Outputs of which the values themselves, or derivatives, are used.
+    /// Outputs of which the values themselves are used.
     exposed: Vec<Output>,
+    /// Outputs of which derivatives are used.
+    moving: Vec<Output>,
 }
 
-/// The outputs that occur in formulas only as a part, with a constant factor, of arguments of sines, cosines and tangents,
-/// and as what is bounded.
+/// The outputs whose values occur in formulas only as a part, with a constant factor, of arguments of sines, cosines and
+/// tangents, and as what is bounded.
 pub(crate) fn angles(problem: &Problem) -> Vec<Angle> {
-    let Uses { turned, exposed } = uses(problem);
+    let Uses { turned, exposed, moving } = uses(problem);
     let is_angle = |output: &Output| !exposed.contains(output);
     let angle = |((phase, output), factors): (Output, Vec<f64>)| {
         let (least, most) =
             factors.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), k| (least.min(*k), most.max(*k)));
         let is_whole = |k: &f64| (k / least - (k / least).round()).abs() <= SAME;
         let turn = factors.iter().all(is_whole).then(|| std::f64::consts::TAU / least);
-        Angle { phase, output, radian: 1.0 / most, turn }
+        Angle { phase, output, radian: 1.0 / most, turn, moves: moving.contains(&(phase, output)) }
     };
     turned.into_iter().filter(|(output, _)| is_angle(output)).map(angle).collect()
 }
@@ -52,7 +54,8 @@ fn uses(problem: &Problem) -> Uses {
         let mut next: Vec<NodeId> = vec![];
         match problem.dag.node(id) {
             Node::Input(input) => match problem.leaves.leaf(*input) {
-                Leaf::Flat { phase, output, .. } => uses.exposed.push((phase.phase, *output)),
+                Leaf::Flat { phase, output, order: 0, .. } => uses.exposed.push((phase.phase, *output)),
+                Leaf::Flat { phase, output, .. } => uses.moving.push((phase.phase, *output)),
                 Leaf::Integral { integrand, .. } => next.push(*integrand),
                 _ => {}
             },

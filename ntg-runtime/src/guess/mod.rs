@@ -8,6 +8,7 @@
 
 mod aside;
 mod earlier;
+mod heading;
 mod program;
 mod route;
 mod simulate;

@@ -4,6 +4,7 @@
 
 use super::aside;
 use super::earlier;
+use super::heading;
 use super::program::{Base, Guess};
 use super::statements::Statements;
 use crate::transcribe::layout::{Layout, Time};
@@ -68,6 +69,7 @@ pub fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, Set
     curves.extend(statements.program_curves(&x)?);
     apply(layout, &curves, &mut x)?;
     aside::bend(nlp, &curves, &mut x)?;
+    heading::turn(nlp, &curves, &mut x)?;
     finish(nlp, x)
 }
 

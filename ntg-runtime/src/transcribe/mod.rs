@@ -317,11 +317,13 @@ fn differs_in_data_only(a: &Structure, b: &Structure) -> bool {
         && sizes(a) == sizes(b)
 }
 
-/// The coefficients of outputs that are angles, with the change that is a radian: a spline is between its coefficients.
+/// The coefficients of outputs that are angles and do not move, with the change that is a radian: a spline is between its
+/// coefficients.
 fn angles(structure: &Structure, layout: &Layout) -> Vec<(u32, f64)> {
     let outputs = layout.phases.iter().flat_map(|phase| phase.outputs.iter().map(move |output| (phase.phase, output)));
     let radian = |phase: usize, output: usize| {
-        structure.angles.iter().find(|angle| (angle.phase, angle.output) == (phase, output)).map(|angle| angle.radian)
+        let mut angles = structure.angles.iter().filter(|angle| !angle.moves);
+        angles.find(|angle| (angle.phase, angle.output) == (phase, output)).map(|angle| angle.radian)
     };
     let each = outputs.filter_map(|(phase, output)| Some((radian(phase, output.output)?, &output.coefficients)));
     each.flat_map(|(radian, coefficients)| coefficients.iter().map(move |variable| (*variable, radian))).collect()
