@@ -58,3 +58,23 @@ fn rates_are_found_on_any_mesh_from_no_guess() {
         assert!(found.iter().all(|objective| *objective < 30.0), "{found:?}");
     }
 }
+
+/// The logarithm of what grows, and the reciprocal: at 0, where nothing is guessed, they have no value.
+#[test]
+fn measurements_may_be_singular_at_zero() {
+    for (function, slope) in [("log(x)", 0.2), ("1 / x", 0.0)] {
+        let value = |t: f64| if slope > 0.0 { 1.0 + slope * t } else { (-0.2_f64 * t).exp() };
+        let at = |t: f64| format!("at({t:?}, {function}) == {:?} sigma 0.01;", value(t));
+        let report = Shipped::text(&format!(
+            "problem Growth {{
+                duration T = 10;  state x;  variable k in 0 .. 1;  collocation gauss(points = 3, intervals = 10);
+                dynamics {{ der(x) == k * x; }}
+                measure {{ {} }}
+            }}",
+            [0.0, 2.5, 5.0, 7.5, 10.0].map(at).join("  ")
+        ))
+        .solve();
+        assert!(report.is_solved(), "{function}: {report}");
+        close(report.solution.variable("k").expect("it is one"), 0.2, 1e-4);
+    }
+}

@@ -51,3 +51,4 @@ mod unresolved;
 mod vanishing;
 mod vectors;
 mod vehicles;
+mod winding;

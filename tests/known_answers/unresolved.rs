@@ -308,3 +308,23 @@ fn decades_that_equations_do_not_follow_are_unresolved() {
         "{report}"
     );
 }
+
+/// What grows by itself is far easier by its logarithm, and the advice says so.
+#[test]
+fn what_runs_through_decades_is_advised_to_be_a_logarithm() {
+    let growth = |states: &str, motion: &str| {
+        Shipped::text(&format!(
+            "problem Growth {{
+                duration T = 20;  state {states};  input u;  collocation gauss(points = 4, intervals = 12);
+                minimize integral(u^2);
+                {motion}
+            }}"
+        ))
+        .solve()
+    };
+    let plain = growth("x", "dynamics { der(x) == u * x; } initial { x == 1; } final { x == 1e6; }");
+    assert_eq!(plain.resolution(), Some(Resolution::Unresolved), "{plain}");
+    assert!(plain.advice.contains("`x` runs through 6 decades: write its logarithm"), "{}", plain.advice);
+    let logarithm = growth("z", "dynamics { der(z) == u; } initial { z == 0; } final { z == log(1e6); }");
+    assert!((logarithm.objective / (1e6_f64.ln().powi(2) / 20.0) - 1.0).abs() < 1e-9, "{logarithm}");
+}

@@ -19,4 +19,4 @@ pub use program::Guess;
 pub(crate) use route::Route;
 pub(crate) use simulate::{Defect, defect, simulated};
 pub use start::start;
-pub(crate) use start::{Curve, apply, finish, pointwise, set};
+pub(crate) use start::{Curve, apply, finish, guessed, pointwise, set};

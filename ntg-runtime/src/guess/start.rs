@@ -12,6 +12,7 @@ use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Transcription, defaults};
 use ntg_nlp::Nlp;
 use ntg_splines::{Knots, Sampled, fit_all, fit_places};
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 /// A guessed function of scaled time, SI: its values at many times.
@@ -71,6 +72,27 @@ pub fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, Set
     aside::bend(nlp, &curves, &mut x)?;
     heading::turn(nlp, &curves, &mut x)?;
     finish(nlp, x)
+}
+
+/// The outputs that a spec or a program guesses, by phase and number there; all of them where a guess is made of variables or of a
+/// solution.
+///
+/// # Errors
+/// As [`start`].
+pub(crate) fn guessed(
+    nlp: &Transcription,
+    guess: Option<&Guess>,
+    x: &[f64],
+) -> Result<BTreeSet<(usize, usize)>, SetupError> {
+    let nothing = Guess::default();
+    let guess = guess.unwrap_or(&nothing);
+    if !matches!(guess.base, Base::Spec) {
+        let phases = nlp.model.layout.phases.iter().enumerate();
+        return Ok(phases.flat_map(|(phase, own)| (0..own.outputs.len()).map(move |output| (phase, output))).collect());
+    }
+    let statements = Statements { nlp, guess };
+    let curves = [statements.spec_curves(x)?, statements.program_curves(x)?];
+    Ok(curves.iter().flatten().map(|curve| (curve.phase, curve.output)).collect())
 }
 
 fn raw_start(nlp: &Transcription, guess: &Guess, raw: &[f64]) -> Result<Vec<f64>, SetupError> {

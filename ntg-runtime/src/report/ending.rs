@@ -4,6 +4,8 @@ use super::Cost;
 use super::{Confirmation, Report};
 use crate::settings::Settings;
 use crate::status::Status;
+use crate::transcribe::names;
+use ntg_splines::Side;
 
 /// How far a solution of the transcription is one of the problem itself: what the check on the finer grid found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -161,8 +163,44 @@ impl Report {
             "Use more points or intervals, let the mesh be refined (`refine`, `between`), or look for another minimum \
              (`starts`): what was found solves the equations at the points only, it is not a solution of the problem."
                 .clone_into(&mut self.advice);
+            if let Some((output, decades)) = self.many_decades() {
+                self.advice += &format!(
+                    " `{output}` runs through {decades:.0} decades: write its logarithm as the state, whose rate is `der({output}) / {output}`."
+                );
+            }
         }
         self
+    }
+
+    /// The state that keeps its sign and runs through the most decades, where these are many, and how many.
+    fn many_decades(&self) -> Option<(String, f64)> {
+        /// A choice, that of the defect in decades (9.3e).
+        const MANY: f64 = 3.0;
+        let (structure, inner) = (self.solution.structure(), &self.solution.inner);
+        let layout = &inner.model.layout;
+        let mut found: Option<(String, f64)> = None;
+        for (phase, member) in layout.phases.iter().enumerate() {
+            for (output, own) in member.outputs.iter().enumerate() {
+                let declared = &structure.phases[member.phase].outputs[own.output];
+                // Between the ends of intervals what is solved at the points alone may have any sign.
+                let values = member.breakpoints.iter().map(|tau| {
+                    let side = if *tau == 0.0 { Side::Right } else { Side::Left };
+                    layout.flat(phase, output, 0, (*tau, side), &inner.x)
+                });
+                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (v.min(l), v.max(h)));
+                let decades = (high / low).log10().abs();
+                let is_most = found.as_ref().is_none_or(|(_, most)| decades > *most);
+                if declared.spline.smoothness > 0
+                    && !declared.is_helper()
+                    && low * high > 0.0
+                    && decades > MANY
+                    && is_most
+                {
+                    found = Some((names::output(structure, layout, phase, output), decades));
+                }
+            }
+        }
+        found
     }
 
     /// The report with advice where nothing but the time limit has kept its solution from the tolerances.

@@ -60,6 +60,11 @@ impl<'a> Budget<'a> {
         self.settings.constraint_tolerance
     }
 
+    /// Whether the user leaves the method open.
+    pub(super) fn is_automatic(&self) -> bool {
+        self.settings.method == Method::Auto
+    }
+
     /// How small scaled residuals of optimality must be.
     pub(super) fn tolerance(&self) -> f64 {
         self.settings.tolerance

@@ -29,6 +29,7 @@ mod slopes;
 mod solve;
 mod tips;
 mod turns;
+mod winding;
 
 pub(crate) use session::{Session, Task};
 pub use solve::Tracked;

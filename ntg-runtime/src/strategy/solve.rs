@@ -111,6 +111,7 @@ impl Session {
             };
             if is_last && i == 0 {
                 let guess = guessed.as_deref().unwrap_or(&first);
+                outcome = self.unwind(&mut nlp, (task, guess), outcome, &mut budget)?;
                 (outcome, is_guess_better) = self.no_worse_than_guess(&mut nlp, guess, outcome, &mut budget)?;
             }
             if is_last {

@@ -38,7 +38,9 @@ impl Measured {
                 let values = residuals(0.0).into_iter().zip(residuals(1.0)).zip(residuals(2.0));
                 for (((zero, one), two), site) in values.zip(&batch.sites) {
                     let slope = one - zero;
-                    let is_linear = slope != 0.0 && (two - one - slope).abs() <= LINEAR * slope.abs().max(zero.abs());
+                    let is_linear = slope != 0.0
+                        && slope.is_finite()
+                        && (two - one - slope).abs() <= LINEAR * slope.abs().max(zero.abs());
                     if let (true, Ok(Source::Flat { phase, at, output, .. })) = (is_linear, frame.source(slot, site)) {
                         let tau = match at {
                             At::Start => 0.0,
