@@ -485,3 +485,26 @@ fn charges_beside_a_plane_leave_it() {
         assert!(report.iterations < 100, "{height}: {}", report.iterations);
     }
 }
+
+/// At rest a limit on a norm has no slope, and tells the size of its vector all the same: a saddle at which nothing moves is left in
+/// any unit.
+#[test]
+fn a_norm_tells_the_size_of_its_vector() {
+    for (length, speed) in [("mm", "m/s"), ("m", "m/s"), ("km", "m/s"), ("km", "km/s"), ("Mm", "mm/s")] {
+        for limit in ["norm(u) <= 20 [m/s]", "hypot(u[1], u[2]) <= 20 [m/s]", "dot(u, u) <= 400 [m^2/s^2]"] {
+            let report = Shipped::text(&format!(
+                "problem Away {{
+                    duration T = 1 [s];  state x, y [{length}];  input u[2] [{speed}];
+                    collocation gauss(points = 3, intervals = 10);
+                    maximize final(x^2 + y^2);
+                    dynamics {{ der(x) == u[1];  der(y) == u[2]; }}
+                    trajectory {{ {limit}; }}
+                    initial {{ x == 0;  y == 0; }}
+                }}"
+            ))
+            .solve();
+            assert!(report.is_solved(), "{length}, {speed}, {limit}: {report}");
+            close(report.objective, 400.0, 1e-4);
+        }
+    }
+}

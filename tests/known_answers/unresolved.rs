@@ -1,6 +1,7 @@
 //! Solutions of the points alone: whoever does not see them believes a wrong number.
 
 use ntg::prelude::*;
+use ntg::runtime::multistart::{Minimum, multistart};
 use ntg::runtime::report::Resolution;
 
 use crate::support::Shipped;
@@ -327,4 +328,30 @@ fn what_runs_through_decades_is_advised_to_be_a_logarithm() {
     assert!(plain.advice.contains("`x` runs through 6 decades: write its logarithm"), "{}", plain.advice);
     let logarithm = growth("z", "dynamics { der(z) == u; } initial { z == 0; } final { z == log(1e6); }");
     assert!((logarithm.objective / (1e6_f64.ln().powi(2) / 20.0) - 1.0).abs() < 1e-9, "{logarithm}");
+}
+
+/// A unit vector that turns round: on the points its rate may jump at no cost, and of many starts one finds that.
+#[test]
+fn of_many_starts_the_best_is_a_motion() {
+    let shipped = Shipped::text(
+        "problem Turn {
+            duration T = 60 [s];  state c, s [1], om [rad/s];  input al [rad/s^2];  collocation gauss(points = 3, intervals = 40);
+            minimize integral(al^2);
+            dynamics { der(c) == -s * om;  der(s) == c * om;  der(om) == al; }
+            initial { c == 1;  s == 0;  om == 0; }
+            final { c == -1;  s == 0;  om == 0; }
+        }",
+    );
+    let starts = Starts { count: 10, ..Starts::default() };
+    let found = multistart(shipped.problem(), &starts, &Settings::default()).expect("it can be set up");
+    let is_unresolved = |minimum: &Minimum| minimum.report.resolution() == Some(Resolution::Unresolved);
+    // Half a turn: 12 pi^2 / T^3.
+    let best = 12.0 * std::f64::consts::PI.powi(2) / 60.0_f64.powi(3);
+    assert!((found.minima[0].report.objective / best - 1.0).abs() < 1e-3 && !is_unresolved(&found.minima[0]));
+    let first = found.minima.iter().position(is_unresolved).unwrap_or(found.minima.len());
+    assert!(found.minima[first..].iter().all(is_unresolved));
+    for (number, minimum) in found.minima.iter().enumerate() {
+        let own = found.starts.iter().filter(|start| start.minimum == Some(number));
+        assert!(own.clone().count() == minimum.count && own.clone().all(|start| start.objective.is_finite()));
+    }
 }

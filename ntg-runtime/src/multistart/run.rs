@@ -2,12 +2,12 @@
 
 use super::parameters::{self, Open};
 use super::vehicles::{Vehicle, positions, vehicles};
-use super::{MultiReport, Origin, StartKind, StartProgress, StartReport, Starts};
+use super::{Minimum, MultiReport, Origin, StartKind, StartProgress, StartReport, Starts};
 use super::{lattice, minima, random};
 use crate::error::Error;
 use crate::guess::{Guess, start};
 use crate::problem::Problem;
-use crate::report::Report;
+use crate::report::{Report, Resolution};
 use crate::settings::{Between, Control, InvalidSetting, Settings};
 use crate::solve::refined;
 use crate::status::Status;
@@ -233,17 +233,30 @@ fn gather(all: Vec<One>, positions: &[String]) -> MultiReport {
 }
 
 impl MultiReport {
+    /// Puts minima that are solutions of the points alone behind the others: nothing is gained by what they have less.
+    fn put_resolved_first(&mut self) {
+        let is_unresolved = |minimum: &Minimum| minimum.report.resolution() == Some(Resolution::Unresolved);
+        let (last, first): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.minima).into_iter().enumerate().partition(|(_, minimum)| is_unresolved(minimum));
+        let (before, minima): (Vec<usize>, Vec<Minimum>) = first.into_iter().chain(last).unzip();
+        let now = |own: usize| before.iter().position(|before| *before == own);
+        self.starts.iter_mut().for_each(|start| start.minimum = start.minimum.and_then(now));
+        self.minima = minima;
+    }
+
     /// Refines every minimum where the settings say so, puts those together that are one on finer meshes, and leaves out
     /// those that the settings refuse.
     fn finish(&mut self, problem: &dyn Problem, settings: &Settings, positions: &[String]) -> Result<(), Error> {
         if settings.refine.is_none() && settings.between == Between::Report {
             let began = Instant::now();
-            let confirm = |minimum: &mut super::Minimum| {
+            let confirm = |minimum: &mut Minimum| {
                 minimum.report =
                     minimum.report.clone().confirmed_from_now(problem, &settings.after(began.elapsed()))?;
-                Ok(())
+                Ok::<(), Error>(())
             };
-            return self.minima.par_iter_mut().try_for_each(confirm);
+            self.minima.par_iter_mut().try_for_each(confirm)?;
+            self.put_resolved_first();
+            return Ok(());
         }
         let coarse = std::mem::take(&mut self.minima);
         let refined = coarse.into_par_iter().map(|minimum| refined(problem, minimum.report, settings));

@@ -32,6 +32,7 @@ pub(crate) mod linear;
 mod measured;
 pub(crate) mod names;
 pub(crate) mod node;
+mod norm_slopes;
 pub(crate) mod points;
 mod range_maps;
 mod reduce;

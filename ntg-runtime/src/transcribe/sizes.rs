@@ -92,9 +92,10 @@ impl Transcription<'_> {
         if self.derivatives(x, 1.0, &multipliers, &mut workspace, &mut at).is_err() {
             return false;
         }
+        let units = self.units();
+        self.take_slopes_of_norms(x, &units, &mut workspace, &mut at);
         self.collect_slopes(&at, &mut balance);
         let guessed = balance.size.clone();
-        let units = self.units();
         self.forget_doubtful((x, scale, &units), &at, &mut balance);
         balance.forget_rounding();
         let known = balance.size.clone();
