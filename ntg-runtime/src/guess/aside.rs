@@ -4,6 +4,7 @@
 //! nothing there. Takes the equations that hold along whole phases between values of outputs, and which outputs nobody guesses;
 //! bends one of these to the side, by as much as the equation asks for where its slope is least.
 
+use super::equations::is_equation_along;
 use super::start::{Curve, apply, pointwise};
 use crate::transcribe::elements::GroupBatch;
 use crate::transcribe::layout::Layout;
@@ -12,7 +13,7 @@ use crate::transcribe::slots::Source;
 use crate::transcribe::{Quantity, SetupError, Transcription, Workspace};
 use nalgebra::DVector;
 use ntg_nlp::{Evaluation, Nlp};
-use ntg_structure::{Block, Degree, Domain, Row};
+use ntg_structure::Degree;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::f64::consts::PI;
 
@@ -64,19 +65,10 @@ fn candidates(nlp: &Transcription) -> Vec<Vec<bool>> {
     let structure = &nlp.model.structure;
     let is_one = |(group, block): (&GroupBatch, &ntg_nlp::Block), function: usize| {
         let declared = &structure.groups[group.group];
-        let is_equation = match &declared.rows[function] {
-            Row::Constraint { constraint, lower: Some(lower), upper: Some(upper) } => {
-                lower == upper
-                    && structure.is_posed(*constraint)
-                    && structure.constraints[*constraint].block != Block::Corner
-            }
-            _ => false,
-        };
         let sources = group.batch.sources();
         let is_value = |slot: usize| matches!(sources.get(slot), Some(Source::Flat { derivative: 0, .. }));
         let mut slots = block.jacobian.iter().filter(|(of, _)| *of == function).map(|(_, slot)| *slot);
-        is_equation
-            && matches!(declared.domain, Domain::Path { .. })
+        is_equation_along(structure, declared, function)
             && group.degree[function] > Degree::Linear
             && slots.all(is_value)
     };

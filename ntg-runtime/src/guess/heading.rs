@@ -4,19 +4,20 @@
 //! both: where two of them hold, they tell the angle for the guessed motion. Takes a guess without that; turns each such angle at
 //! every place where equations tell it.
 
+use super::equations::is_equation_along;
 use super::start::{Curve, apply, pointwise};
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::slots::{AffineMap, Source};
 use crate::transcribe::{Quantity, SetupError, Transcription};
 use ntg_nlp::{Block as Elements, Evaluation, Nlp};
 use ntg_splines::{Side, Spline};
-use ntg_structure::{Block, Degree, Domain, Row};
+use ntg_structure::Degree;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
 /// An equation holds with sine and cosine alone where that is missed by less than this part of them. Rounding.
 const EXACT: f64 = 1e-9;
-/// An equation tells something where the angle changes it by this part of what it does at most.  A choice, far from rounding.
+/// An equation tells something where the angle changes it by this part of what it does at most. A choice, far from rounding.
 const LEAST: f64 = 1e-6;
 /// Equations tell both sine and cosine where the lesser eigenvalue of their normal equations is above this part of the larger one.
 /// A choice.
@@ -94,16 +95,12 @@ struct Shift {
 
 /// The angles that nobody guesses and that have one whole turn everywhere.
 fn angles<'a>(nlp: &'a Transcription, guessed: &[Curve]) -> Vec<Angle<'a>> {
-    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
     let guessed: BTreeSet<_> = guessed.iter().map(|curve| (curve.phase, curve.output)).collect();
-    let outputs = layout.agents.iter().flat_map(|agent| nlp.outputs_of(agent.phases.clone()));
-    let turn_in = |&(phase, output): &(usize, usize)| {
-        let member = &layout.phases[phase];
-        let declared = (member.phase, member.outputs[output].output);
-        structure.angles.iter().find(|angle| (angle.phase, angle.output) == declared).map(|angle| {
-            // Of multiples of one angle neither sine nor cosine is linear in those of another.
-            angle.turn.filter(|turn| (turn / angle.radian - TAU).abs() < EXACT)
-        })
+    let outputs = nlp.model.layout.agents.iter().flat_map(|agent| nlp.outputs_of(agent.phases.clone()));
+    // Of multiples of one angle neither sine nor cosine is linear in those of another.
+    let turn_in = |member: &(usize, usize)| {
+        let angle = nlp.angle(*member)?;
+        Some(angle.turn.filter(|turn| (turn / angle.radian - TAU).abs() < EXACT))
     };
     let unguessed = outputs.filter(|output| !output.members.iter().any(|member| guessed.contains(member)));
     let each = unguessed.filter_map(|output| {
@@ -141,15 +138,7 @@ fn rows(nlp: &Transcription, output: &Quantity) -> Vec<usize> {
     let is_one = |(number, element, function): (usize, usize, usize)| {
         let Some(group) = nlp.elements.batches.get(number) else { return false };
         let declared = &structure.groups[group.group];
-        let is_equation = match &declared.rows[function] {
-            Row::Constraint { constraint, lower: Some(lower), upper: Some(upper) } => {
-                lower == upper
-                    && structure.is_posed(*constraint)
-                    && structure.constraints[*constraint].block != Block::Corner
-            }
-            _ => false,
-        };
-        if !is_equation || !matches!(declared.domain, Domain::Path { .. }) || group.degree[function] <= Degree::Linear {
+        if !is_equation_along(structure, declared, function) || group.degree[function] <= Degree::Linear {
             return false;
         }
         let block = &nlp.elements.blocks[number];

@@ -8,6 +8,7 @@
 
 mod aside;
 mod earlier;
+mod equations;
 mod heading;
 mod program;
 mod route;

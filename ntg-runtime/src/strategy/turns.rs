@@ -42,14 +42,13 @@ impl Session {
 fn unwrapped(nlp: &Transcription, x: &[f64]) -> Option<Vec<f64>> {
     let structure = &nlp.model.structure;
     let mut found: Option<Vec<f64>> = None;
-    for phase in &nlp.model.layout.phases {
+    for (number, phase) in nlp.model.layout.phases.iter().enumerate() {
         let points = structure.phases[phase.phase].points.iter().find_map(|set| match set {
             Points::Gauss { points } => Some(*points),
             _ => None,
         });
-        for output in &phase.outputs {
-            let is_this = |angle: &&ntg_structure::Angle| (angle.phase, angle.output) == (phase.phase, output.output);
-            let turn = structure.angles.iter().find(is_this).and_then(|angle| angle.turn);
+        for (of_phase, output) in phase.outputs.iter().enumerate() {
+            let turn = nlp.angle((number, of_phase)).and_then(|angle| angle.turn);
             let Some((turn, points)) = turn.zip(points) else { continue };
             let own: Vec<f64> = output.coefficients.iter().map(|variable| x[*variable as usize]).collect();
             let Some(own) = unwrapped_spline(&output.knots, &own, turn, points) else { continue };

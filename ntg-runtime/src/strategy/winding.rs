@@ -118,13 +118,7 @@ fn straight(
 
 /// A whole turn of an output that is an angle and moves.
 fn turn(nlp: &Transcription, output: &Quantity) -> Option<f64> {
-    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
-    let turn = |&(phase, output): &(usize, usize)| {
-        let member = &layout.phases[phase];
-        let declared = (member.phase, member.outputs[output].output);
-        structure.angles.iter().find(|angle| angle.moves && (angle.phase, angle.output) == declared)?.turn
-    };
-    output.members.iter().find_map(turn)
+    output.members.iter().find_map(|member| nlp.angle(*member).filter(|angle| angle.moves)?.turn)
 }
 
 /// The first and the last place of an output.

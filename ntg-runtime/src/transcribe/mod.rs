@@ -69,7 +69,7 @@ use layout::Layout;
 use linear::LinearSystem;
 use ntg_nlp::Limits;
 use ntg_splines::Table;
-use ntg_structure::{Degree, Place, Row, Structure, Unit};
+use ntg_structure::{Angle, Degree, Place, Row, Structure, Unit};
 use rows::{RowInfo, RowKind};
 pub(crate) use scale::Quantity;
 use std::sync::Arc;
@@ -156,6 +156,13 @@ impl<'p> Transcription<'p> {
         transcription.find_durations();
         transcription.limits.shrinking = transcription.shrinking();
         Ok(transcription)
+    }
+
+    /// What formulas know of an output of a phase, if it is an angle.
+    pub(crate) fn angle(&self, (phase, output): (usize, usize)) -> Option<&Angle> {
+        let member = &self.model.layout.phases[phase];
+        let declared = (member.phase, member.outputs[output].output);
+        self.model.structure.angles.iter().find(|angle| (angle.phase, angle.output) == declared)
     }
 
     /// Changes to another structure of the same problem, and makes anew only what differs.

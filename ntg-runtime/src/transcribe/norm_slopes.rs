@@ -1,12 +1,11 @@
 //! Slopes of norms at their tips, for sizes (docs/maths.md, section 5): there they have no gradient, and beside it one of length 1.
 
 use super::{Transcription, Workspace};
+use ntg_nlp::scaling::beside;
 use ntg_nlp::{Evaluation, Nlp, Target};
 
 /// How far beside, in units. A choice: a norm has the same slopes at any distance from its tip.
 const BESIDE: f64 = 1e-2;
-/// The golden ratio less 1: no two variables move alike.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Transcription<'_> {
     /// Replaces the slopes of rows that are norms, and have none at `x`, by those beside it.
@@ -42,12 +41,9 @@ impl Transcription<'_> {
         if flat.is_empty() {
             return;
         }
-        let (lower, upper) = (&self.limits.lower, &self.limits.upper);
-        let moved = |(j, x): (usize, &f64)| {
-            let uneven = 0.5 + 0.5 * (GOLDEN * (j + 1) as f64).fract();
-            (x + BESIDE * units[j] * uneven).min(upper[j]).max(lower[j])
-        };
-        let near: Vec<f64> = x.iter().enumerate().map(moved).collect();
+        let steps: Vec<f64> = units.iter().map(|unit| BESIDE * unit).collect();
+        let mut near = x.to_vec();
+        beside(x, &self.limits, &steps, &mut near);
         let mut there = at.clone();
         if self.derivatives(&near, 1.0, &vec![0.0; self.elements.rows.len()], workspace, &mut there).is_ok() {
             for (number, place) in flat {
