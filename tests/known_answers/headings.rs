@@ -65,6 +65,26 @@ fn cars_take_the_shortest_way() {
     }
 }
 
+/// A course at the end that only its sine and cosine know: called infeasible from a guess whose sine is right and whose cosine is not.
+/// 106.316 m are the shortest of Dubins' ways for radius 20 m, with any number of turns.
+#[test]
+fn a_course_at_the_end_may_be_told_by_its_sine_and_cosine() {
+    for mesh in ["points = 2, intervals = 24", "points = 3, intervals = 20", "points = 4, intervals = 15"] {
+        let report = Shipped::text(&format!(
+            "problem Course {{
+                duration T in 0.1 .. 1000 [s];  state x, y [m], psi [deg];  input w [deg/s];  collocation gauss({mesh});
+                minimize T;
+                dynamics {{ der(x) == 1 [m/s] * cos(psi);  der(y) == 1 [m/s] * sin(psi);  der(psi) == w; }}
+                trajectory {{ -0.05 [rad/s] <= w <= 0.05 [rad/s]; }}
+                initial {{ x == 0;  y == 0;  psi == -90 [deg]; }}
+                final {{ x == 4.70557595874 [m];  y == -90.3938452773 [m];  cos(psi) == -1;  sin(psi) == 0; }}
+            }}"
+        ))
+        .solve();
+        assert!(report.is_solved() && (report.objective / 106.316 - 1.0).abs() < 0.01, "{mesh}: {report}");
+    }
+}
+
 /// A course and a climb, which stand in one equation: how the axes lie does not matter.
 #[test]
 fn a_flight_does_not_hang_on_the_axes() {

@@ -18,7 +18,9 @@ fn a_wheel_turns_the_shorter_way() {
                     }}"
                 ))
                 .solve();
-                assert!(report.is_solved(), "{degrees}, {unit}, {mesh}: {report}");
+                // Both conditions tell the end of the guess.
+                let is_found = report.is_solved() && report.iterations <= 3;
+                assert!(is_found, "{degrees}, {unit}, {mesh}: {report}");
                 close(report.objective, degrees.to_radians().powi(2) / time, 1e-6);
             }
         }

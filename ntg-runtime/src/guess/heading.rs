@@ -1,7 +1,8 @@
 //! Angles that nobody guesses point where the rest of the guess goes (docs/maths.md, section 8.7).
 //!
 //! Equations in which the sine and cosine of an angle stand, as `der(x) == v * cos(psi)` and `der(y) == v * sin(psi)`, are linear in
-//! both: where two of them hold, they tell the angle for the guessed motion. Takes a guess without that; turns each such angle at
+//! both: where two of them hold, they tell the angle for the guessed motion; two boundary conditions tell an end. Takes a guess
+//! without that; turns each such angle at
 //! every place where equations tell it.
 
 use super::equations::is_equation_along;
@@ -11,7 +12,7 @@ use crate::transcribe::slots::{AffineMap, Source};
 use crate::transcribe::{Quantity, SetupError, Transcription};
 use ntg_nlp::{Block as Elements, Evaluation, Nlp};
 use ntg_splines::{Side, Spline};
-use ntg_structure::Degree;
+use ntg_structure::{At, Degree, Domain};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
@@ -70,6 +71,8 @@ struct Angle<'a> {
     turn: f64,
     /// The rows of equations along phases in which its value stands and its derivatives do not.
     rows: Vec<usize>,
+    /// The rows of equations at the start and at the end of its agent in which values alone stand, its own among them.
+    at_ends: [Vec<usize>; 2],
 }
 
 /// What an equation says of an angle that is turned by `δ`: `offset + cosine cos δ + sine sin δ == 0`.
@@ -107,8 +110,9 @@ fn angles<'a>(nlp: &'a Transcription, guessed: &[Curve]) -> Vec<Angle<'a>> {
         let turns: Option<Vec<f64>> = output.members.iter().filter_map(turn_in).collect();
         let turn = *turns.as_ref()?.first()?;
         let is_one = turns?.iter().all(|own| *own == turn);
-        let rows = rows(nlp, &output);
-        (is_one && !rows.is_empty()).then_some(Angle { output, turn, rows })
+        let (rows, at_ends) = (rows(nlp, &output), at_ends(nlp, &output));
+        let is_told = !rows.is_empty() || at_ends.iter().any(|rows| !rows.is_empty());
+        (is_one && is_told).then_some(Angle { output, turn, rows, at_ends })
     });
     each.collect()
 }
@@ -153,6 +157,34 @@ fn rows(nlp: &Transcription, output: &Quantity) -> Vec<usize> {
     let rows = nlp.elements.rows.iter().enumerate();
     let own = rows.filter(|(_, info)| matches!(info.kind, RowKind::Constraint(_)) && info.point.phase.is_some());
     own.filter(|(_, info)| is_one(info.maker)).map(|(row, _)| row).collect()
+}
+
+/// The rows of equations at the start and at the end of the time of an output in which values alone stand, its own among them.
+fn at_ends(nlp: &Transcription, output: &Quantity) -> [Vec<usize>; 2] {
+    let (structure, limits) = (&nlp.model.structure, nlp.limits());
+    let [(first, of_first), (last, of_last)] = [output.members[0], output.members[output.members.len() - 1]];
+    [(first, of_first, At::Start, 0.0), (last, of_last, At::End, 1.0)].map(|(phase, output, at, tau)| {
+        let is_one = |row: &usize| {
+            let (number, _, function) = nlp.elements.rows[*row].maker;
+            let point = &nlp.elements.rows[*row].point;
+            let is_there = (point.phase, point.tau) == (Some(phase), tau);
+            let Some(group) = nlp.elements.batches.get(number) else { return false };
+            let is_along = matches!(structure.groups[group.group].domain, Domain::Path { .. });
+            let is_equation = limits.row_lower[*row] == limits.row_upper[*row];
+            let is_value = |source: Option<&Source>| matches!(source, Some(Source::Flat { derivative: 0, .. }));
+            let is_own = |source: Option<&Source>| {
+                let Some(Source::Flat { phase: own, at: place, output: of, .. }) = source else { return false };
+                (*own, *of) == (phase, output) && (*place == at || *place == At::Here && is_there)
+            };
+            let mut all = slots(nlp, (number, function));
+            is_equation
+                && !is_along
+                && group.degree[function] > Degree::Linear
+                && slots(nlp, (number, function)).any(|(_, _, source)| is_own(source))
+                && all.all(|(_, _, source)| is_value(source))
+        };
+        (0..nlp.elements.rows.len()).filter(is_one).collect()
+    })
 }
 
 /// The program where angles are turned from a guess.
@@ -236,6 +268,7 @@ impl Angle<'_> {
             shift.by -= TAU * ((shift.by - near) / TAU).round();
             before = Some(shift.by);
         }
+        self.add_ends(turned, inputs, &mut shifts);
         let mean = shifts.iter().map(|shift| shift.by).sum::<f64>() / shifts.len().max(1) as f64;
         // Without whole turns, and to the left where it is straight back.
         let turns = ((mean - PI) / TAU - EXACT).ceil();
@@ -244,6 +277,25 @@ impl Angle<'_> {
             shifts.clear();
         }
         shifts
+    }
+
+    /// Adds by how much the angle is to be turned where boundary conditions tell it: the shorter way round from the place that is
+    /// nearest; from where it starts, or to where it ends, if nothing tells it along the way.
+    fn add_ends(&self, turned: &Turned, inputs: &BTreeSet<u32>, shifts: &mut Vec<Shift>) {
+        let [start, end] = self.at_ends.each_ref().map(|rows| {
+            let equations: Option<Vec<Equation>> = rows.iter().map(|row| turned.equation(*row, inputs)).collect();
+            direction(&equations?).map(|(cosine, sine)| sine.atan2(cosine))
+        });
+        let (first, last) = (self.output.members[0].0, self.output.members[self.output.members.len() - 1].0);
+        let near = |by: f64, other: Option<f64>| by - TAU * ((by - other.unwrap_or(0.0)) / TAU).round();
+        let told = start.map(|by| near(by, shifts.first().map(|shift| shift.by)));
+        if let Some(by) = told.or((shifts.is_empty() && end.is_some()).then_some(0.0)) {
+            shifts.insert(0, Shift { phase: first, tau: 0.0, by });
+        }
+        let told = end.map(|by| near(by, shifts.last().map(|shift| shift.by)));
+        if let Some(by) = told.or((shifts.len() == 1 && start.is_some()).then_some(0.0)) {
+            shifts.push(Shift { phase: last, tau: 1.0, by });
+        }
     }
 
     /// Turns the angle by what is told, straight between places and constant beyond them; values that boundary conditions fix stay.
