@@ -2,8 +2,7 @@
 //!
 //! Equations in which the sine and cosine of an angle stand, as `der(x) == v * cos(psi)` and `der(y) == v * sin(psi)`, are linear in
 //! both: where two of them hold, they tell the angle for the guessed motion; two boundary conditions tell an end. Takes a guess
-//! without that; turns each such angle at
-//! every place where equations tell it.
+//! without that; turns each such angle at every place where equations tell it.
 
 use super::equations::is_equation_along;
 use super::start::{Curve, apply, pointwise};
