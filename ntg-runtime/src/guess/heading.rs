@@ -175,12 +175,11 @@ fn at_ends(nlp: &Transcription, output: &Quantity) -> [Vec<usize>; 2] {
                 let Some(Source::Flat { phase: own, at: place, output: of, .. }) = source else { return false };
                 (*own, *of) == (phase, output) && (*place == at || *place == At::Here && is_there)
             };
-            let mut all = slots(nlp, (number, function));
             is_equation
                 && !is_along
                 && group.degree[function] > Degree::Linear
                 && slots(nlp, (number, function)).any(|(_, _, source)| is_own(source))
-                && all.all(|(_, _, source)| is_value(source))
+                && slots(nlp, (number, function)).all(|(_, _, source)| is_value(source))
         };
         (0..nlp.elements.rows.len()).filter(is_one).collect()
     })

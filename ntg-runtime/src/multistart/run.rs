@@ -274,6 +274,7 @@ impl MultiReport {
             let starts = own.map(|(number, _)| number).collect();
             self.minima.push(minima::Group { starts, ..group }.minimum());
         }
+        self.put_resolved_first();
         Ok(())
     }
 }

@@ -18,13 +18,12 @@ const ROUNDS: usize = 3;
 /// Most iterations of an attempt. A choice: what needs more does not end nearby.
 const FEW: usize = 150;
 /// A part of a turn that is none. Rounding of ends that solutions meet.
-const HALF: f64 = 1e-3;
+const NONE: f64 = 1e-3;
 /// By how much of the objective a solution has to be better. A law: that of an acceptable end.
 const BETTER: f64 = 1e-6;
 
 impl Session {
-    /// The solution, or a better one whose angles wind less. Where violations have a local minimum, an end may be half a turn from
-    /// the guess: so far its sine leads back, and its cosine nowhere.
+    /// The solution, or a better one whose angles wind less.
     pub(super) fn unwind(
         &mut self,
         nlp: &mut Transcription,
@@ -37,23 +36,17 @@ impl Session {
         }
         let guessed = guessed(nlp, task.guess, guess)?;
         let is_open = |output: &Quantity| !output.members.iter().any(|member| guessed.contains(member));
-        let is_infeasible = matches!(outcome.status, Status::Infeasible { .. });
-        if let Some(x) = if is_infeasible {
-            straight(nlp, (guess, guess), |own, _| if is_open(own) { 0.5 } else { 0.0 })?
-        } else {
-            None
-        } {
-            outcome = self.tried(nlp, &x, outcome, budget)?.0;
-        }
         for _ in 0..ROUNDS {
-            let found = outcome.status.has_solution();
+            if !outcome.status.has_solution() {
+                break;
+            }
             let rest = |output: &Quantity, turn: f64| {
                 let turns = change(nlp, output, &outcome.x) / turn;
                 // Half a turn is as far either way.
-                let whole = ((1.0 - HALF) * turns).round();
+                let whole = ((1.0 - NONE) * turns).round();
                 if whole == 0.0 || !is_open(output) { 0.0 } else { turns - whole }
             };
-            let Some(x) = (if found { straight(nlp, (guess, &outcome.x), rest)? } else { None }) else { break };
+            let Some(x) = straight(nlp, (guess, &outcome.x), rest)? else { break };
             let is_better;
             (outcome, is_better) = self.tried(nlp, &x, outcome, budget)?;
             if !is_better {
@@ -63,7 +56,7 @@ impl Session {
         Ok(outcome)
     }
 
-    /// What a solve from another guess finds, where that is better than an outcome, and whether it is; sizes are those of what comes
+    /// What a solve from another guess finds, where that is better than a solution, and whether it is; sizes are those of what comes
     /// back.
     fn tried(
         &mut self,
@@ -78,10 +71,8 @@ impl Session {
         nlp.set_scales(x, &settings)?;
         let next = self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &settings);
         budget.spend(next.iterations);
-        let had_one = outcome.status.has_solution();
-        let gained = outcome.objective - next.objective;
-        let is_better = !had_one || gained > BETTER * outcome.objective.abs();
-        let is_as_sure = next.status == Status::Solved || had_one && next.status == outcome.status;
+        let is_better = outcome.objective - next.objective > BETTER * outcome.objective.abs();
+        let is_as_sure = next.status == Status::Solved || next.status == outcome.status;
         if is_as_sure && !next.is_saddle && is_better {
             return Ok((next, true));
         }
