@@ -26,6 +26,7 @@ mod headings;
 mod integrals;
 mod invariants;
 mod jumped;
+mod least_bodies;
 mod least_of_zero;
 mod limits;
 mod missile;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use ntg_structure::Angle;
 
 use super::problem::{Leaf, Problem};
-use crate::expr::{Binary, Node, NodeId, Set, Unary};
+use crate::expr::{Binary, Degree, InputId, Node, NodeId, Set, Unary, degree};
 
 /// Whole turns of an argument are whole turns of another where their ratio is so near to a whole number. Rounding.
 const SAME: f64 = 1e-9;
@@ -47,8 +47,7 @@ fn uses(problem: &Problem) -> Uses {
     let mut uses = Uses::default();
     let mut open: Vec<NodeId> = problem.objective.iter().map(|term| term.body).collect();
     let bodies = problem.constraints.iter().map(|constraint| constraint.body);
-    // A bound on the output itself says nothing of how formulas use it.
-    open.extend(bodies.filter(|body| output_of(problem, *body).is_none()));
+    open.extend(bodies.filter(|body| !is_bound(problem, *body)));
     let mut seen: Set<NodeId> = open.iter().copied().collect();
     while let Some(id) = open.pop() {
         let mut next: Vec<NodeId> = vec![];
@@ -101,6 +100,16 @@ impl Uses {
 /// Whether a factor of an argument says how long a turn is.
 fn is_usable(factor: f64) -> bool {
     factor.is_finite() && factor > 0.0
+}
+
+/// Whether a body bounds the value of one output by itself, `psi - north`: that says nothing of how formulas use it.
+fn is_bound(problem: &Problem, body: NodeId) -> bool {
+    let is_value = |input: InputId| matches!(problem.leaves.leaf(input), Leaf::Flat { order: 0, .. });
+    let is_given = |input: InputId| matches!(problem.leaves.leaf(input), Leaf::Parameter { .. } | Leaf::Index(_));
+    let inputs = problem.dag.inputs_of(&[body]);
+    let values = inputs.iter().filter(|input| is_value(**input)).count();
+    let others = inputs.iter().filter(|input| is_given(**input)).count();
+    values == 1 && values + others == inputs.len() && degree(&problem.dag, body, is_value) <= Degree::Linear
 }
 
 /// The output whose value a node is.

@@ -304,6 +304,11 @@ impl<'a> Elaborator<'a> {
             return self.push_soft(cx, constraint, softness, (site, domain, bodies));
         }
         self.note_soft_name(constraint);
+        let bodies = bodies.into_iter().map(|Body { value, mut bounds, unit }| {
+            let value = self.limited(value, &mut bounds);
+            Body { value, bounds, unit }
+        });
+        let bodies = Vec::from_iter(bodies).into_iter().flat_map(|body| self.regular(body)).collect::<Vec<_>>();
         for Body { value: body, bounds, unit } in bodies {
             let name = self.constraint_name(cx, constraint, site);
             self.origin(body.node, constraint.span);

@@ -24,6 +24,7 @@ mod corners;
 mod covered;
 mod declarations;
 mod definitions;
+mod degenerate;
 mod derivatives;
 mod dimension;
 mod dynamics;
