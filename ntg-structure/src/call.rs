@@ -85,6 +85,8 @@ pub enum Data {
     Index(Affine),
     /// The phase's scaled time at the point of evaluation.
     Tau,
+    /// The same as conditions see it: at the end of an interval a little within the interval from which the point is looked at.
+    TauWithin,
     /// The duration of a phase whose duration is fixed; in a guess, also the guessed one.
     Duration(PhaseRef),
     /// The start of a phase when everything before it is fixed; in a guess, also the guessed one.

@@ -247,7 +247,7 @@ structs! {
 }
 
 enums! {
-    Data { Tau; Index(Affine) Duration(PhaseRef) Start(PhaseRef); Parameter { parameter: usize, index: Option<Affine> } }
+    Data { Tau TauWithin; Index(Affine) Duration(PhaseRef) Start(PhaseRef); Parameter { parameter: usize, index: Option<Affine> } }
     Domain { Mission; Start(PhaseRef) End(PhaseRef); Path { phase: PhaseRef, points: usize, part: Part } }
     Duration {; Fixed(Call) Free(Bounds); }
     GuessKind {; ;

@@ -54,7 +54,7 @@ impl Sample {
                 inputs.push(match data {
                     Data::Parameter { parameter, .. } => structure.parameters[*parameter].value[0],
                     Data::Index(affine) => affine.at(&[1, 1, 1]) as f64,
-                    Data::Tau => 0.5 + 0.5 * r,
+                    Data::Tau | Data::TauWithin => 0.5 + 0.5 * r,
                     Data::Duration(_) | Data::Start(_) => 5.0 + r,
                 });
             }

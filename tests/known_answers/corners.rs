@@ -193,3 +193,42 @@ fn a_limit_on_a_function_of_a_corner_is_no_limit_on_its_sides() {
     close(most("max(0, x) * max(1, x) <= 4;"), 2.0, 1e-6);
     close(most("max(x, -x - 8)^3 <= 8;"), 2.0, 1e-6);
 }
+
+/// What a store takes and gives at a loss has two corners, of which one is pushed away from its tip; in sum it is convex. The same
+/// with an input for each: a linear program.
+#[test]
+fn a_store_with_losses_is_one_corner() {
+    let prices = [31.0, 24.0, 11.0, 9.0, 27.0, 45.0, 52.0, 38.0, 22.0, 14.0, 33.0, 60.0]
+        .map(|price| price.to_string())
+        .join(", ");
+    let day = |declared: &str, taken: &str| {
+        Shipped::text(&format!(
+            "problem Day {{
+                param price[12] = ({prices});  param loss = 0.95;  duration T = 12;
+                state E in 0 .. 5;  {declared}  collocation gauss(points = 2, intervals = 12);
+                let tariff = sum(i in 1 .. 12, price[i] * (if t in i - 1 .. i {{ 1 }} else {{ 0 }}));
+                minimize {taken};
+                initial {{ E == 1; }}
+                final {{ E == 1; }}
+            }}"
+        ))
+        .solve()
+    };
+    let known = day(
+        "input up in 0 .. 2, down in 0 .. 2;  dynamics { der(E) == up - down; }",
+        "integral(tariff * (up / loss - loss * down))",
+    );
+    assert!(known.is_solved(), "{known}");
+    let one = "input e in -2 .. 2;  dynamics { der(E) == e; }";
+    for taken in [
+        "integral(tariff * (max(e, 0) / loss - loss * max(-e, 0)))",
+        "integral(tariff * (max(e, 0) / 0.95 + 0.95 * min(e, 0)))",
+        "integral(tariff * max(e, 0) / loss - loss * tariff * max(-e, 0))",
+        "integral(tariff * (max(2 * e, 0) / (2 * loss) - loss * max(0, -3 * e) / 3))",
+        "integral(tariff * max(e, 0)) / loss - loss * integral(tariff * max(-e, 0))",
+    ] {
+        let report = day(one, taken);
+        assert!(report.is_solved(), "{taken}: {report}");
+        close(report.objective, known.objective, 1e-6);
+    }
+}

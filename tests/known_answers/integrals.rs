@@ -94,3 +94,33 @@ fn lengths_of_curves_are_held_from_a_straight_input() {
         }
     }
 }
+
+/// A function of an integral that has no value at 1, in SI, is no reason to have none at the guess: the least effort from rest to
+/// rest, 12 d^2 / T^3, is `Iref` in any unit.
+#[test]
+fn a_function_of_an_integral_may_be_steep_in_si() {
+    for (length, time, way, duration) in
+        [("m", "s", 3.0, 5.0), ("mm", "s", 3.0, 5.0), ("km", "day", 0.01, 9.0), ("m", "h", 2.0, 1.0)]
+    {
+        let least = 12.0 * way * way / (duration * duration * duration);
+        for (form, known) in
+            [("exp(ratio)", 1.0_f64.exp()), ("cosh(ratio)", 1.0_f64.cosh()), ("1e4 * exp(ratio)", 1e4 * 1.0_f64.exp())]
+        {
+            let report = Shipped::text(&format!(
+                "problem Steep {{
+                    duration T = {duration} [{time}];  state x [{length}], v [{length}/{time}];  input u [{length}/{time}^2];
+                    collocation gauss(points = 3, intervals = 20);
+                    param Iref = {least} [{length}^2/{time}^3];
+                    let ratio = integral(u^2) / Iref;
+                    minimize {form};
+                    dynamics {{ der(x) == v;  der(v) == u; }}
+                    initial {{ x == 0;  v == 0; }}
+                    final {{ x == {way} [{length}];  v == 0; }}
+                }}"
+            ))
+            .solve();
+            assert!(report.is_solved(), "{length}, {time}, {form}: {report}");
+            close(report.objective, known, 1e-7);
+        }
+    }
+}

@@ -180,3 +180,25 @@ fn a_path_that_swings_through_an_obstacle_between_two_points_is_told_of() {
     }
     assert!(told > 0, "the points alone have solutions, through the disc");
 }
+
+/// A bound that nothing comes near is no measure of what another one is missed by.
+#[test]
+fn a_far_bound_hides_nothing() {
+    let missed = |bounds: &str| {
+        let report = solved(&format!(
+            "problem Store {{
+                duration T = 100;  state x;  input u in {bounds};  collocation gauss(points = 3, intervals = 20);
+                minimize integral(u^2 + x);
+                dynamics {{ der(x) == u; }}
+                initial {{ x == 0; }}
+                final {{ x == 1; }}
+            }}"
+        ));
+        report.violation.between
+    };
+    let open = missed("0 ..");
+    assert!(open > 0.05, "{open}");
+    for far in ["0 .. 10", "0 .. 1e3", "0 .. 1e9"] {
+        assert!((missed(far) / open - 1.0).abs() < 1e-2, "{far}");
+    }
+}

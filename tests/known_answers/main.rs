@@ -53,3 +53,4 @@ mod vanishing;
 mod vectors;
 mod vehicles;
 mod winding;
+mod windows;

@@ -508,3 +508,37 @@ fn a_norm_tells_the_size_of_its_vector() {
         }
     }
 }
+
+/// A variable that nobody guesses is as large as what it limits, in any unit: `p in 0 ..` was one unit, and linear programs were
+/// infeasible. From rest to rest at least acceleration: 4 d / T^2.
+#[test]
+fn a_variable_that_limits_an_acceleration_is_as_large() {
+    for (length, time, way, duration) in [
+        ("m", "s", 1.0, 1.0),
+        ("m", "day", 7e6, 30.0),
+        ("km", "h", 3000.0, 5.0),
+        ("mm", "s", 2.0, 1e-3),
+        ("Mm", "min", 1.0, 9.0),
+    ] {
+        for form in ["p >= der(x, 2);  p + der(x, 2) >= 0", "-p <= der(x, 2) <= p", "abs(der(x, 2)) <= p"] {
+            for spline in ["order = 5, intervals = 8, smoothness = 2", "order = 3, intervals = 20"] {
+                let report = Shipped::text(&format!(
+                    "problem Rest {{
+                        duration T = {duration} [{time}];  output x [{length}]: spline({spline});
+                        variable p in 0 [{length}/{time}^2] ..;
+                        trajectory {{ {form}; }}
+                        minimize p / 1 [{length}/{time}^2];
+                        initial {{ x == 0;  der(x) == 0; }}
+                        final {{ x == {way} [{length}];  der(x) == 0; }}
+                    }}"
+                ))
+                .solve();
+                assert!(report.is_solved(), "{length}, {time}, {form}, {spline}: {report}");
+                // A curve that must bend within an interval needs more.
+                let least = 4.0 * way / (duration * duration);
+                let is_known = report.objective > (1.0 - 1e-6) * least && report.objective < 1.1 * least;
+                assert!(is_known, "{length}, {time}, {form}, {spline}: {report}");
+            }
+        }
+    }
+}

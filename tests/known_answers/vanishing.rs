@@ -85,3 +85,32 @@ fn the_hanging_chain_does_not_run_off() {
         close(spec.by(Method::Sqp).solve().objective, 5.0685, 1e-3);
     }
 }
+
+/// A tank that fills from empty, dh/dt = q - c sqrt(h): the level at the start is 0 and not what rounding leaves of it, which has no
+/// root. In closed form by s = sqrt(h): T = -2 s / c - 2 q / c^2 ln(1 - c s / q).
+#[test]
+fn a_tank_fills_from_empty() {
+    let (c, q, level) = (0.3_f64, 0.6_f64, 1.5_f64);
+    let least = -2.0 * level.sqrt() / c - 2.0 * q / (c * c) * (1.0 - c * level.sqrt() / q).ln();
+    for (unit, mesh) in [
+        ("min", "points = 3, intervals = 25"),
+        ("min", "points = 3, intervals = 60"),
+        ("s", "points = 2, intervals = 40"),
+    ] {
+        for root in ["sqrt(h / 1 [m])", "(h / 1 [m])^0.5"] {
+            let report = Shipped::text(&format!(
+                "problem Fill {{
+                    duration T in 0.5 .. 50 [{unit}];  state h [m];  input q [m/{unit}] in 0 .. {q} [m/{unit}];
+                    collocation gauss({mesh});
+                    minimize T / 1 [{unit}];
+                    dynamics {{ der(h) == q - {c} [m/{unit}] * {root}; }}
+                    initial {{ h == 0; }}
+                    final {{ h == {level} [m]; }}
+                }}"
+            ))
+            .solve();
+            assert!(report.is_solved() && report.violation.between.is_finite(), "{unit}, {mesh}, {root}: {report}");
+            close(report.objective, least, 1e-3);
+        }
+    }
+}

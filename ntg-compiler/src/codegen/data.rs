@@ -180,7 +180,7 @@ impl ToRust for Part {
 enums! {
     At { Here Start End; Inside(instant); Among { places, index } }
     Block { Initial Trajectory Final Temporal Continuity Corner;; }
-    Data { Tau; Index(index) Duration(phase) Start(phase); Parameter { parameter, index } }
+    Data { Tau TauWithin; Index(index) Duration(phase) Start(phase); Parameter { parameter, index } }
     Degree { Constant Linear Quadratic Nonlinear;; }
     Domain { Mission; Start(phase) End(phase); Path { phase, points, part } }
     Duration {; Fixed(call) Free(bounds); }

@@ -305,7 +305,8 @@ impl<'a> Elaborator<'a> {
         }
         self.note_soft_name(constraint);
         let bodies = bodies.into_iter().map(|Body { value, mut bounds, unit }| {
-            let value = self.limited(value, &mut bounds);
+            let is_equation = bounds.lower.is_some() && bounds.lower == bounds.upper;
+            let value = if is_equation { self.limited(value, &mut bounds) } else { value };
             Body { value, bounds, unit }
         });
         let bodies = Vec::from_iter(bodies).into_iter().flat_map(|body| self.regular(body)).collect::<Vec<_>>();

@@ -61,6 +61,7 @@ pub(crate) mod norms;
 mod objective;
 mod order;
 mod outputs;
+mod paired;
 mod part_ends;
 mod parts;
 mod paths;

@@ -6,7 +6,7 @@
 //! (docs/maths.md, section 3); sums over families are reductions with kernels of their own;
 //! integrals that are left are variables, whose defining pieces wait in the [`Lowering`].
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use ntg_structure::{At, Call, Data, ReduceOp, Reduction, Slot};
 
@@ -15,7 +15,7 @@ use super::environment::Environment;
 use super::inputs::Inputs;
 use super::lower::Lowering;
 use super::names::identifier;
-use crate::expr::{Dag, Fold, InputId, Map, Node, NodeId};
+use crate::expr::{Binary, Dag, Fold, InputId, Map, Node, NodeId};
 use crate::model::problem::{Leaf, Loop, PhaseAt};
 use crate::source::Span;
 
@@ -41,7 +41,8 @@ pub(super) struct Root<'a> {
 
 /// Makes the kernel (or finds the equal one) and the call for several functions at one place.
 pub(super) fn call(lowering: &mut Lowering<'_>, name: &str, mode: Mode, roots: &[Root<'_>]) -> Call {
-    let mut copy = Copy { lowering, mode, dag: Dag::default(), inputs: Inputs::default(), origin: Map::default() };
+    let (dag, inputs, origin) = (Dag::default(), Inputs::default(), Map::default());
+    let mut copy = Copy { lowering, mode, dag, inputs, origin, in_clock: false };
     let values: Vec<NodeId> = roots.iter().map(|root| copy.expression(root.body, root.loops)).collect();
     let Copy { dag, inputs, origin, .. } = copy;
     let formulas = by_position(&dag, &values, &origin, &inputs);
@@ -84,15 +85,24 @@ struct Copy<'a, 'b> {
     dag: Dag,
     inputs: Inputs,
     origin: Map<NodeId, Span>, // Looked up, never iterated.
+    /// Whether it is a condition of time alone that is copied, which the end of an interval is within.
+    in_clock: bool,
 }
 
 impl Copy<'_, '_> {
     /// Copies one expression; what stands inside a reduction goes to that reduction's own kernel.
     fn expression(&mut self, root: NodeId, loops: &[Loop]) -> NodeId {
         let mut map: HashMap<NodeId, NodeId> = HashMap::new();
-        for id in self.lowering.problem.dag.schedule_outside(&[root]) {
+        let (order, clocks) = self.outside_clocks(root);
+        for id in order {
             let node = self.lowering.problem.dag.node(id).clone();
             let new = match &node {
+                Node::Select { condition, then, otherwise } if clocks.contains(condition) => {
+                    let around = std::mem::replace(&mut self.in_clock, true);
+                    let condition = self.expression(*condition, loops);
+                    self.in_clock = around;
+                    self.dag.select(condition, map[then], map[otherwise])
+                }
                 Node::Input(input) => {
                     let leaf = self.lowering.problem.leaves.leaf(*input).clone();
                     self.leaf(&leaf, id, loops)
@@ -106,6 +116,49 @@ impl Copy<'_, '_> {
             }
         }
         map[&root]
+    }
+
+    /// The nodes below a root, operands first, without those that only conditions of time alone are made of, and these conditions.
+    fn outside_clocks(&self, root: NodeId) -> (Vec<NodeId>, HashSet<NodeId>) {
+        let dag = &self.lowering.problem.dag;
+        let mut order = dag.schedule_outside(&[root]);
+        let mut clocks = HashSet::new();
+        let is_clock = |condition: &NodeId| {
+            let mut has_time = false;
+            let is_fixed = |input: InputId| match self.lowering.problem.leaves.leaf(input) {
+                Leaf::Time(_) | Leaf::Tau => {
+                    has_time = true;
+                    true
+                }
+                Leaf::Parameter { .. } | Leaf::Index(_) | Leaf::Duration(_) | Leaf::Start(_) => true,
+                _ => false,
+            };
+            is_comparison(dag, *condition) && dag.all_inputs(*condition, is_fixed) && has_time
+        };
+        if !self.in_clock {
+            let conditions = order.iter().filter_map(|id| match dag.node(*id) {
+                Node::Select { condition, .. } => Some(*condition),
+                _ => None,
+            });
+            clocks.extend(conditions.filter(is_clock));
+        }
+        if !clocks.is_empty() {
+            let mut needed = HashSet::from([root]);
+            // Operands stand before what they are operands of.
+            for id in order.iter().rev() {
+                if needed.contains(id) {
+                    let operands = dag.node(*id).operands().into_iter();
+                    let is_condition = |of: &NodeId| {
+                        clocks.contains(of)
+                            && matches!(dag.node(*id), Node::Select { condition, then, otherwise }
+                                if condition == of && then != of && otherwise != of)
+                    };
+                    needed.extend(operands.filter(|operand| !is_condition(operand)));
+                }
+            }
+            order.retain(|id| needed.contains(id));
+        }
+        (order, clocks)
     }
 
     fn leaf(&mut self, leaf: &Leaf, id: NodeId, loops: &[Loop]) -> NodeId {
@@ -133,11 +186,11 @@ impl Copy<'_, '_> {
             }
             Leaf::Time(phase) => {
                 let (start, duration) = (self.start(phase, &environment), self.duration(phase, &environment));
-                let tau = self.data(Data::Tau, "tau");
+                let tau = self.tau();
                 let elapsed = self.dag.mul(tau, duration);
                 self.dag.add(start, elapsed)
             }
-            Leaf::Tau => self.data(Data::Tau, "tau"),
+            Leaf::Tau => self.tau(),
             Leaf::Duration(phase) => self.duration(phase, &environment),
             Leaf::Start(phase) => self.start(phase, &environment),
             Leaf::Parameter { parameter, index } => {
@@ -162,6 +215,10 @@ impl Copy<'_, '_> {
             // The model leaves none; a zero keeps this total without a panic.
             Leaf::Symbol(_) => self.dag.constant(0.0),
         }
+    }
+
+    fn tau(&mut self) -> NodeId {
+        if self.in_clock { self.data(Data::TauWithin, "tau_within") } else { self.data(Data::Tau, "tau") }
     }
 
     /// `x^(j)` in real time is the derivative in scaled time over `T^j`.
@@ -230,5 +287,14 @@ impl Copy<'_, '_> {
 
     fn input(&mut self, provisional: usize) -> NodeId {
         self.dag.input(InputId(u32::try_from(provisional).expect("fewer than 2^32 inputs")))
+    }
+}
+
+/// Whether a node is a product of comparisons.
+fn is_comparison(dag: &Dag, node: NodeId) -> bool {
+    match *dag.node(node) {
+        Node::Binary(Binary::LessEq, ..) => true,
+        Node::Binary(Binary::Mul, a, b) => is_comparison(dag, a) && is_comparison(dag, b),
+        _ => false,
     }
 }

@@ -138,10 +138,10 @@ impl Promotion<'_> {
             }
             Data::Duration(phase) => self.moving.contains(&phase.phase).then(|| Slot::Duration(phase.clone())),
             Data::Start(phase) => Some(Slot::Start(phase.clone())),
-            Data::Tau if purpose == Use::Named => {
+            Data::Tau | Data::TauWithin if purpose == Use::Named => {
                 Some(Slot::Variable { variable: first + self.structure.parameters.len(), index: None })
             }
-            Data::Tau | Data::Index(_) => None,
+            Data::Tau | Data::TauWithin | Data::Index(_) => None,
         }
     }
 

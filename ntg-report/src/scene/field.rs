@@ -92,7 +92,7 @@ impl<'a> Space<'a> {
                 value.get(usize::try_from(member - 1).ok()?).copied()
             }
             Data::Index(form) => Some(form.at(indices) as f64),
-            Data::Tau | Data::Duration(_) | Data::Start(_) => None,
+            Data::Tau | Data::TauWithin | Data::Duration(_) | Data::Start(_) => None,
         }
     }
 

@@ -10,7 +10,7 @@ use super::statements::Statements;
 use crate::transcribe::layout::{Layout, Time};
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Transcription, defaults};
-use ntg_nlp::Nlp;
+use ntg_nlp::{Nlp, Target};
 use ntg_splines::{Knots, Sampled, fit_all, fit_places};
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -181,18 +181,32 @@ pub(crate) fn finish(nlp: &Transcription, mut x: Vec<f64>) -> Result<Vec<f64>, S
     }
     let has_integrals = layout.integral_members.iter().any(|members| !members.is_empty());
     for _ in 0..if has_integrals { NESTING } else { 0 } {
-        let (mut work, mut out) = nlp.workspace();
-        if nlp.values(&x, &mut work, &mut out).is_err() {
-            break; // The solve itself will say what is not finite.
-        }
+        let missed = missed_by_integrals(nlp, &x);
         for (row, info) in nlp.elements.rows.iter().enumerate() {
-            if matches!(info.kind, RowKind::Integral(_)) {
+            if matches!(info.kind, RowKind::Integral(_)) && missed[row].is_finite() {
                 let variable = nlp.blocks()[info.maker.0].variables(info.maker.1)[0] as usize;
-                x[variable] -= out.rows[row];
+                x[variable] -= missed[row];
             }
         }
     }
     Ok(x)
+}
+
+/// The values of the rows that define integrals, and 0 of all others. A function of an integral may have no value there, as
+/// `exp(integral(u^2) / small)` at 1: these rows have.
+fn missed_by_integrals(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
+    let (mut work, mut out) = nlp.workspace();
+    let _ = nlp.values(x, &mut work, &mut out); // What has no value in the end is told by the solve.
+    let mut missed = vec![0.0; nlp.elements.rows.len()];
+    for (block, values) in nlp.blocks().iter().zip(&out.blocks) {
+        for ((target, weight), value) in block.target.iter().zip(&block.weight).zip(&values.values) {
+            let Target::Row(row) = *target else { continue };
+            if matches!(nlp.elements.rows[row as usize].kind, RowKind::Integral(_)) {
+                missed[row as usize] += weight * value;
+            }
+        }
+    }
+    missed
 }
 
 fn clamp(nlp: &Transcription, x: &mut [f64]) {

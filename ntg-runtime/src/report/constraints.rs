@@ -68,7 +68,7 @@ pub(super) fn constraints(
         report.is_equation &= checked.bounds.0 == checked.bounds.1;
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         let indices = structure.constraints[checked.constraint].shown_indices(checked.indices);
-        let (measured, unit) = (measure(checked.value, checked.bounds, sizes.0), sizes.1);
+        let (measured, unit) = (measure_between(checked.value, checked.bounds, sizes.0), sizes.1);
         if measured.relative > LEAST_MISSED {
             sides.add(checked, all_sizes.between(nlp, checked.constraint, checked.indices));
         }
@@ -184,6 +184,17 @@ fn measure(value: f64, (lower, upper): (f64, f64), size: impl Fn() -> f64) -> Me
     }
     let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
     Measured { value, missed, relative: missed / scale(lower, upper, size()) }
+}
+
+/// As [`measure`]; of two bounds the one that is not missed counts for no more than what the limit varies by: `u in 0 .. 1e9`.
+fn measure_between(value: f64, bounds: (f64, f64), size: impl Fn() -> f64) -> Measured {
+    let measured = measure(value, bounds, &size);
+    if measured.missed == 0.0 || bounds.0 == bounds.1 {
+        return measured;
+    }
+    let bound = if value < bounds.0 { bounds.0 } else { bounds.1 };
+    let own = measured.missed / bound.abs().max(size());
+    Measured { relative: crate::math::max(measured.relative, own), ..measured }
 }
 
 /// Replaces the worst place so far by this one, if this one is worse.

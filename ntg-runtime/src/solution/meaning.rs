@@ -169,7 +169,7 @@ impl Solution {
                 Meaning::Parameter(*parameter, member)
             }
             Data::Index(index) => Meaning::Index(index.at(indices)),
-            Data::Tau => Meaning::Tau,
+            Data::Tau | Data::TauWithin => Meaning::Tau,
             Data::Duration(phase) => Meaning::Duration(layout.phase(structure, phase, indices)?),
             Data::Start(phase) => Meaning::Start(layout.phase(structure, phase, indices)?),
         })

@@ -14,8 +14,12 @@ use super::shape::trace;
 use super::slots::Source;
 use super::times::Clock;
 use crate::problem::Problem;
-use ntg_splines::Table;
+use ntg_splines::{Side, Table};
 use ntg_structure::{At, Call, Data, Instant, Loop, Place, Slot, Structure};
+
+/// How far within an interval the end of it is for conditions of time, as a part of the interval: `t in 5 .. 6` holds on one side of
+/// 6. A choice: far above rounding of times, far below what a report shows.
+const WITHIN: f64 = 1e-9;
 
 /// Everything that gives calls their meaning.
 #[derive(Clone, Copy)]
@@ -143,6 +147,7 @@ impl Frame<'_> {
             }
             Data::Index(index) => Ok(index.at(indices) as f64),
             Data::Tau => Ok(site.point.tau),
+            Data::TauWithin => Ok(self.tau_within(site)),
             Data::Duration(phase) => {
                 let phase = self.layout.phase(self.structure, phase, indices)?;
                 self.clock.durations[phase].ok_or_else(|| SetupError::malformed("a free duration is used as data"))
@@ -152,6 +157,16 @@ impl Frame<'_> {
                 self.clock.starts[phase].ok_or_else(|| SetupError::malformed("a free start is used as data"))
             }
         }
+    }
+
+    /// The scaled time of a site; at the end of an interval [`WITHIN`] of the interval from which the site is looked at within it.
+    pub(crate) fn tau_within(&self, site: &Site) -> f64 {
+        let Point { phase, tau, side, .. } = site.point;
+        let Some(breakpoints) = phase.map(|phase| &self.layout.phases[phase].breakpoints) else { return tau };
+        let Ok(at) = breakpoints.binary_search_by(|breakpoint| breakpoint.total_cmp(&tau)) else { return tau };
+        let neighbour = if side == Side::Left { at.checked_sub(1) } else { Some(at + 1) };
+        let beyond = neighbour.and_then(|neighbour| breakpoints.get(neighbour));
+        beyond.map_or(tau, |beyond| tau + WITHIN * (beyond - tau))
     }
 
     fn parameter(&self, parameter: usize, index: Option<i64>) -> Result<f64, SetupError> {

@@ -86,6 +86,7 @@ fn data(frame: &Frame, call: &Call, site: &Site, key: &mut Vec<u64>) -> Result<(
             }
             Data::Index(index) => key.extend([1, index.at(indices) as u64]),
             Data::Tau => key.extend([2, site.point.tau.to_bits()]),
+            Data::TauWithin => key.extend([5, frame.tau_within(site).to_bits()]),
             Data::Duration(phase) => key.extend([3, frame.layout.phase(frame.structure, phase, indices)? as u64]),
             Data::Start(phase) => key.extend([4, frame.layout.phase(frame.structure, phase, indices)? as u64]),
         }

@@ -12,7 +12,7 @@ use super::slots::AffineMap;
 use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
 use ntg_nlp::multiples;
-use ntg_structure::{Family, Unit};
+use ntg_structure::{Family, GuessKind, Unit};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -176,8 +176,8 @@ impl Transcription<'_> {
             scale[only] = usable(own(only), variable.unit);
         }
         let groups: Vec<Vec<u32>> = outputs.iter().map(|output| output.coefficients.clone()).collect();
-        // One unit everywhere is what nobody has guessed of an output above 0 (section 8.1), and no size of its own; where a
-        // boundary condition says so, it is.
+        // One unit everywhere is what nobody has guessed above 0 (section 8.1), and no size of its own; where a boundary condition or
+        // the guess of a variable says so, it is.
         let is_fixed = |v: &u32| self.linear.value(&AffineMap { terms: vec![(*v, 1.0)], offset: 0.0 }).is_some();
         let is_unit = |o: &&Quantity| o.coefficients.iter().all(|v| guess[*v as usize] == o.unit.factor);
         let (mut known, mut doubtful) = (guess.clone(), vec![false; guess.len()]);
@@ -186,8 +186,16 @@ impl Transcription<'_> {
         for quantity in small.chain(quantities.iter().filter(is_unit)) {
             quantity.coefficients.iter().for_each(|v| doubtful[*v as usize] = true);
         }
-        for output in outputs.iter().filter(is_unit).filter(|o| !o.coefficients.iter().any(is_fixed)) {
-            output.coefficients.iter().for_each(|v| known[*v as usize] = 0.0);
+        let is_guessed = |quantity: &Quantity| {
+            let variables = structure.guesses.iter().filter_map(|guess| match &guess.kind {
+                GuessKind::Variable { variable, .. } => structure.variables.get(*variable),
+                _ => None,
+            });
+            quantity.members.is_empty() && variables.into_iter().any(|declared| declared.name == quantity.name)
+        };
+        let is_told = |quantity: &&Quantity| quantity.coefficients.iter().any(is_fixed) || is_guessed(quantity);
+        for quantity in quantities.iter().filter(is_unit).filter(|quantity| !is_told(quantity)) {
+            quantity.coefficients.iter().for_each(|v| known[*v as usize] = 0.0);
         }
         // Its own bound would tell it there; where functions have no slopes at the bound, so it is.
         let sizes = from_origin(&known);

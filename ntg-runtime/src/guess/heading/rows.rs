@@ -99,4 +99,3 @@ pub(super) fn unknown_inputs(nlp: &Transcription, guessed: &[Curve]) -> BTreeSet
     }
     found
 }
-

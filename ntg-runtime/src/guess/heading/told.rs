@@ -143,4 +143,3 @@ pub(super) fn direction(equations: &[Equation]) -> Option<(f64, f64)> {
     let (determinant, trace) = (cc * ss - cs * cs, cc + ss);
     (determinant > TOLD * trace * trace).then(|| ((ss * c - cs * s) / determinant, (cc * s - cs * c) / determinant))
 }
-

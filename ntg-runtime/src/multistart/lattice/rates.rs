@@ -242,7 +242,8 @@ impl Rates<'_> {
 }
 
 fn uses_tau(call: &Call) -> bool {
-    call.data.contains(&Data::Tau) || call.reductions.iter().any(|reduction| uses_tau(&reduction.body))
+    call.data.iter().any(|data| matches!(data, Data::Tau | Data::TauWithin))
+        || call.reductions.iter().any(|reduction| uses_tau(&reduction.body))
 }
 
 /// The relative violation (9.3), at most [`MOST`]; also where there is no value.
