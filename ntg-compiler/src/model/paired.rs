@@ -31,6 +31,13 @@ struct Half {
     factor: f64,
 }
 
+/// Corners between the same two values, with the same factors that are given.
+struct Group {
+    apart: NodeId,
+    given: Vec<NodeId>,
+    members: Vec<(Term, Half)>,
+}
+
 impl Elaborator<'_> {
     /// Puts one corner in the place of several between the same two values, in all objectives and limits. Gives these corners, each
     /// with the one in its place.
@@ -92,72 +99,71 @@ impl Elaborator<'_> {
 
     /// A sum in which corners between the same two values are one; none where none of them have weights of both signs.
     fn one_corner_each(&mut self, sum: NodeId, pairs: &mut Vec<(NodeId, NodeId)>) -> Option<NodeId> {
-        let terms = self.terms_of(sum)?;
-        let mut groups: Vec<((NodeId, Vec<NodeId>), Vec<(Term, Half)>)> = vec![];
         let (mut total, mut is_changed) = (None, false);
-        let mut integrals: Vec<(PhaseAt, Vec<Term>)> = vec![];
-        for term in terms {
+        let (mut groups, mut integrals): (Vec<Group>, Vec<(PhaseAt, Vec<Term>)>) = (vec![], vec![]);
+        for term in self.terms_of(sum)? {
             if let Some((phase, integrand)) = self.integrand(term.node).filter(|_| term.given.is_empty()) {
                 let own = Term { node: integrand, ..term };
                 match integrals.iter_mut().find(|(known, _)| *known == phase) {
                     Some((_, members)) => members.push(own),
                     None => integrals.push((phase, vec![own])),
                 }
-                continue;
-            }
-            match half(&mut self.problem.dag, term.node) {
-                Some(half) => {
-                    let key = (half.apart, term.given.clone());
-                    match groups.iter_mut().find(|(own, _)| *own == key) {
-                        Some((_, members)) => members.push((term, half)),
-                        None => groups.push((key, vec![(term, half)])),
+            } else if let Some(half) = half(&mut self.problem.dag, term.node) {
+                let is_own = |group: &&mut Group| group.apart == half.apart && group.given == term.given;
+                match groups.iter_mut().find(is_own) {
+                    Some(group) => group.members.push((term, half)),
+                    None => {
+                        let (apart, given) = (half.apart, term.given.clone());
+                        groups.push(Group { apart, given, members: vec![(term, half)] });
                     }
                 }
-                None => self.add(&mut total, term, 1.0),
+            } else {
+                self.add(&mut total, term, 1.0);
             }
         }
         for (phase, members) in integrals {
             let mut sum = None;
             members.iter().for_each(|term| self.add(&mut sum, term.clone(), 1.0));
             let joined = sum.filter(|_| members.len() > 1).and_then(|sum| self.one_corner_each(sum, pairs));
-            let one = self.problem.dag.constant(1.0);
-            let whole = joined.map(|integrand| Term { node: integrand, weight: one, given: vec![] });
-            is_changed |= whole.is_some();
-            for own in whole.map_or(members, |whole| vec![whole]) {
+            is_changed |= joined.is_some();
+            let weight = self.problem.dag.constant(1.0);
+            let whole = joined.map(|integrand| vec![Term { node: integrand, weight, given: vec![] }]);
+            for own in whole.unwrap_or(members) {
                 let node = self.leaf(Leaf::Integral { phase: phase.clone(), integrand: own.node });
                 self.add(&mut total, Term { node, ..own }, 1.0);
             }
         }
-        for ((apart, given), members) in groups {
-            let signs: Option<Vec<f64>> = members
-                .iter()
-                .map(|(term, half)| Some(by_defaults(&self.problem, term.weight, 0)? * half.factor))
-                .collect();
-            let has_both = |signs: &Vec<f64>| signs.iter().any(|s| *s > 0.0) && signs.iter().any(|s| *s < 0.0);
-            if !signs.as_ref().is_some_and(has_both) {
-                members.into_iter().for_each(|(term, _)| self.add(&mut total, term, 1.0));
-                continue;
-            }
-            is_changed = true;
-            let one_corner = self.problem.dag.unary(Unary::Abs, apart);
-            if let Some(span) = self.problem.origin.get(&members[0].0.node).copied() {
-                self.origin(one_corner, span);
-            }
-            let (mut above, mut below) = (None, None);
-            let signs = signs.into_iter().flatten();
-            for ((term, half), sign) in members.into_iter().zip(signs) {
-                pairs.push((term.node, one_corner));
-                self.add(&mut total, Term { node: half.sum, ..term.clone() }, 0.5);
-                let one = self.problem.dag.constant(1.0);
-                let (side, factor) = if sign > 0.0 { (&mut above, half.factor) } else { (&mut below, -half.factor) };
-                self.add(side, Term { node: one, given: vec![], ..term }, 0.5 * factor);
-            }
-            let zero = self.problem.dag.constant(0.0);
-            let dag = &mut self.problem.dag;
-            let weight = dag.sub(above.unwrap_or(zero), below.unwrap_or(zero));
-            self.add(&mut total, Term { node: one_corner, weight, given }, 1.0);
+        for group in groups {
+            is_changed |= self.add_group(&mut total, group, pairs);
         }
         total.filter(|_| is_changed)
+    }
+
+    /// Adds corners between the same two values to a sum, as one where their weights have both signs; whether they have.
+    fn add_group(&mut self, total: &mut Option<NodeId>, group: Group, pairs: &mut Vec<(NodeId, NodeId)>) -> bool {
+        let Group { apart, given, members } = group;
+        let sign = |(term, half): &(Term, Half)| Some(by_defaults(&self.problem, term.weight, 0)? * half.factor);
+        let signs: Vec<f64> = members.iter().filter_map(sign).collect();
+        let has_both = signs.iter().any(|sign| *sign > 0.0) && signs.iter().any(|sign| *sign < 0.0);
+        if signs.len() < members.len() || !has_both {
+            members.into_iter().for_each(|(term, _)| self.add(total, term, 1.0));
+            return false;
+        }
+        let one_corner = self.problem.dag.unary(Unary::Abs, apart);
+        if let Some(span) = self.problem.origin.get(&members[0].0.node).copied() {
+            self.origin(one_corner, span);
+        }
+        let (mut above, mut below) = (None, None);
+        let [zero, one] = [0.0, 1.0].map(|number| self.problem.dag.constant(number));
+        for ((term, half), sign) in members.into_iter().zip(signs) {
+            pairs.push((term.node, one_corner));
+            self.add(total, Term { node: half.sum, ..term.clone() }, 0.5);
+            let (side, factor) = if sign > 0.0 { (&mut above, half.factor) } else { (&mut below, -half.factor) };
+            self.add(side, Term { node: one, given: vec![], ..term }, 0.5 * factor);
+        }
+        let weight = self.problem.dag.sub(above.unwrap_or(zero), below.unwrap_or(zero));
+        self.add(total, Term { node: one_corner, weight, given }, 1.0);
+        true
     }
 
     /// The phase and the integrand of an integral.
