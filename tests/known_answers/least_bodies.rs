@@ -64,6 +64,7 @@ fn a_direction_is_an_angle() {
             format!("cos(psi - ({course})) == 1;"),
             format!("cos(psi - ({course})) >= 1;"),
             format!("3 * cos({course} - psi) == 3;"),
+            format!("cos(psi - ({course})) + sin(x) - sin(x) == 1;"),
             format!("1 - cos(psi - ({course})) == 0;"),
             format!("sin(psi - ({course}) - pi / 2) == -1;"),
             format!("cos({course}) * cos(psi) + sin({course}) * sin(psi) == 1;"),

@@ -114,3 +114,25 @@ fn a_tank_fills_from_empty() {
         }
     }
 }
+
+/// A chance of a hit that underflows wherever the search begins is 0 there, and no solution of anything: that is told. Nothing is told
+/// where it varies, nor of a cost that is 0 at the solution alone.
+#[test]
+fn an_objective_that_is_the_same_all_around_is_told_of() {
+    let told = |objective: &str| {
+        let report = Shipped::text(&format!(
+            "problem Hit {{
+                duration T = 1;  state x;  input u in 0 .. 1000;  collocation gauss(points = 2, intervals = 4);
+                {objective};
+                dynamics {{ der(x) == u - 500; }}
+                initial {{ x == 0; }}
+            }}"
+        ))
+        .solve();
+        report.warnings().iter().any(|warning| warning.message.contains("the same all around the solution"))
+    };
+    assert!(told("maximize exp(-(final(x) - 300)^2)"));
+    assert!(!told("maximize exp(-(final(x) - 300)^2 / 1e4)"));
+    assert!(!told("minimize integral((x - 2)^2)"));
+    assert!(!told("minimize max(0, final(x) - 3)^2"));
+}

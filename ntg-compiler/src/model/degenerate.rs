@@ -82,6 +82,8 @@ impl Elaborator<'_> {
         let mut terms_from = |factor: f64, bound: f64| {
             let mut terms = Terms { constant: -factor * bound, ..Terms::default() };
             self.collect(&mut terms, (body.value.node, factor), 1.0, 0)?;
+            // Waves may cancel.
+            terms.waves.retain(|wave| wave.cosine.hypot(wave.sine) > 0.0);
             let depth: f64 = terms.waves.iter().map(|wave| wave.cosine.hypot(wave.sine)).sum();
             let is_least = (terms.constant - depth).abs() <= ROUNDING * depth;
             (is_least && (1..=MOST_TERMS).contains(&(terms.zeros.len() + terms.waves.len()))).then_some(terms)

@@ -4,7 +4,7 @@ use super::TermReport;
 use crate::transcribe::{Transcription, Workspace};
 use ntg_nlp::scaling::beside;
 use ntg_nlp::{Evaluation, Nlp};
-use ntg_structure::{Degree, Row, Structure, Term};
+use ntg_structure::{Degree, Place, Row, Structure, Term};
 
 /// An objective below this part of what it varies by beside the solution is 0. A law: the tolerance of an acceptable end.
 const ZERO: f64 = 1e-6;
@@ -39,21 +39,38 @@ fn is_constant(nlp: &Transcription) -> bool {
     })
 }
 
-/// What of an objective is 0 at a solution, SI. `objective` is its value there; `at` and `work` are overwritten. Where nothing is known
-/// of it beside the solution, as it has no value there, nothing counts as 0.
-pub(super) fn zero(
+/// What is known of an objective by its value beside a solution.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beside {
+    /// What of it is 0, SI; infinite where it depends on nothing. Where it has no value beside the solution, nothing counts as 0.
+    pub(super) zero: f64,
+    /// Whether it is the same there, though it depends on something.
+    pub(super) is_flat: bool,
+}
+
+/// What is known beside a solution. `objective` is the value there; `at` and `work` are overwritten.
+pub(super) fn beside_solution(
     nlp: &Transcription,
     (x, objective): (&[f64], f64),
     work: &mut Workspace,
     at: &mut Evaluation,
-) -> f64 {
+) -> Beside {
     if is_constant(nlp) {
-        return f64::INFINITY;
+        return Beside { zero: f64::INFINITY, is_flat: false };
     }
     let mut near = x.to_vec();
     beside(x, &nlp.limits, &nlp.limits.scale, &mut near);
-    let varies = nlp.values(&near, work, at).map_or(0.0, |()| (at.objective - objective).abs());
-    if varies.is_finite() { ZERO * varies } else { 0.0 }
+    let varies = nlp.values(&near, work, at).map(|()| (at.objective - objective).abs());
+    let known = varies.ok().filter(|varies| varies.is_finite());
+    Beside { zero: ZERO * known.unwrap_or(0.0), is_flat: known == Some(0.0) }
+}
+
+/// What is said of an objective that is flat around a solution, with the place of its first term.
+pub(super) fn is_flat(structure: &Structure) -> (String, Place) {
+    let message = "the objective is the same all around the solution: no point nearby is better or worse, and nothing tells where it \
+                   is better farther away; if it should vary there, start from a guess at which it does";
+    let place = structure.terms.first().map_or_else(Place::default, |term| term.place.clone());
+    (message.to_owned(), place)
 }
 
 /// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.

@@ -316,7 +316,8 @@ impl Report {
             constraints.iter().filter_map(worst).fold(0.0, |most: f64, w| crate::math::max(most, w.relative))
         };
         let violation = Violations { points: largest(|c| c.points.as_ref()), between: largest(|c| c.between.as_ref()) };
-        let zero = cost::zero(nlp, (&outcome.x, outcome.objective), work, at) / structure.objective_unit.factor;
+        let beside = cost::beside_solution(nlp, (&outcome.x, outcome.objective), work, at);
+        let zero = beside.zero / structure.objective_unit.factor;
         let mut told = warnings::shortest(nlp, &outcome.x);
         let solution = Solution {
             inner: Arc::new(Inner {
@@ -334,6 +335,9 @@ impl Report {
             true => hints::of_estimate(nlp, solution.coefficients(), estimate.as_ref()),
             false => hints::ran_off(nlp, solution.coefficients()),
         });
+        if status.has_solution() && beside.is_flat {
+            told.push(cost::is_flat(structure));
+        }
         if matches!(status, Status::Infeasible { .. }) {
             told.extend(hints::overdetermined(nlp));
         }
