@@ -213,7 +213,7 @@ impl Session {
     pub(super) fn report(
         &mut self,
         mut nlp: Transcription<'_>,
-        mut outcome: Outcome,
+        outcome: Outcome,
         history: Vec<StepReport>,
         settings: &Settings,
     ) -> Result<Report, SetupError> {
@@ -229,9 +229,6 @@ impl Session {
         if std::mem::take(&mut fine.stale) {
             fine.plan.take_data(&nlp)?;
             fine.buffers = nlp.workspace();
-        }
-        if outcome.status.has_solution() {
-            nlp.round_to_known_ends(&mut outcome.x);
         }
         let mut report = Report::new(&nlp, outcome, (&mut fine.plan, &mut fine.buffers), history)?;
         if report.is_loose(settings.constraint_tolerance) {

@@ -120,6 +120,7 @@ impl Session {
             outcome.iterations = budget.spent() - spent;
             if is_last {
                 outcome = self.unwrap_turns(&mut nlp, outcome, settings);
+                nlp.round_to_known_ends(&mut outcome.x);
             }
             history.push(record(&nlp, step, &outcome, step_began));
             if is_last || matches!(outcome.status, Status::Cancelled | Status::TimeLimit) {
@@ -223,6 +224,7 @@ impl Session {
         if once.status.has_solution() && !nlp.open_relaxations(&once.x).is_empty() {
             once.status = Status::StepTooSmall;
         }
+        nlp.round_to_known_ends(&mut once.x);
         Ok((nlp, Outcome { iterations: budget.spent(), ..once }))
     }
 }

@@ -203,13 +203,13 @@ impl<'p> Transcription<'p> {
 
     /// Takes what rounding left of values that boundary conditions alone decide: a level of -1e-22 has no root where it starts at 0.
     pub(crate) fn round_to_known_ends(&self, x: &mut [f64]) {
-        /// What is so near, by its size, is met. A law: the tolerance.
-        const MET: f64 = 1e-8;
+        /// What is so near, by its size, is rounding. A law: that of a sum of tens of terms.
+        const ROUNDING: f64 = 64.0 * f64::EPSILON;
         let outputs = self.model.layout.phases.iter().flat_map(|phase| &phase.outputs);
         for variable in outputs.flat_map(|output| [output.coefficients.first(), output.coefficients.last()]).flatten() {
             let of = *variable as usize;
             let known = self.linear.value(&slots::AffineMap { terms: vec![(*variable, 1.0)], offset: 0.0 });
-            if let Some(value) = known.filter(|value| (value - x[of]).abs() <= MET * self.limits.scale[of]) {
+            if let Some(value) = known.filter(|value| (value - x[of]).abs() <= ROUNDING * self.limits.scale[of]) {
                 x[of] = value;
             }
         }
