@@ -304,12 +304,12 @@ impl<'a> Elaborator<'a> {
             return self.push_soft(cx, constraint, softness, (site, domain, bodies));
         }
         self.note_soft_name(constraint);
-        let bodies = bodies.into_iter().map(|Body { value, mut bounds, unit }| {
+        let posed = bodies.into_iter().flat_map(|Body { value, mut bounds, unit }| {
             let is_equation = bounds.lower.is_some() && bounds.lower == bounds.upper;
             let value = if is_equation { self.limited(value, &mut bounds) } else { value };
-            Body { value, bounds, unit }
+            self.regular(Body { value, bounds, unit })
         });
-        let bodies = Vec::from_iter(bodies).into_iter().flat_map(|body| self.regular(body)).collect::<Vec<_>>();
+        let bodies: Vec<Body> = posed.collect();
         for Body { value: body, bounds, unit } in bodies {
             let name = self.constraint_name(cx, constraint, site);
             self.origin(body.node, constraint.span);

@@ -1,7 +1,7 @@
 //! Constraints that are met where their bodies are least, and nowhere else: `norm(r - pad) == 0`, `cos(psi - north) == 1`.
 //!
 //! Such a body has no gradient where the constraint holds, so that no multiplier makes the point stationary (docs/maths.md,
-//! section 18). Takes a body and its bounds; where the body is a sum of terms each of which is least, gives the constraint as those
+//! equation 18.10). Takes a body and its bounds; where the body is a sum of terms each of which is least, gives the constraint as those
 //! on what vanishes there, which have gradients: `r - pad == 0`; `sin(psi - north) == 0` and `cos(psi - north) >= 0`.
 
 use super::constraints::Body;

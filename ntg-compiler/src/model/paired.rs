@@ -1,4 +1,4 @@
-//! Corners between the same two values in one sum: they are one corner (docs/maths.md, section 18).
+//! Corners between the same two values in one sum: they are one corner (docs/maths.md, equation 18.11).
 //!
 //! The price of what a store takes, `price * (max(e, 0) / 0.95 - 0.95 * max(-e, 0))`, has two corners, of which one is pushed away
 //! from its tip. Both are half of `e` and half of `abs(e)`, in sum a line and `abs(e)` with a weight that is positive.
@@ -59,6 +59,7 @@ impl Elaborator<'_> {
         pairs
     }
 
+    /// A body in which each sum has one corner in the place of several between the same two values.
     fn paired(&mut self, root: NodeId, pairs: &mut Vec<(NodeId, NodeId)>) -> NodeId {
         let all = self.below(&[root]);
         if all.iter().filter(|node| half(&mut self.problem.dag, **node).is_some()).nth(1).is_none() {
@@ -175,6 +176,7 @@ impl Elaborator<'_> {
         }
     }
 
+    /// Adds a number times a term to a sum.
     fn add(&mut self, total: &mut Option<NodeId>, Term { node, weight, given }: Term, factor: f64) {
         let dag = &mut self.problem.dag;
         let factor = dag.constant(factor);

@@ -85,7 +85,7 @@ struct Copy<'a, 'b> {
     dag: Dag,
     inputs: Inputs,
     origin: Map<NodeId, Span>, // Looked up, never iterated.
-    /// Whether it is a condition of time alone that is copied, which the end of an interval is within.
+    /// Whether a condition of time alone is copied: at the end of an interval it is asked within the interval (docs/maths.md, 3.5).
     in_clock: bool,
 }
 
@@ -146,14 +146,12 @@ impl Copy<'_, '_> {
             let mut needed = HashSet::from([root]);
             // Operands stand before what they are operands of.
             for id in order.iter().rev() {
-                if needed.contains(id) {
-                    let operands = dag.node(*id).operands().into_iter();
-                    let is_condition = |of: &NodeId| {
-                        clocks.contains(of)
-                            && matches!(dag.node(*id), Node::Select { condition, then, otherwise }
-                                if condition == of && then != of && otherwise != of)
-                    };
-                    needed.extend(operands.filter(|operand| !is_condition(operand)));
+                match dag.node(*id) {
+                    _ if !needed.contains(id) => {}
+                    Node::Select { condition, then, otherwise } if clocks.contains(condition) => {
+                        needed.extend([*then, *otherwise]);
+                    }
+                    node => needed.extend(node.operands()),
                 }
             }
             order.retain(|id| needed.contains(id));

@@ -4,7 +4,7 @@ use super::TermReport;
 use crate::transcribe::{Transcription, Workspace};
 use ntg_nlp::scaling::beside;
 use ntg_nlp::{Evaluation, Nlp};
-use ntg_structure::{Degree, Place, Row, Structure, Term};
+use ntg_structure::{Degree, Row, Structure, Term};
 
 /// An objective below this part of what it varies by beside the solution is 0. A law: the tolerance of an acceptable end.
 const ZERO: f64 = 1e-6;
@@ -63,14 +63,6 @@ pub(super) fn beside_solution(
     let varies = nlp.values(&near, work, at).map(|()| (at.objective - objective).abs());
     let known = varies.ok().filter(|varies| varies.is_finite());
     Beside { zero: ZERO * known.unwrap_or(0.0), is_flat: known == Some(0.0) }
-}
-
-/// What is said of an objective that is flat around a solution, with the place of its first term.
-pub(super) fn is_flat(structure: &Structure) -> (String, Place) {
-    let message = "the objective is the same all around the solution: no point nearby is better or worse, and nothing tells where it \
-                   is better farther away; if it should vary there, start from a guess at which it does";
-    let place = structure.terms.first().map_or_else(Place::default, |term| term.place.clone());
-    (message.to_owned(), place)
 }
 
 /// One entry for each term, in the user's sense and the term's unit. `at` holds the program's values.

@@ -9,7 +9,7 @@ use crate::transcribe::Transcription;
 use crate::transcribe::instances::family_members;
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Singular, names, singular};
-use ntg_structure::{Block, Place};
+use ntg_structure::{Block, Place, Structure};
 
 /// A value this near to a bound, in sizes of the variable, is at it: the method stays inside by its last barrier parameter.
 const AT_BOUND: f64 = 1e-5;
@@ -19,6 +19,14 @@ const SURE: f64 = 5.0;
 /// An output has run off where it is this many times its size at the guess. A law: sizes are what guess, bounds and ends
 /// say, and three decimals beyond all of them is no motion that these are about.
 const RAN_OFF: f64 = 1e3;
+
+/// An objective that is the same all around a solution, with the place of its first term.
+pub(super) fn flat_objective(structure: &Structure) -> (String, Place) {
+    let message = "the objective is the same all around the solution: no point nearby is better or worse, and nothing tells where it \
+                   is better farther away; if it should vary there, start from a guess at which it does";
+    let place = structure.terms.first().map_or_else(Place::default, |term| term.place.clone());
+    (message.to_owned(), place)
+}
 
 /// What an estimate does not say by itself.
 pub(super) fn of_estimate(nlp: &Transcription, x: &[f64], estimate: Option<&Estimate>) -> Vec<(String, Place)> {

@@ -336,7 +336,7 @@ impl Report {
             false => hints::ran_off(nlp, solution.coefficients()),
         });
         if status.has_solution() && beside.is_flat {
-            told.push(cost::is_flat(structure));
+            told.push(hints::flat_objective(structure));
         }
         if matches!(status, Status::Infeasible { .. }) {
             told.extend(hints::overdetermined(nlp));

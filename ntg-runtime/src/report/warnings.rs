@@ -30,10 +30,10 @@ impl fmt::Display for Warning {
 
 impl Report {
     /// What is to be known beside the status: expressions that are singular at the guess, durations that are as short as
-    /// they may be, an objective that is the same all around, variables of an estimate at their bounds, a fit that is worse than its deviations say, outputs that ran
-    /// off where there is no solution, more equations than unknowns where they cannot be met, a simulated motion that the
-    /// mesh does not follow, a solution that leaves its own equations of motion, constraints of a solution that are violated between the points by more than
-    /// `Settings::between_tolerance`, the worst first, and a refinement that has not come to its tolerance.
+    /// they may be, an objective that is the same all around, variables of an estimate at their bounds, a fit that is worse than its
+    /// deviations say, outputs that ran off where there is no solution, more equations than unknowns where they cannot be met, a
+    /// simulated motion that the mesh does not follow, a solution that leaves its own equations of motion, constraints of a solution
+    /// that are violated between the points by more than `Settings::between_tolerance`, the worst first, and a refinement that has not come to its tolerance.
     pub fn warnings(&self) -> Vec<Warning> {
         let singular = self.singular.iter().map(|singular| Warning {
             message: singular.to_string(),

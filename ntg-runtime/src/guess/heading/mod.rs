@@ -1,7 +1,7 @@
 //! Angles that nobody guesses point where the rest of the guess goes (docs/maths.md, section 8.7).
 //!
 //! Equations in which the sine and cosine of an angle stand, as `der(x) == v * cos(psi)` and `der(y) == v * sin(psi)`, are linear in
-//! both: where two of them hold, they tell the angle for the guessed motion; two boundary conditions tell an end. Takes a guess
+//! both: where two of them hold, they tell the angle for the guessed motion; two boundary conditions, or one and a limit, tell an end. Takes a guess
 //! without that; turns each such angle at every place where equations tell it.
 
 mod rows;
