@@ -49,3 +49,13 @@ fn a_swarm_in_rows_of_coordinates_is_as_far_apart_as_it_must_be() {
     }
     close(report.objective, 26.521_856, 1e-6);
 }
+
+/// Slacks that are not yet their distances are no violations: while vehicles are far apart the barrier parameter falls, and
+/// where a search is stuck nothing is restored that is not missed.
+#[test]
+fn more_vehicles_take_few_more_iterations() {
+    for (n, most) in [(6, 60), (8, 60), (10, 90)] {
+        let report = Shipped::edited("swarm", &[("const n = 4;", &format!("const n = {n};"))]).solve();
+        assert!(report.status.has_solution() && report.iterations <= most, "{n}: {report}");
+    }
+}

@@ -26,7 +26,7 @@ const TINY: f64 = 10.0 * f64::EPSILON;
 /// for: feasibility is restored instead. Fits to the gallery.
 const SHORT: f64 = 1e-2;
 const SHORT_STEPS: usize = 3;
-const NEARLY_FEASIBLE: f64 = 1e-4;
+pub(super) const NEARLY_FEASIBLE: f64 = 1e-4;
 
 /// How a search ended.
 #[derive(Clone, Copy, Debug, PartialEq)]

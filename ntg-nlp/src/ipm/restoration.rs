@@ -14,7 +14,7 @@
 //! search on the penalty function replaces the inner filter.
 
 use super::augmented::AugmentedLagrangian;
-use super::line_search::SearchOutcome;
+use super::line_search::{NEARLY_FEASIBLE, SearchOutcome};
 use super::mode::Mode;
 use super::penalty::Penalty;
 use super::relaxed::Relaxed;
@@ -71,6 +71,9 @@ impl<N: Nlp> State<'_, N> {
         self.restorations += 1;
         self.short_steps = 0;
         self.watchdog.reset();
+        if self.reset_slacks(theta) {
+            return true;
+        }
         let phi = self.barrier_objective(&self.values, &self.slacks.s);
         self.filter.add(theta, phi);
         let (mu, residual) = (self.mu, self.slacks.largest_residual(&self.values));
@@ -83,6 +86,34 @@ impl<N: Nlp> State<'_, N> {
         self.mode = Mode::Restoration(Restoration { x, price, proximity: 0.0, theta, residual, mu, steps: 0 });
         self.update_proximity();
         self.centre_on_price()
+    }
+
+    /// Makes slacks the distances where what is infeasible is nearly all of it their difference: nothing is to be restored then,
+    /// although no step is acceptable. Whether they are.
+    fn reset_slacks(&mut self, theta: f64) -> bool {
+        let mu = self.mu;
+        let violation = self.distances_as_slacks(mu.clamp(LEAST_SLACK, LARGEST_SLACK));
+        if violation > NEARLY_FEASIBLE.min(KAPPA_RESTO * theta) {
+            return false;
+        }
+        let phi = self.barrier_objective(&self.values, &self.slacks.s);
+        if !self.filter.accepts(violation, self.barrier_objective(&self.values, &self.trial.s)) {
+            if violation > FEASIBLE {
+                return false;
+            }
+            self.filter.clear();
+        }
+        self.filter.add(theta, phi);
+        std::mem::swap(&mut self.slacks.s, &mut self.trial.s);
+        self.slacks.safeguard_multipliers(mu);
+        self.restart()
+    }
+
+    /// Writes distances to the trial slacks, or the least slack where a bound is missed; what is infeasible with them.
+    fn distances_as_slacks(&mut self, least: f64) -> f64 {
+        let s = &mut self.trial.s;
+        s.iter_mut().zip(&self.slacks.distance).for_each(|(s, d)| *s = d.max(least));
+        self.slacks.infeasibility(&self.values, &self.slacks.distance, s)
     }
 
     /// Whether there is nothing to restore at the present point.
@@ -166,10 +197,8 @@ impl<N: Nlp> State<'_, N> {
         }
         let (mu, most) = (restoration.mu, KAPPA_RESTO * restoration.theta);
         let least = mu.min(LARGEST_SLACK * restoration.residual).clamp(LEAST_SLACK, LARGEST_SLACK);
-        let s = &mut self.trial.s;
-        s.iter_mut().zip(&self.slacks.distance).for_each(|(s, d)| *s = d.max(least));
-        let theta = self.slacks.infeasibility(&self.values, &self.slacks.distance, s);
-        let phi = self.values[self.system.objective()] - mu * log_sum(s);
+        let theta = self.distances_as_slacks(least);
+        let phi = self.values[self.system.objective()] - mu * log_sum(&self.trial.s);
         let phi = phi + self.damped(mu, &self.trial.s);
         if theta > most || !phi.is_finite() || !self.filter.accepts(theta, phi) {
             return;

@@ -209,6 +209,13 @@ impl Slacks {
         self.equality_residuals(values).fold(largest([&self.distance, &self.s], |[d, s]| (d - s).abs()), f64::max)
     }
 
+    /// As [`Slacks::largest_residual`], where that of an inequality whose slack exceeds `far` counts by the part of its slack that
+    /// it is, equation (11.6b).
+    pub(super) fn residual_beside_slacks(&self, values: &[f64], far: f64) -> f64 {
+        let residual = largest([&self.distance, &self.s], |[d, s]| (d - s).abs() * if s > far { far / s } else { 1.0 });
+        self.equality_residuals(values).fold(residual, f64::max)
+    }
+
     /// The largest violation of a bound or equality.
     pub(super) fn violation(&self, values: &[f64]) -> f64 {
         self.equality_residuals(values).fold(largest([&self.distance], |[d]| -d), f64::max)
