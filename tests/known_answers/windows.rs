@@ -47,3 +47,32 @@ fn a_limit_by_the_hour_is_that_of_the_hour() {
         close(report.objective, 6.0, 1e-6);
     }
 }
+
+/// A limit that is lifted, or set, at a knot holds on its own side of it: a spline of least curvature through a place, of which
+/// `12/7` is the energy of one half time at 0.
+#[test]
+fn a_limit_holds_up_to_the_knot_at_which_it_is_lifted() {
+    for (metre, second) in [(1.0, 1.0), (1e3, 60.0), (1e-3, 1e3)] {
+        for intervals in [2, 6, 40] {
+            for limit in [
+                "x <= if t <= half { 0 [m] } else { 10 * L }",
+                "x + (if t <= half { 9 * L } else { 0 [m] }) <= 9 * L",
+                "x / L <= if t / half <= 1 { 0 } else { 10 }",
+            ] {
+                let text = format!(
+                    "problem Traffic {{
+                        const L = {metre} [m];  const half = {second} [s];
+                        duration T = 2 * half;
+                        state x [m], v [m/s];  input a [m/s^2];
+                        collocation gauss(points = 4, intervals = {intervals});
+                        minimize integral(a^2) * half^3 / L^2;
+                        dynamics {{ der(x) == v;  der(v) == a; }}
+                        initial {{ x == 0; v == 0; }}  final {{ x == L; }}
+                        trajectory {{ {limit}; }}
+                    }}"
+                );
+                close(Shipped::text(&text).solve().objective, 12.0 / 7.0, 1e-6);
+            }
+        }
+    }
+}

@@ -10,12 +10,13 @@ use std::collections::{HashMap, HashSet};
 
 use ntg_structure::{At, Call, Data, ReduceOp, Reduction, Slot};
 
+use super::clocks::is_clock;
 use super::derive::{Formulas, derive};
 use super::environment::Environment;
 use super::inputs::Inputs;
 use super::lower::Lowering;
 use super::names::identifier;
-use crate::expr::{Binary, Dag, Fold, InputId, Map, Node, NodeId};
+use crate::expr::{Dag, Fold, InputId, Map, Node, NodeId};
 use crate::model::problem::{Leaf, Loop, PhaseAt};
 use crate::source::Span;
 
@@ -123,24 +124,12 @@ impl Copy<'_, '_> {
         let dag = &self.lowering.problem.dag;
         let mut order = dag.schedule_outside(&[root]);
         let mut clocks = HashSet::new();
-        let is_clock = |condition: &NodeId| {
-            let mut has_time = false;
-            let is_fixed = |input: InputId| match self.lowering.problem.leaves.leaf(input) {
-                Leaf::Time(_) | Leaf::Tau => {
-                    has_time = true;
-                    true
-                }
-                Leaf::Parameter { .. } | Leaf::Index(_) | Leaf::Duration(_) | Leaf::Start(_) => true,
-                _ => false,
-            };
-            is_comparison(dag, *condition) && dag.all_inputs(*condition, is_fixed) && has_time
-        };
         if !self.in_clock {
             let conditions = order.iter().filter_map(|id| match dag.node(*id) {
                 Node::Select { condition, .. } => Some(*condition),
                 _ => None,
             });
-            clocks.extend(conditions.filter(is_clock));
+            clocks.extend(conditions.filter(|condition| is_clock(&self.lowering.problem, *condition)));
         }
         if !clocks.is_empty() {
             let mut needed = HashSet::from([root]);
@@ -285,14 +274,5 @@ impl Copy<'_, '_> {
 
     fn input(&mut self, provisional: usize) -> NodeId {
         self.dag.input(InputId(u32::try_from(provisional).expect("fewer than 2^32 inputs")))
-    }
-}
-
-/// Whether a node is a product of comparisons.
-fn is_comparison(dag: &Dag, node: NodeId) -> bool {
-    match *dag.node(node) {
-        Node::Binary(Binary::LessEq, ..) => true,
-        Node::Binary(Binary::Mul, a, b) => is_comparison(dag, a) && is_comparison(dag, b),
-        _ => false,
     }
 }

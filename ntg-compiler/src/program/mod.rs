@@ -5,6 +5,7 @@
 //! own, so a kernel can be written, read and compared by itself; two formulas that differ only in
 //! the indices or names of their inputs have the same body and exist once.
 
+mod clocks;
 mod derive;
 mod environment;
 mod inputs;

@@ -2,6 +2,7 @@
 
 use ntg_structure::{Block, Points, is_helper};
 
+use super::clocks::is_clock;
 use super::pieces::{Piece, Role};
 use crate::expr::Node;
 use crate::model::problem::{Collocation, Domain, Leaf, PhaseAt, Problem};
@@ -28,7 +29,7 @@ pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> V
         Role::Constraint { .. } if !ends => vec![Points::Gauss { points }],
         Role::Constraint { .. } => {
             let mut sets = vec![Points::Gauss { points }, Points::Breakpoints];
-            if jumps(problem, piece) {
+            if jumps(problem, phase, piece) {
                 sets.push(Points::LeftLimits);
             }
             sets
@@ -46,13 +47,22 @@ fn holds_helper(problem: &Problem, constraint: usize, piece: &Piece) -> bool {
         })
 }
 
-/// Whether the piece holds a derivative that is discontinuous at interior breakpoints.
-fn jumps(problem: &Problem, piece: &Piece) -> bool {
+/// Whether the piece jumps at interior breakpoints: it holds a derivative that does, or a condition of time.
+fn jumps(problem: &Problem, at: &PhaseAt, piece: &Piece) -> bool {
     let Domain::Path(..) = piece.domain else { return false };
-    problem.dag.schedule(&[piece.body]).iter().any(|id| {
-        let Node::Input(input) = problem.dag.node(*id) else { return false };
-        let Leaf::Flat { phase, output, order, .. } = problem.leaves.leaf(*input) else { return false };
-        let spline = &problem.phases[phase.phase].outputs[*output].spline;
-        spline.breakpoints.len() > 2 && *order >= spline.smoothness
+    let outputs = &problem.phases[at.phase].outputs;
+    if outputs.iter().all(|output| output.spline.breakpoints.len() <= 2) {
+        return false;
+    }
+    problem.dag.schedule(&[piece.body]).iter().any(|id| match problem.dag.node(*id) {
+        Node::Select { condition, .. } => is_clock(problem, *condition),
+        Node::Input(input) => match problem.leaves.leaf(*input) {
+            Leaf::Flat { phase, output, order, .. } => {
+                let spline = &problem.phases[phase.phase].outputs[*output].spline;
+                spline.breakpoints.len() > 2 && *order >= spline.smoothness
+            }
+            _ => false,
+        },
+        _ => false,
     })
 }
