@@ -37,6 +37,7 @@ mod out_of_reach;
 mod phases;
 mod piecewise_linear;
 mod places;
+mod plateaus;
 mod poles;
 mod quotients;
 mod resolve;

@@ -19,9 +19,14 @@ pub(super) struct OneSided<'a> {
 }
 
 impl<'a> OneSided<'a> {
-    /// The program around `x` with the slopes at `beside`, in steps of up to `reach` of the size of every variable; none where
+    /// The program around `x` with the slopes at `beside`, in steps of up to `reach` of the size of each variable; none where
     /// something is not finite.
-    pub(super) fn new(nlp: &'a Transcription<'a>, x: &[f64], beside: &[f64], reach: f64) -> Option<Self> {
+    pub(super) fn new(
+        nlp: &'a Transcription<'a>,
+        x: &[f64],
+        beside: &[f64],
+        reach: &dyn Fn(usize) -> f64,
+    ) -> Option<Self> {
         let (mut work, mut at) = nlp.workspace();
         let mut slopes = at.clone();
         nlp.values(x, &mut work, &mut at).ok()?;
@@ -29,7 +34,7 @@ impl<'a> OneSided<'a> {
         at.blocks.iter_mut().zip(slopes.blocks).for_each(|(own, beside)| own.jacobian = beside.jacobian);
         let mut limits = nlp.limits().clone();
         for (j, x) in x.iter().enumerate() {
-            let far = reach * limits.scale[j];
+            let far = reach(j) * limits.scale[j];
             limits.lower[j] = (limits.lower[j] - x).max(-far).min(0.0);
             limits.upper[j] = (limits.upper[j] - x).min(far).max(0.0);
         }

@@ -116,6 +116,7 @@ impl Session {
             }
             if is_last {
                 outcome = self.leave_tips(&mut nlp, outcome, &mut budget);
+                outcome = self.leave_plateaus(&mut nlp, outcome, &mut budget);
             }
             outcome.iterations = budget.spent() - spent;
             if is_last {

@@ -30,18 +30,18 @@ const MISSED: f64 = 1e-2;
 const STEPS: usize = 60;
 
 /// A way down from a tip.
-struct Way {
+pub(super) struct Way {
     /// A step from the solution.
-    step: Vec<f64>,
+    pub(super) step: Vec<f64>,
     /// Variables that rest at tips of their own from which nothing falls: no method of second order ends there, as the slopes
     /// to both sides are no limits of each other.
-    held: Vec<usize>,
+    pub(super) held: Vec<usize>,
     /// By how much the objective is to fall to be another one.
-    least: f64,
+    pub(super) least: f64,
 }
 
 /// What is found from beside a tip.
-enum Below {
+pub(super) enum Below {
     /// Something better.
     Found(Box<Outcome>),
     /// The tip again.
@@ -75,7 +75,7 @@ impl Session {
 }
 
 /// What is found from beside a tip along a way down.
-fn below_tip(nlp: &mut Transcription, outcome: &Outcome, way: &Way, budget: &mut Budget<'_>) -> Below {
+pub(super) fn below_tip(nlp: &mut Transcription, outcome: &Outcome, way: &Way, budget: &mut Budget<'_>) -> Below {
     /// A step, and a shorter one where that leads too far. A choice.
     const FRACTIONS: [f64; 2] = [1.0, 0.1];
     let mut found = Below::Lost;
@@ -125,7 +125,8 @@ fn way_down(nlp: &Transcription, outcome: &Outcome, budget: &mut Budget<'_>) -> 
     let ways = if slopes.has_both() { &[Ways::Best, Ways::Down, Ways::Mixed][..] } else { &[Ways::Best] };
     let step = ways.iter().find_map(|ways| {
         let mut step = |way: &[f64], keep: &dyn Fn(usize) -> Option<f64>| {
-            first_order(nlp, outcome, &moved(nlp, &outcome.x, |j| BESIDE[1] * way[j]), keep, (least, &mut *budget))
+            let beside = moved(nlp, &outcome.x, |j| BESIDE[1] * way[j]);
+            first_order(nlp, outcome, (&beside, &|_| REACH), keep, (least, &mut *budget))
         };
         let sides = slopes.sides(*ways);
         let way: Vec<f64> = sides.iter().enumerate().map(|(j, side)| side * sizes[j] * uneven(j)).collect();
@@ -151,15 +152,15 @@ fn way_down(nlp: &Transcription, outcome: &Outcome, budget: &mut Budget<'_>) -> 
 
 /// The best step to first order, with slopes at a point beside the solution, and variables kept at sides; none where the
 /// objective falls by no more than `least`.
-fn first_order(
+pub(super) fn first_order(
     nlp: &Transcription,
     outcome: &Outcome,
-    beside: &[f64],
+    (beside, reach): (&[f64], &dyn Fn(usize) -> f64),
     keep: &dyn Fn(usize) -> Option<f64>,
     (least, budget): (f64, &mut Budget<'_>),
 ) -> Option<Outcome> {
     let settings = budget.rest()?;
-    let mut program = OneSided::new(nlp, &outcome.x, beside, REACH)?;
+    let mut program = OneSided::new(nlp, &outcome.x, beside, reach)?;
     (0..outcome.x.len()).filter_map(|j| Some((j, keep(j)?))).for_each(|(j, side)| program.keep_side(j, side));
     let options = Options {
         max_iterations: settings.max_iterations.min(STEPS),
@@ -175,7 +176,7 @@ fn first_order(
 /// Whether the program itself falls along a step as it does to first order, by more than what it misses its rows by is worth.
 fn falls(nlp: &Transcription, outcome: &Outcome, step: &Outcome) -> bool {
     let near = moved(nlp, &outcome.x, |j| PART * step.x[j]);
-    let Some(promised) = OneSided::new(nlp, &outcome.x, &near, REACH).map(|program| program.fall(&step.x)) else {
+    let Some(promised) = OneSided::new(nlp, &outcome.x, &near, &|_| REACH).map(|program| program.fall(&step.x)) else {
         return false;
     };
     let limits = nlp.limits();
