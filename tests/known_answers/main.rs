@@ -6,6 +6,7 @@
 
 mod angles;
 mod car;
+mod clamps;
 mod constrained;
 mod constructs;
 mod corners;

@@ -79,6 +79,7 @@ impl Elaborator<'_> {
         if self.has_failed() {
             return;
         }
+        let parted = self.part_clamps();
         let paired = self.pair_corners();
         let terms = self.problem.objective.iter().map(|term| term.body);
         let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
@@ -119,7 +120,7 @@ impl Elaborator<'_> {
         self.weights_held(&pass);
         let (left, smoothed) = self.corners_left(&pass.tips);
         let is_gone = |(_, one): &&(NodeId, NodeId)| !left.contains(one);
-        pass.treated.extend(paired.iter().filter(is_gone).map(|(corner, _)| *corner));
+        pass.treated.extend(paired.iter().chain(&parted).filter(is_gone).map(|(corner, _)| *corner));
         self.unnoted((&pass, &smoothed), &left);
         let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();
         spans.sort_by_key(|span| (span.start, span.end));

@@ -14,6 +14,7 @@ mod bodies;
 mod borrowed;
 mod branches;
 mod check;
+mod clamps;
 mod collocated;
 mod conditions;
 mod cones;

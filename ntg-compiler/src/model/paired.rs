@@ -9,7 +9,7 @@ use super::elaborator::Elaborator;
 use super::problem::{Leaf, PhaseAt};
 use super::signs::by_defaults;
 use super::unknowns::is_given;
-use crate::expr::{Binary, Dag, Map, Node, NodeId, Set, Unary};
+use crate::expr::{Binary, Dag, Node, NodeId, Set, Unary};
 
 /// Most terms of a sum that are looked at. A choice.
 const MOST_TERMS: usize = 500;
@@ -76,26 +76,11 @@ impl Elaborator<'_> {
                 });
             }
         }
-        let mut images: Map<NodeId, NodeId> = Map::default();
-        for id in all {
-            let node = self.problem.dag.node(id).clone();
-            let image = match node {
-                Node::Input(input) => match self.problem.leaves.leaf(input).clone() {
-                    Leaf::Integral { phase, integrand } if images[&integrand] != integrand => {
-                        self.leaf(Leaf::Integral { phase, integrand: images[&integrand] })
-                    }
-                    _ => id,
-                },
-                _ => self.problem.dag.rebuild(&node, |operand| images[&operand]),
-            };
-            let is_whole = is_sum(self.problem.dag.node(image)) && !inner.contains(&id);
-            let image = if is_whole { self.one_corner_each(image, pairs).unwrap_or(image) } else { image };
-            if let Some(span) = self.problem.origin.get(&id).copied().filter(|_| image != id) {
-                self.origin(image, span);
-            }
-            images.insert(id, image);
-        }
-        images[&root]
+        self.rewritten(root, |own, (id, images)| {
+            let image = own.rebuilt(id, images);
+            let is_whole = is_sum(own.problem.dag.node(image)) && !inner.contains(&id);
+            Some(if is_whole { own.one_corner_each(image, pairs).unwrap_or(image) } else { image })
+        })
     }
 
     /// A sum in which corners between the same two values are one; none where none of them have weights of both signs.
