@@ -3,12 +3,17 @@
 use crate::support::{Shipped, close};
 use ntg::prelude::*;
 
-/// A double integrator by a law of its input `w`, with `A` and `d` in any units.
-fn cart(law: &str, (metre, second): (f64, f64), (points, intervals): (usize, usize), rest: &str) -> Report {
+/// A double integrator by a law of its input `w`, with `A` and `d` in any units, as numbers or as parameters that may change.
+fn cart(
+    (kind, law): (&str, &str),
+    (metre, second): (f64, f64),
+    (points, intervals): (usize, usize),
+    rest: &str,
+) -> Report {
     let text = format!(
         "problem Cart {{
-            const A = {} [m/s^2];
-            const d = {} [m/s^2];
+            {kind} A = {} [m/s^2];
+            {kind} d = {} [m/s^2];
             const L = {metre} [m];
             {rest}
             state x [m], v [m/s];
@@ -30,7 +35,11 @@ const UNITS: [(f64, f64); 4] = [(1.0, 1.0), (1e-3, 1.0), (1.0, 60.0), (1e5, 10.0
 fn a_dead_zone_is_passed_at_both_ends() {
     for (metre, second) in UNITS {
         for mesh in [(2, 6), (2, 30), (4, 10)] {
-            for law in ["w - max(-d, min(d, w))", "w - min(d, max(-d, w))", "max(0, w - d) - max(0, -w - d)"] {
+            for law in [
+                ("const", "w - max(-d, min(d, w))"),
+                ("param", "w - min(d, max(-d, w))"),
+                ("param", "max(0, w - d) - max(0, -w - d)"),
+            ] {
                 let farthest = format!("duration T = {second} [s];  maximize final(x) / L;  final {{ v == 0; }}");
                 close(cart(law, (metre, second), mesh, &farthest).objective, 1.0, 1e-6);
                 let soonest = format!(
@@ -49,7 +58,11 @@ fn a_dead_zone_is_passed_at_both_ends() {
 fn a_saturation_is_met_from_either_side() {
     for (metre, second) in UNITS {
         for mesh in [(2, 30), (4, 8)] {
-            for law in ["max(-A, min(A, 3 * w))", "min(A, max(-A, 3 * w))", "A * max(-1, min(1, 3 * w / A))"] {
+            for law in [
+                ("param", "max(-A, min(A, 3 * w))"),
+                ("const", "min(A, max(-A, 3 * w))"),
+                ("param", "A * max(-1, min(1, 3 * w / A))"),
+            ] {
                 let soonest = format!(
                     "duration T in {} .. {} [s];  minimize T / {second} [s];  final {{ x == L; v == 0; }}",
                     0.1 * second,

@@ -34,10 +34,7 @@ impl Elaborator<'_> {
         (site, growing): (&Site, bool),
         depth: usize,
     ) -> Option<NodeId> {
-        let limit = match site.floats {
-            true => pass.ranges.of(&self.problem, corner).map(|(least, most)| if growing { most } else { least }),
-            false => None,
-        };
+        let limit = if site.floats { self.limit_of(pass, corner, growing) } else { None };
         let against = self.against(pass, corner, (site, growing), depth)?;
         if let Against::Members(members) = &against
             && let [(only, loops)] = members.as_slice()
@@ -71,7 +68,7 @@ impl Elaborator<'_> {
                 self.hold_helper(site, vec![], (helper, Bounds { lower: Some(zero), upper }), span);
             }
         }
-        if let Some(limit) = limit.map(|limit| self.problem.dag.constant(limit)) {
+        if let Some(limit) = limit {
             let bounds = match growing {
                 true => Bounds { lower: None, upper: Some(limit) },
                 false => Bounds { lower: Some(limit), upper: None },
@@ -79,6 +76,14 @@ impl Elaborator<'_> {
             self.hold_helper(site, vec![], (helper, bounds), span);
         }
         Some(helper)
+    }
+
+    /// What a corner is at most, where what it is in grows with it, else at least: a number, or an expression of parameters.
+    fn limit_of(&mut self, pass: &mut Corners, corner: NodeId, growing: bool) -> Option<NodeId> {
+        match pass.ranges.of(&self.problem, corner) {
+            Some((least, most)) => Some(self.problem.dag.constant(if growing { most } else { least })),
+            None => self.limit_in_parameters(corner, growing),
+        }
     }
 
     /// Whether the sides of a corner are affine in what is solved for, but for corners in them: the rows of a helper are

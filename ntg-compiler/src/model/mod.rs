@@ -63,6 +63,7 @@ mod objective;
 mod order;
 mod outputs;
 mod paired;
+mod parametric_ranges;
 mod part_ends;
 mod parts;
 mod paths;
