@@ -9,6 +9,9 @@ use ntg_splines::Side;
 /// size in one phase. A choice.
 const AT_REST: f64 = 1e-3;
 
+/// What varies by less than this part of its largest value varies by rounding, as in (5.5a). A choice.
+const ROUNDING: f64 = 1e-10;
+
 /// By how much an output leaves the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Defect {
@@ -108,8 +111,9 @@ fn of_phase(nlp: &Transcription, phase: usize, x: &[f64]) -> Option<Defect> {
     let own = states.map(|(output, of, size)| {
         let column = equations.columns[&(output, of)];
         // By scaled time; the value of an output may be far from 0 while it rests.
-        let own = if of == 0 { 0.0 } else { high[column].abs().max(low[column].abs()) };
-        let rest = AT_REST * size.max(own);
+        let largest = high[column].abs().max(low[column].abs());
+        let own = if of == 0 { 0.0 } else { largest };
+        let rest = (AT_REST * size.max(own)).max(ROUNDING * largest);
         let of_decades = if of == 0 { signed[column].relative() } else { 0.0 };
         Defect { phase, output, relative: missed[column] / (high[column] - low[column]).max(rest), of_decades }
     });
