@@ -355,3 +355,39 @@ fn of_many_starts_the_best_is_a_motion() {
         assert!(own.clone().count() == minimum.count && own.clone().all(|start| start.objective.is_finite()));
     }
 }
+
+/// A tank in equilibrium and a circular orbit vary by the rounding of their sizes, and miss their ends by as much.
+#[test]
+fn what_rests_far_from_nothing_misses_nothing() {
+    for size in [1.0, 1.5e8, 4e-9] {
+        let tank = format!(
+            "problem Tank {{
+                const H = {size} [km];
+                duration T = 81 [day];
+                state h [km];
+                collocation gauss(points = 5, intervals = 5);
+                minimize final(h / H);
+                dynamics {{ der(h) == 0.01 [1/day] * H * (1 - sqrt(h / H)); }}
+                initial {{ h == H; }}
+            }}"
+        );
+        let orbit = format!(
+            "problem Orbit {{
+                const R = {size} [km];  const V = {size} [km] / 10 [day];
+                duration T = 146 [day];
+                state r [km], th [1], vr, vt [km/day];
+                minimize final(th);
+                dynamics {{
+                    der(r) == vr;  der(th) == vt / r;
+                    der(vr) == vt^2 / r - R * V^2 / r^2;  der(vt) == -vr * vt / r;
+                }}
+                initial {{ r == R; th == 0; vr == 0; vt == V; }}
+                collocation gauss(points = 5, intervals = 60);
+            }}"
+        );
+        for (text, known) in [(tank, 1.0), (orbit, 14.6)] {
+            let (found, report) = resolution(&text);
+            assert!(found == Resolution::Fine && (report.objective / known - 1.0).abs() < 1e-6, "{report}\n{text}");
+        }
+    }
+}
