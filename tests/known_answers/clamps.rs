@@ -28,6 +28,12 @@ fn cart(
     Shipped::text(&text).solve()
 }
 
+/// At `L` and at rest as soon as can be.
+fn soonest(second: f64) -> String {
+    let (least, most) = (0.1 * second, 10.0 * second);
+    format!("duration T in {least} .. {most} [s];  minimize T / {second} [s];  final {{ x == L; v == 0; }}")
+}
+
 const UNITS: [(f64, f64); 4] = [(1.0, 1.0), (1e-3, 1.0), (1.0, 60.0), (1e5, 10.0)];
 
 /// Beyond the dead zone `A` is left of `A + d`: `x = A (T / 2)^2`.
@@ -42,12 +48,7 @@ fn a_dead_zone_is_passed_at_both_ends() {
             ] {
                 let farthest = format!("duration T = {second} [s];  maximize final(x) / L;  final {{ v == 0; }}");
                 close(cart(law, (metre, second), mesh, &farthest).objective, 1.0, 1e-6);
-                let soonest = format!(
-                    "duration T in {} .. {} [s];  minimize T / {second} [s];  final {{ x == L; v == 0; }}",
-                    0.1 * second,
-                    10.0 * second
-                );
-                close(cart(law, (metre, second), mesh, &soonest).objective, 1.0, 1e-6);
+                close(cart(law, (metre, second), mesh, &soonest(second)).objective, 1.0, 1e-6);
             }
         }
     }
@@ -63,12 +64,7 @@ fn a_saturation_is_met_from_either_side() {
                 ("const", "min(A, max(-A, 3 * w))"),
                 ("param", "A * max(-1, min(1, 3 * w / A))"),
             ] {
-                let soonest = format!(
-                    "duration T in {} .. {} [s];  minimize T / {second} [s];  final {{ x == L; v == 0; }}",
-                    0.1 * second,
-                    10.0 * second
-                );
-                close(cart(law, (metre, second), mesh, &soonest).objective, 1.0, 1e-6);
+                close(cart(law, (metre, second), mesh, &soonest(second)).objective, 1.0, 1e-6);
             }
         }
     }
