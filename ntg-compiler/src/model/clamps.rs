@@ -6,9 +6,8 @@
 //! corners; gives them with clamped values as sums.
 
 use super::elaborator::Elaborator;
-use super::problem::Leaf;
 use super::unknowns::is_given;
-use crate::expr::{Binary, Map, Node, NodeId};
+use crate::expr::{Binary, Node, NodeId};
 
 /// A clamped value, `max(lower, min(upper, value))` or `min(upper, max(lower, value))`.
 struct Clamp {
@@ -23,6 +22,11 @@ impl Elaborator<'_> {
     /// Puts sums in the place of clamped values. Gives the corners that are gone, each with one in its place.
     pub(super) fn part_clamps(&mut self) -> Vec<(NodeId, NodeId)> {
         let mut parted = vec![];
+        let terms = self.problem.objective.iter().map(|term| term.body);
+        let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
+        if !self.has_clamps(&bodies) {
+            return parted;
+        }
         for term in 0..self.problem.objective.len() {
             let body = self.problem.objective[term].body;
             self.problem.objective[term].body = self.clamps_parted(body, &mut parted);
@@ -35,7 +39,7 @@ impl Elaborator<'_> {
     }
 
     fn clamps_parted(&mut self, root: NodeId, parted: &mut Vec<(NodeId, NodeId)>) -> NodeId {
-        if self.below(&[root]).into_iter().all(|node| self.clamp(node).is_none()) {
+        if !self.has_clamps(&[root]) {
             return root;
         }
         self.rewritten(root, |own, (id, images)| {
@@ -63,6 +67,10 @@ impl Elaborator<'_> {
         })
     }
 
+    fn has_clamps(&self, bodies: &[NodeId]) -> bool {
+        self.below(bodies).into_iter().any(|node| self.clamp(node).is_some())
+    }
+
     /// What a node clamps, if it does.
     fn clamp(&self, node: NodeId) -> Option<Clamp> {
         let dag = &self.problem.dag;
@@ -74,39 +82,5 @@ impl Elaborator<'_> {
         let (outer, bound, inner) = apart(node)?;
         let (_, far, value) = apart(inner).filter(|(op, ..)| *op != outer)?;
         (!is_given(&self.problem, value)).then_some(Clamp { outer, bounds: [bound, far], inner, value })
-    }
-
-    /// A body with other nodes in the place of some: `change` takes a node, and the images of all nodes below it.
-    pub(super) fn rewritten(
-        &mut self,
-        root: NodeId,
-        mut change: impl FnMut(&mut Self, (NodeId, &Map<NodeId, NodeId>)) -> Option<NodeId>,
-    ) -> NodeId {
-        let mut images: Map<NodeId, NodeId> = Map::default();
-        for id in self.below(&[root]) {
-            let image = match change(self, (id, &images)) {
-                Some(image) => image,
-                None => self.rebuilt(id, &images),
-            };
-            if let Some(span) = self.problem.origin.get(&id).copied().filter(|_| image != id) {
-                self.origin(image, span);
-            }
-            images.insert(id, image);
-        }
-        images[&root]
-    }
-
-    /// A node of the images of its operands.
-    pub(super) fn rebuilt(&mut self, id: NodeId, images: &Map<NodeId, NodeId>) -> NodeId {
-        let node = self.problem.dag.node(id).clone();
-        match node {
-            Node::Input(input) => match self.problem.leaves.leaf(input).clone() {
-                Leaf::Integral { phase, integrand } if images[&integrand] != integrand => {
-                    self.leaf(Leaf::Integral { phase, integrand: images[&integrand] })
-                }
-                _ => id,
-            },
-            _ => self.problem.dag.rebuild(&node, |operand| images[&operand]),
-        }
     }
 }

@@ -79,6 +79,7 @@ mod relaxed;
 mod rename;
 mod repeat;
 mod resting;
+mod rewritten;
 mod route;
 mod rows;
 mod scenarios;

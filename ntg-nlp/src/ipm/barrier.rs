@@ -14,7 +14,7 @@ const KAPPA_EPSILON: f64 = 10.0;
 /// of `examples/robustness.rs`.
 const PROMISE: f64 = 0.1;
 /// Slacks of more than this multiple of the parameter feel a residual by the part of them that it is, equation (11.6b). A fit to
-/// swarms of 6 to 16 vehicles, which take as many iterations with 100; with 1e5 most of what is gained is lost.
+/// swarms of 6 to 16 vehicles: with 1e5 most of what is gained is lost, with 100 nothing more is gained.
 const FAR: f64 = 1e3;
 /// Linear and superlinear decrease: kappa_mu and theta_mu of WB (7).
 const KAPPA_MU: f64 = 0.2;

@@ -8,8 +8,9 @@
 //! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
 //! `coarse_start` finds starts on fewer knots, `simulated_start` by simulation, `fallback` is the sequence of attempts where
 //! a solve fails, `feasible_guess` looks whether a guess was better, `tips` whether a solution at the tip of a corner is a
-//! minimum, `plateaus` whether one that does not feel some variables is, `relaxation` whether one with helpers in the place of corners meets the equations as they are written; `corner_sides`
-//! and `held_sides` say on which sides of their corners helpers are held where it does not.
+//! minimum, `plateaus` whether one that does not feel some variables is, `way_down` where either leads; `relaxation` looks whether
+//! one with helpers in the place of corners meets the equations as they are written; `corner_sides` and `held_sides` say on which
+//! sides of their corners helpers are held where it does not.
 
 mod beside;
 mod budget;
@@ -30,6 +31,7 @@ mod slopes;
 mod solve;
 mod tips;
 mod turns;
+mod way_down;
 mod winding;
 
 pub(crate) use session::{Session, Task};

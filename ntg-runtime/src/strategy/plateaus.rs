@@ -1,15 +1,14 @@
 //! Solutions on a plateau or at an inflection (docs/maths.md, section 11.13): variables that nothing feels to first order,
 //! although further away the Lagrangian falls with them.
 //!
-//! A thrust `k n |n|` has no slope at rest, an actuator with a dead zone none within it, a command beyond saturation none at all:
-//! multipliers are those of a motion without it, all conditions of first and second order hold, and a guess of 0 is such a
+//! A thrust `k n |n|` has no slope at rest, and a valve none within its dead band: multipliers are those of a motion without it, all conditions of first and second order hold, and a guess of 0 is such a
 //! point. Takes a solution; finds the variables, and how far each must go to be felt; the program to first order with slopes
 //! from there says where to begin again.
 
 use super::beside::{moved, uneven};
 use super::budget::Budget;
 use super::session::{SAME, Session};
-use super::tips::{Below, Way, below_tip, first_order};
+use super::way_down::{Below, WORTH, Way, below, first_order};
 use crate::transcribe::Transcription;
 use ntg_nlp::{Evaluation, Nlp, Outcome, Status, Target, residuals};
 
@@ -22,8 +21,6 @@ const FAR: [f64; 3] = [0.1, 0.5, 2.0];
 const ODD: f64 = 0.5;
 /// How often a solve goes on from beside a plateau. A choice.
 const ROUNDS: usize = 4;
-/// By how much the objective must promise to fall, in tolerances of what it varies by. A choice: that of tips.
-const WORTH: f64 = 100.0;
 
 impl Session {
     /// The solution, or a better one where that is on a plateau of some variables and there is one beside it.
@@ -39,7 +36,7 @@ impl Session {
                 break;
             }
             let Some(way) = way_off(nlp, &outcome, budget) else { break };
-            match below_tip(nlp, &outcome, &way, budget) {
+            match below(nlp, &outcome, &way, budget) {
                 Below::Found(next) => outcome = *next,
                 Below::Same | Below::Lost => break,
             }
@@ -73,8 +70,8 @@ fn way_off(nlp: &Transcription, outcome: &Outcome, budget: &mut Budget<'_>) -> O
     for far in FAR {
         let beside =
             |side: f64| moved(nlp, &outcome.x, |j| if is_unfelt[j] { side * far * sizes[j] * uneven(j) } else { 0.0 });
-        let (above, below) = (beside(1.0), beside(-1.0));
-        let Some(((up, _), (down, least))) = slopes_at(&above).zip(slopes_at(&below)) else { continue };
+        let (higher, lower) = (beside(1.0), beside(-1.0));
+        let Some(((up, _), (down, least))) = slopes_at(&higher).zip(slopes_at(&lower)) else { continue };
         for &j in &unfelt {
             // Slopes of opposite signs on both sides are of curvature.
             let is_curved = (up[j] + down[j]).abs() <= ODD * (up[j] - down[j]).abs();
@@ -82,9 +79,9 @@ fn way_off(nlp: &Transcription, outcome: &Outcome, budget: &mut Budget<'_>) -> O
                 continue;
             }
             if up[j] < -least {
-                moves[j] = above[j] - outcome.x[j];
+                moves[j] = higher[j] - outcome.x[j];
             } else if down[j] > least {
-                moves[j] = below[j] - outcome.x[j];
+                moves[j] = lower[j] - outcome.x[j];
             }
         }
     }
