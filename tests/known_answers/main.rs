@@ -14,6 +14,7 @@ mod curved_corners;
 mod data;
 mod decades;
 mod degenerate;
+mod derivatives;
 mod durations;
 mod equation_corners;
 mod estimates;

@@ -10,6 +10,7 @@
 //! continuations, no measurements and no probes.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 
 use ntg_structure::{
     Bounds, Call, Data, Duration, Kernel, Parameter, PhaseRef, Place, Reduction, Slot, Start, Structure, Unit, Variable,
@@ -165,7 +166,8 @@ impl Promotion<'_> {
         let data = call.slots.len() + call.reductions.len() + counts.1 - counts.0;
         let mode = if second { Mode::Solve } else { Mode::Slopes };
         let (mut shape, mut made, _) = derive(reordered(body, &positions), counts.0, data, mode);
-        without_held_second(&mut shape, &mut made, call.slots.len());
+        let held = call.slots.len()..call.slots.len() + key.1.iter().filter(|promoted| **promoted).count();
+        without_held_second(&mut shape, &mut made, &held);
         shape.name.clone_from(&self.structure.kernels[call.kernel].name);
         made.names = vec![String::new(); body.names.len()];
         for (position, name) in positions.iter().zip(&body.names) {
@@ -183,10 +185,10 @@ impl Promotion<'_> {
     }
 }
 
-/// Leaves out second derivatives by two of the slots from `first` on. What parameters decide is held: how its multipliers
-/// move nobody asks, and of the others' only how they move with it.
-fn without_held_second(shape: &mut Kernel, body: &mut KernelBody, first: usize) {
-    let kept: Vec<bool> = shape.hessian.iter().map(|(i, j)| *i < first || *j < first).collect();
+/// Leaves out second derivatives by two of the slots that are held, since parameters decide them: how their multipliers move
+/// nobody asks, and of the others' only how they move with them. Reductions, which stand behind, are not held.
+fn without_held_second(shape: &mut Kernel, body: &mut KernelBody, held: &Range<usize>) {
+    let kept: Vec<bool> = shape.hessian.iter().map(|(i, j)| !(held.contains(i) && held.contains(j))).collect();
     let mut of = kept.iter();
     shape.hessian.retain(|_| of.next().is_some_and(|kept| *kept));
     let mut of = kept.iter();

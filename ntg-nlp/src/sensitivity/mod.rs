@@ -15,6 +15,7 @@
 
 mod activity;
 mod refine;
+mod settle;
 
 pub use activity::Activity;
 
@@ -22,8 +23,9 @@ use crate::contract::{Nlp, NotFinite};
 use crate::kkt::{COLUMNS, Curvature, Held, Part, System, Weights};
 use crate::outcome::Multipliers;
 use crate::scaling::Scales;
-use activity::activity;
+use activity::{Bounded, Side, bounded};
 use refine::Work;
+use settle::Nearest;
 
 /// The weight of the squares of active rows and bounds, whose scaled slope is 1; refinement removes what it leaves.
 const PENALTY: f64 = 1e10;
@@ -33,6 +35,9 @@ const WEIGHTLESS: f64 = 1e-30;
 const FIRST_SHIFT: f64 = 1e-8;
 const SHIFT_FACTOR: f64 = 100.0;
 const LARGEST_SHIFT: f64 = 1.0;
+/// Points at most at which derivatives are taken: the one given, and those that Newton's steps lead to. A law: they converge
+/// quadratically, and the first is nearly a solution.
+const EVALUATIONS: usize = 4;
 
 /// Why there are no derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +86,13 @@ pub struct Response {
     pub variables: Vec<f64>,
 }
 
+/// A point with its multipliers, in the program's own units.
+struct Point {
+    x: Vec<f64>,
+    rows: Vec<f64>,
+    bounds: Vec<f64>,
+}
+
 /// The factorised system of one solution. `W` is the program's workspace.
 pub struct Sensitivity<W> {
     system: System<W>,
@@ -111,23 +123,56 @@ impl<W> Sensitivity<W> {
         x: &[f64],
         multipliers: Multipliers<'_>,
     ) -> Result<Self, Unavailable> {
-        let (limits, m) = (nlp.limits(), nlp.rows());
+        let limits = nlp.limits();
         let held = limits.lower.iter().zip(&limits.upper).map(|(lower, upper)| lower == upper).collect();
         let (earlier, work) = earlier.map(|earlier| (earlier.system, earlier.work)).unzip();
-        let mut system = System::for_program(earlier, nlp, is_unchanged, held);
-        system.at_solution(nlp, x, multipliers.rows).map_err(Unavailable::NotFinite)?;
-        let activity = activity(limits, &system.scales, system.latest(), (x, multipliers));
-        let mut held = vec![Held::No; system.functions()];
-        let first = system.first_variable();
-        for (function, _) in (0..m).chain(first..).zip(&activity).filter(|(_, is)| is.is_active()) {
-            held[function] = Held::Condensed;
+        let system = System::for_program(earlier, nlp, is_unchanged, held);
+        let held = vec![Held::No; system.functions()];
+        let mut found = Self { system, activity: vec![], held, shift: 0.0, work: work.unwrap_or_default() };
+        let mut at = Point { x: x.to_vec(), rows: multipliers.rows.to_vec(), bounds: multipliers.bounds.to_vec() };
+        for _ in 0..EVALUATIONS {
+            found.system.at_solution(nlp, &at.x, &at.rows).map_err(Unavailable::NotFinite)?;
+            let multipliers = Multipliers { rows: &at.rows, bounds: &at.bounds };
+            let bounded = bounded(limits, &found.system.scales, found.system.latest(), (&at.x, multipliers));
+            found.hold(&bounded);
+            found.factorise()?;
+            let (bounded, nearest) = found.settle(bounded)?;
+            found.activity = bounded.iter().map(Bounded::activity).collect();
+            match nearest {
+                Some(nearest) if nearest.is_far => found.advance(&bounded, &nearest, &mut at),
+                _ => break,
+            }
         }
-        for &row in system.border_rows().iter().filter(|&&row| activity[row].is_active()) {
-            held[row] = Held::Border;
-        }
-        let mut found = Self { system, activity, held, shift: 0.0, work: work.unwrap_or_default() };
-        found.factorise()?;
         Ok(found)
+    }
+
+    /// Moves a point and its multipliers to the nearest solution.
+    fn advance(&self, bounded: &[Bounded], nearest: &Nearest, at: &mut Point) {
+        let Scales { variables, rows, objective, .. } = &self.system.scales;
+        at.x.iter_mut().zip(&nearest.step).zip(variables).for_each(|((x, step), size)| *x += step * size);
+        let multipliers =
+            bounded.iter().zip(&nearest.multipliers).map(|(of, change)| of.held_multiplier_after(*change));
+        let factors = rows.iter().map(|factor| factor / objective);
+        let factors = factors.chain(variables.iter().map(|size| 1.0 / (size * objective)));
+        let all = at.rows.iter_mut().chain(&mut at.bounds);
+        all.zip(multipliers.zip(factors)).for_each(|(to, (multiplier, factor))| *to = multiplier * factor);
+    }
+
+    /// The functions that have bounds: rows, then variables.
+    fn bounded_functions(&self) -> impl Iterator<Item = usize> + Clone + use<W> {
+        (0..self.system.objective()).chain(self.system.first_variable()..self.system.functions())
+    }
+
+    /// Marks the functions that are at a bound which is taken to hold them.
+    fn hold(&mut self, bounded: &[Bounded]) {
+        for (function, of) in self.bounded_functions().zip(bounded) {
+            self.held[function] = if of.side == Side::Free { Held::No } else { Held::Condensed };
+        }
+        for &row in self.system.border_rows() {
+            if self.held[row] != Held::No {
+                self.held[row] = Held::Border;
+            }
+        }
     }
 
     /// Whether each row is at a bound.

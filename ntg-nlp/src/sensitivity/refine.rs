@@ -30,6 +30,18 @@ pub(super) struct Work {
     multipliers: Vec<Columns>,
 }
 
+impl Work {
+    /// The scaled steps of the variables, and the padding entry, for one right-hand side.
+    pub(super) fn steps(&self, k: usize) -> impl Iterator<Item = f64> {
+        self.x.iter().map(move |x| x[k])
+    }
+
+    /// The scaled changes of the functions' multipliers for one right-hand side.
+    pub(super) fn multipliers(&self, k: usize) -> impl Iterator<Item = f64> {
+        self.y.iter().map(move |y| y[k])
+    }
+}
+
 impl<W> Sensitivity<W> {
     /// Right-hand sides of 0.
     pub(super) fn clear(&mut self) {

@@ -89,6 +89,32 @@ fn a_bound_that_is_met_by_chance_is_weakly_active() {
     assert!(matches!(sensitivity.variables()[0], Activity::Weak { .. }), "{:?}", sensitivity.variables());
 }
 
+/// `y <= roof` and `y <= roof + gap`, where `y` is wanted large: at the end of a barrier method both have a small distance
+/// and a large multiplier, and both cannot hold.
+#[test]
+fn of_bounds_close_to_each_other_the_one_that_holds_moves_the_solution() {
+    for gap in [1e-2, 1e-4, 1e-6, 1e-7] {
+        let program = Program::dense(&[(-INF, INF)], &[(-INF, 1.0), (-INF, 1.0 + gap)], |v, out| {
+            out.set_value(0, 0.5 * (v[0] - 2.0).powi(2));
+            out.set_gradient(0, &[v[0] - 2.0]);
+            out.set_hessian(0, &[1.0]);
+            for row in [1, 2] {
+                out.set_value(row, v[0]);
+                out.set_gradient(row, &[1.0]);
+            }
+        });
+        for tolerance in [1e-6, 1e-8] {
+            let options = Options { tolerance, constraint_tolerance: tolerance, ..Options::default() };
+            let outcome = ipm::solve(&program, &[0.0], &options);
+            let mut sensitivity = Sensitivity::new(&program, &outcome.x, outcome.multipliers()).expect("it has one");
+            assert_eq!(sensitivity.rows(), [Activity::Active, Activity::Inactive], "{gap} {tolerance}");
+            let response = one(&mut sensitivity, &[1.0, 0.5], &[0.0]).expect("a derivative");
+            near(&response.x, &[1.0]);
+            near(&response.rows, &[1.0, 0.0]);
+        }
+    }
+}
+
 #[test]
 fn bounds_that_contradict_each_other_as_soon_as_they_move_have_no_derivative() {
     // Two equalities say the same; one of them moves.
