@@ -15,6 +15,7 @@ use ntg_runtime::problem::WithStructure;
 use ntg_runtime::settings::Settings;
 use ntg_runtime::status::Bounded;
 use ntg_runtime::transcribe::{SetupError, Transcription};
+use ntg_structure::Unit;
 use serde_json::json;
 
 use crate::arguments::Format;
@@ -128,7 +129,7 @@ impl Read {
     fn posed_at(&self, path: &Path) -> Result<WithStructure<'_>, String> {
         let missed = |problem: &WithStructure<'_>| -> Result<f64, String> {
             let mut nlp = Transcription::new(problem).map_err(|error| self.said(error))?;
-            let found = self.measured(path, &mut nlp)?.0;
+            let found = self.measured(path, &mut nlp)?.solution;
             let judged = judge(&nlp, Point { x: &found.x, multipliers: None });
             Ok(judged.map_or(f64::INFINITY, |judged| judged.missed.iter().map(|missed| missed.relative).sum()))
         };
@@ -143,12 +144,12 @@ impl Read {
         Ok(posed)
     }
 
-    /// A point, and whether it was saved on other splines; the program gets sizes.
-    fn measured(&self, path: &Path, nlp: &mut Transcription<'_>) -> Result<(Solution, bool), String> {
+    /// A point that was saved; the program gets sizes.
+    fn measured(&self, path: &Path, nlp: &mut Transcription<'_>) -> Result<Found, String> {
         let found = point(path, self, nlp)?;
         let sizes_from = start(nlp, self.guess.as_ref()).map_err(|error| self.said(error))?;
         nlp.set_scales(&sizes_from, &Settings::default()).map_err(|error| self.said(error))?;
-        nlp.take_smaller_sizes(&found.0.x);
+        nlp.take_smaller_sizes(&found.solution.x);
         Ok(found)
     }
 
@@ -191,7 +192,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     let read = arguments.problem.read()?;
     let problem = read.posed_at(&arguments.point)?;
     let mut nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
-    let (found, is_interpolated) = read.measured(&arguments.point, &mut nlp)?;
+    let Found { solution: found, is_interpolated, of_others } = read.measured(&arguments.point, &mut nlp)?;
     nlp.hold_sides(&found.x);
     let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
     // The judge minimises.
@@ -206,6 +207,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         read: &read,
         found: &found,
         is_interpolated,
+        of_others,
         judged: &judged,
         objective,
         is_solution: worst <= tolerance && as_written.is_empty(),
@@ -227,8 +229,16 @@ fn name(nlp: &Transcription<'_>, of: Bounded) -> String {
     }
 }
 
+/// The unit in which what is bounded is shown.
+fn unit(nlp: &Transcription<'_>, of: Bounded) -> Unit {
+    match of {
+        Bounded::Row(row) => nlp.row_unit(row),
+        Bounded::Variable(variable) => nlp.variable_unit(variable),
+    }
+}
+
 /// Reads a point from a solver's file or from a saved solution, which is interpolated where its splines are others.
-fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<(Solution, bool), String> {
+fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Found, String> {
     if path.extension().is_none_or(|extension| extension != "sol") {
         let or_solver = |error: String| match error.ends_with(SAVED) {
             true => format!("{error}, or the `.sol` of a solver"),
@@ -237,14 +247,29 @@ fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<(Solution,
         let (guess, is_same, saved) = guess::read_point(path, &read.problem).map_err(or_solver)?;
         let x = start(nlp, Some(&guess)).map_err(|error| read.said(error))?;
         let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
+        let of_others = saved.as_ref().map_or(0, Vec::len);
         let multipliers =
             saved.filter(|saved| saved.len() == nlp.rows()).map(|saved| saved.iter().map(|y| sign * y).collect());
-        return Ok((Solution { message: String::new(), x, multipliers }, !is_same));
+        return Ok(Found {
+            solution: Solution { message: String::new(), x, multipliers },
+            is_interpolated: !is_same,
+            of_others,
+        });
     }
     let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
     let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
     let read = Solution::read(&text, &Order::of(&expressions));
-    read.map(|found| (found, false)).map_err(|error| format!("`{}`: {error}", path.display()))
+    read.map(|solution| Found { solution, is_interpolated: false, of_others: 0 })
+        .map_err(|error| format!("`{}`: {error}", path.display()))
+}
+
+/// What a file has.
+struct Found {
+    solution: Solution,
+    /// Whether it was saved on other splines.
+    is_interpolated: bool,
+    /// How many multipliers were saved with it.
+    of_others: usize,
 }
 
 /// What is printed.
@@ -254,6 +279,8 @@ struct Said<'a> {
     found: &'a Solution,
     /// Whether the point was saved on other splines.
     is_interpolated: bool,
+    /// How many multipliers were saved with the point.
+    of_others: usize,
     judged: &'a Judgement,
     objective: f64,
     /// Equations that are met with helpers in the place of their corners alone, and by how much they are missed.
@@ -273,28 +300,35 @@ impl Said<'_> {
     }
 
     fn text(&self) -> String {
-        let unit = &self.read.program.structure.objective_unit.symbol;
+        let objective_unit = &self.read.program.structure.objective_unit.symbol;
         let mut lines = vec![];
         lines.extend(self.found.message.lines().map(|line| format!("solver:           {line}")));
         if self.is_interpolated {
             lines.push("point:            interpolated: it was saved by a problem with other splines".to_owned());
         }
-        lines.push(format!("objective:        {:.10e} {unit}", self.objective).trim_end().to_owned());
+        lines.push(format!("objective:        {:.10e} {objective_unit}", self.objective).trim_end().to_owned());
         lines.push(format!("violation:        {:.3e} (relative)", self.judged.violation()));
         match &self.judged.optimality {
             Some([stationarity, complementarity]) => {
                 lines.push(format!("stationarity:     {:.3e} (relative)", stationarity.relative));
                 lines.push(format!("complementarity:  {:.3e} (relative)", complementarity.relative));
             }
+            None if self.of_others > 0 => lines.push(format!(
+                "optimality:       not known, the point has the {} multipliers of another program than this one with {} rows",
+                self.of_others,
+                self.nlp.rows()
+            )),
             None => lines.push("optimality:       not known, the point has no multipliers".to_owned()),
         }
         let is_told = |missed: &&Missed| missed.relative > self.tolerance || missed.relative.is_nan();
         let told = self.judged.missed.iter().filter(is_told);
         for Missed { of, value, violation, relative } in told.clone().take(LISTED) {
-            let name = name(self.nlp, *of);
-            lines.push(format!(
-                "  {name} is {value:.6e} and misses its bound by {violation:.3e} ({relative:.1e} relative)"
-            ));
+            let (name, unit) = (name(self.nlp, *of), unit(self.nlp, *of));
+            let shown = |number: f64, digits: usize| {
+                format!("{:.digits$e} {}", number / unit.factor, unit.symbol).trim_end().to_owned()
+            };
+            let (value, violation) = (shown(*value, 6), shown(*violation, 3));
+            lines.push(format!("  {name} is {value} and misses its bound by {violation} ({relative:.1e} relative)"));
         }
         if let more @ 1.. = told.count().saturating_sub(LISTED) {
             lines.push(format!("  and {more} more"));
@@ -311,7 +345,14 @@ impl Said<'_> {
     fn json(&self) -> serde_json::Value {
         let missed = self.judged.missed.iter().map(|missed| {
             let Missed { of, value, violation, relative } = missed;
-            json!({ "name": name(self.nlp, *of), "value": value, "violation": violation, "relative": relative })
+            let unit = unit(self.nlp, *of);
+            json!({
+                "name": name(self.nlp, *of),
+                "unit": unit.symbol,
+                "value": value / unit.factor,
+                "violation": violation / unit.factor,
+                "relative": relative,
+            })
         });
         let as_written = self.as_written.iter().map(|(name, missed)| json!({ "name": name, "relative": missed }));
         let residual = |which: usize| {

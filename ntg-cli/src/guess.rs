@@ -49,9 +49,10 @@ fn saved(path: &Path) -> Result<Value, String> {
 /// The guess that a saved solution is. That of a problem without a common output is none.
 fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String> {
     let structure = problem.structure();
-    if saved["layout"] == layout(&structure)
-        && let Some(unknowns) = numbers(&saved["unknowns"])
-    {
+    if saved["layout"] == layout(&structure) && saved["unknowns"].is_array() {
+        let Some(unknowns) = numbers(&saved["unknowns"]) else {
+            return Err(format!("`{}`: not all of `unknowns` are finite numbers", path.display()));
+        };
         check_units(saved, path, &structure)?;
         return Ok(Guess::saved(unknowns));
     }

@@ -98,6 +98,50 @@ fn a_point_that_meets_all_constraints_is_called_a_solution_only_by_its_multiplie
     assert!(old.contains("the point has no multipliers") && old.ends_with(words), "{old}");
 }
 
+/// Two satellites far out, whose distance is small beside where they are: a limit is missed by what it is, in its unit.
+#[test]
+fn what_a_limit_is_missed_by_is_relative_to_the_limit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = |gap: &str| {
+        format!(
+            "problem Gap {{
+                duration T = 100 [s];
+                output x, y [km]: spline(order = 5, intervals = 4);
+                minimize integral(der(x, 2)^2 + der(y, 2)^2) * 1 [s^3/m^2];
+                initial {{ x == 7000 [km]; y == 7000 [km]; }}
+                final {{ x == 7010 [km]; y == 7010 [km]; }}
+                {gap}
+            }}"
+        )
+    };
+    std::fs::write(folder.path().join("far.ntg"), spec("at 50 [s] { x == y + 0.8 [m]; }")).expect("written");
+    std::fs::write(folder.path().join("gap.ntg"), spec("trajectory { gap: -50 [cm] <= x - y <= 50 [cm]; }"))
+        .expect("written");
+    let solved = ntg(&["solve", "far.ntg", "--save", "run.json"], folder.path());
+    assert_eq!(solved.status.code(), Some(0), "{}", text(&solved.stderr));
+    let check = |more: &[&str]| ntg(&[&["check-solution", "gap.ntg", "run.json"], more].concat(), folder.path());
+    let said = text(&check(&[]).stdout);
+    assert!(said.ends_with("\nno solution\n"), "{said}");
+    assert!(
+        said.contains("`gap`")
+            && said.contains("is 8.000000e-4 km and misses its bound by 3.000e-4 km (6.0e-1 relative)"),
+        "{said}"
+    );
+    let found: Value = serde_json::from_str(&text(&check(&["--format", "json"]).stdout)).expect("JSON");
+    assert_eq!(found["missed"][0]["unit"], "km");
+    // Another limit has another number of rows, and its multipliers say nothing here.
+    std::fs::write(folder.path().join("two.ntg"), spec("trajectory { far: x >= 0; high: y >= 0; }")).expect("written");
+    let two = text(&ntg(&["check-solution", "two.ntg", "run.json"], folder.path()).stdout);
+    assert!(two.contains("multipliers of another program"), "{two}");
+    // A number that is none.
+    let saved = std::fs::read_to_string(folder.path().join("run.json")).expect("saved");
+    let mut saved: Value = serde_json::from_str(&saved).expect("JSON");
+    saved["unknowns"][3] = Value::Null;
+    std::fs::write(folder.path().join("run.json"), saved.to_string()).expect("written");
+    let refused = check(&[]);
+    assert!(text(&refused.stderr).contains("not all of `unknowns` are finite numbers"), "{}", text(&refused.stderr));
+}
+
 /// A guess at which a current is 1e20 A/m^2 tells a size of the energy beside which any initial value is 0.
 #[test]
 fn a_point_is_judged_by_what_it_is_and_not_by_a_guess_at_which_terms_explode() {

@@ -9,7 +9,8 @@
 //! is the multiplier of that variable's bounds (positive: of the lower one), so nothing else has to be known. Where the bound
 //! that a multiplier belongs to is infinite, the multiplier is an error of stationarity; where it is finite, its product
 //! with the distance to it is an error of complementarity (Nocedal and Wright, *Numerical Optimization*, theorem 12.1).
-//! Errors are given as they are, and relative to sizes that do not depend on units: a row's is the largest of its bounds
+//! Errors are given as they are, and relative to sizes that do not depend on units: that of an inequality is the bound that is
+//! missed, where it is not 0 (docs/maths.md, equation 9.3); that of other rows is the largest of the bounds
 //! and of the terms `J[i][j] size[j]`, with the typical sizes of the variables; stationarity's is the largest of the terms
 //! `grad f[j] size[j]` and `J[i][j] y[i] size[j]` of the whole program; complementarity's is that and the objective.
 
@@ -18,6 +19,9 @@ use ntg_runtime::status::Bounded;
 
 /// How far beside a point the size of an objective is looked for: a part of the variables' typical sizes.
 const BESIDE: f64 = 0.01;
+/// A bound below this part of the terms of its row is what rounding leaves of 0, as `cos(90 [deg])` is. A law: some thousand
+/// roundings.
+const NOTHING: f64 = 1e-12;
 /// The golden ratio, whose multiples are spread evenly.
 const GOLDEN: f64 = 1.618_033_988_749_895;
 
@@ -30,7 +34,7 @@ pub struct Missed {
     pub value: f64,
     /// By how much its nearer bound is missed, SI.
     pub violation: f64,
-    /// The same by the size of the row's terms.
+    /// The same by the bound, or by the size of the row's terms.
     pub relative: f64,
 }
 
@@ -128,7 +132,9 @@ fn missed<N: Nlp>(nlp: &N, x: &[f64], rows: &[f64], sizes: &[f64]) -> Vec<Missed
     };
     let one = |of, value: f64, (lower, upper): (f64, f64), least: f64| {
         let violation = outside(value, lower, upper);
-        let size = size(lower, upper, least);
+        let bound = if value < lower { lower } else { upper };
+        let is_meant = lower != upper && bound.abs() > NOTHING * least;
+        let size = if is_meant { bound.abs() } else { size(lower, upper, least) };
         let relative = if size > 0.0 { violation / size } else { violation };
         Missed { of, value, violation, relative }
     };

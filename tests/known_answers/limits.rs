@@ -202,3 +202,32 @@ fn a_far_bound_hides_nothing() {
         assert!((missed(far) / open - 1.0).abs() < 1e-2, "{far}");
     }
 }
+
+/// `abs(f) <= c` has two sides, and an input in the middle of both is at 0: it was guessed one unit beside one of them, so that
+/// least times of pN, or of 1e-6 m/s^2, were lost, or ended at the least duration as solved.
+#[test]
+fn a_limit_of_a_size_is_one_from_both_sides_in_any_unit() {
+    for size in [1e-15, 1e-9, 1e-4, 1.0, 1e4, 1e12] {
+        for limit in ["abs(f) <= F", "max(f, -f) <= F", "abs(f / F) <= 1", "norm((f, 0 * f)) <= F", "-F <= f <= F"] {
+            for kind in ["const", "param"] {
+                let report = solved(&format!(
+                    "problem Cart {{
+                        {kind} F = {size} [N];
+                        const m = {size} [kg];
+                        duration T in 0.05 .. 20 [s];
+                        state x [m], v [m/s];
+                        input f [N];
+                        collocation gauss(points = 3, intervals = 10);
+                        dynamics {{ der(x) == v;  m * der(v) == f; }}
+                        initial {{ x == 0;  v == 0; }}
+                        final {{ x == 1 [m];  v == 0; }}
+                        trajectory {{ {limit}; }}
+                        minimize T;
+                    }}"
+                ));
+                assert!(report.is_solved() && report.iterations <= 25, "{kind} {limit} {size}\n{report}");
+                close(report.objective, 2.0, 1e-6);
+            }
+        }
+    }
+}

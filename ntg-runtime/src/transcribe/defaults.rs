@@ -248,19 +248,25 @@ fn bounds_by(nlp: &Transcription, phase: usize, output: usize, counts: impl Fn(u
                 active().all(|(v, c)| coefficients.binary_search(v).is_ok() && *c > 0.0)
                     && (active().map(|(_, c)| c).sum::<f64>() - 1.0).abs() < 1e-9
             };
-            let here = |element: &usize| group.batch.sites[*element].point.phase == Some(phase) && is_own(*element);
-            let Some(element) = (0..block.elements).find(here) else { continue };
-            let Target::Row(target) = block.target[row * block.elements + element] else { continue };
-            let Some((slope, offset)) = nlp.frame().line(group, element, row, slot) else { continue };
-            let rows = &nlp.limits;
-            let ends = [rows.row_lower[target as usize], rows.row_upper[target as usize]].map(|b| (b - offset) / slope);
-            let (lower, upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-            if lower == f64::NEG_INFINITY && upper == f64::INFINITY {
-                // It is not posed.
-                continue;
+            let point = |element: usize| &group.batch.sites[element].point;
+            let here = |element: &usize| point(*element).phase == Some(phase) && is_own(*element);
+            let Some(first) = (0..block.elements).find(here) else { continue };
+            // Several members may limit it there: the sides of `abs(u) <= c` are two.
+            let there = |element: &usize| point(*element).tau == point(first).tau && here(element);
+            for element in (first..block.elements).filter(there) {
+                let Target::Row(target) = block.target[row * block.elements + element] else { continue };
+                let Some((slope, offset)) = nlp.frame().line(group, element, row, slot) else { continue };
+                let rows = &nlp.limits;
+                let ends =
+                    [rows.row_lower[target as usize], rows.row_upper[target as usize]].map(|b| (b - offset) / slope);
+                let (lower, upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+                if lower == f64::NEG_INFINITY && upper == f64::INFINITY {
+                    // It is not posed.
+                    continue;
+                }
+                let held = found.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+                found = Some((held.0.max(lower), held.1.min(upper)));
             }
-            let held = found.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            found = Some((held.0.max(lower), held.1.min(upper)));
         }
     }
     found

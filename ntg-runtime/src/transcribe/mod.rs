@@ -264,7 +264,7 @@ impl<'p> Transcription<'p> {
     }
 
     /// The unit of the spec in which row `row` is shown.
-    pub(crate) fn row_unit(&self, row: usize) -> Unit {
+    pub fn row_unit(&self, row: usize) -> Unit {
         match self.elements.rows.get(row).map(|info| info.kind) {
             Some(RowKind::Constraint(constraint)) => self.model.structure.constraints[constraint].unit.clone(),
             Some(RowKind::Integral(_)) | None => Unit::default(),
@@ -272,7 +272,7 @@ impl<'p> Transcription<'p> {
     }
 
     /// The unit of the spec in which variable `variable` of the program is shown.
-    pub(crate) fn variable_unit(&self, variable: usize) -> Unit {
+    pub fn variable_unit(&self, variable: usize) -> Unit {
         let (structure, layout) = (&self.model.structure, &self.model.layout);
         let is = |candidate: u32| candidate as usize == variable;
         for phase in &layout.phases {
