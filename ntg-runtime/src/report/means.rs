@@ -11,6 +11,8 @@ use ntg_splines::Side;
 
 /// Breakpoints nearer to each other than this are one.
 const SAME: f64 = 1e-12;
+/// What the weights of an interval may differ from its length by. A law: some rounding.
+const WHOLE: f64 = 1e-9;
 
 /// The multipliers of one member of a constraint in one phase.
 #[derive(Debug, Default)]
@@ -57,7 +59,25 @@ impl Masses {
         settled(&mut intervals);
         let each = ends.iter().zip(ends.iter().skip(1)).zip(&intervals);
         let held = each.filter(|(_, (_, length))| *length > 0.0);
-        held.map(|((from, to), (mass, length))| (*from, *to, mass / length)).collect()
+        let (first, last) = self.part();
+        held.map(|((from, to), (mass, length))| {
+            let (from, to) = (from.max(first), to.min(last));
+            // Weights add up to the length of an interval, but to no part of one.
+            let told = (to - from) * duration;
+            let is_whole = (told - length).abs() <= WHOLE * told;
+            (from, to, mass / if is_whole { *length } else { told })
+        })
+        .collect()
+    }
+
+    /// Where the constraint holds: from one point without a weight, which is an end of it, to another one.
+    fn part(&self) -> (f64, f64) {
+        let by_time = |a: &&(Point, f64), b: &&(Point, f64)| a.0.tau.total_cmp(&b.0.tau);
+        let end = |row: Option<&(Point, f64)>, otherwise: f64| match row {
+            Some((point, _)) if !point.weight.is_finite() => point.tau,
+            _ => otherwise,
+        };
+        (end(self.rows.iter().min_by(by_time), 0.0), end(self.rows.iter().max_by(by_time), 1.0))
     }
 }
 
