@@ -542,3 +542,27 @@ fn a_variable_that_limits_an_acceleration_is_as_large() {
         }
     }
 }
+
+/// The shortest way over a corner, in any unit of length and of time: the helper of the norm has the size of the way.
+#[test]
+fn a_distance_that_is_minimised_has_its_own_size() {
+    for (metre, second) in [(1e-6, 1.0), (1e-3, 1e3), (1.0, 1.0), (1e3, 1.0), (1e5, 1e-2), (1e7, 1e4)] {
+        let report = Shipped::text(&format!(
+            "problem Way {{
+                const L = {metre};
+                duration T = {second};
+                state x, y;
+                input p, q;
+                collocation gauss(points = 3, intervals = 12);
+                dynamics {{ der(x) == p;  der(y) == q; }}
+                initial {{ x == 0;  y == 0; }}
+                at T / 2 {{ x == 0;  y == 8 * L; }}
+                final {{ x == 6 * L;  y == 8 * L; }}
+                minimize integral(norm((p, q)));
+            }}"
+        ))
+        .solve();
+        close(report.objective, 14.0 * metre, 1e-6);
+        assert!(report.iterations <= 60, "{metre} {second}\n{report}");
+    }
+}

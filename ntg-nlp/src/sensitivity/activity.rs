@@ -90,7 +90,7 @@ impl Bounded {
     }
 
     /// By how much the value has to change to be at the bound that holds it.
-    pub(super) fn to_bound(&self) -> f64 {
+    pub(super) fn change_to_bound(&self) -> f64 {
         match self.side {
             Side::Free => 0.0,
             Side::Lower | Side::Both => -self.distance[0],

@@ -113,7 +113,7 @@ impl<W> Sensitivity<W> {
         let mut weights = vec![0.0; self.system.functions()];
         for (function, of) in self.bounded_functions().zip(bounded) {
             weights[function] = of.held_multiplier();
-            self.work.rows[function][0] = of.to_bound();
+            self.work.rows[function][0] = of.change_to_bound();
         }
         weights[self.system.objective()] = -1.0;
         let mut left = vec![0.0; self.work.left.len()];

@@ -98,7 +98,10 @@ impl Session {
                         (from, again) = (Start::Near, Some(first.clone()));
                     }
                 }
-                None => nlp.set_scales(&first, settings)?,
+                None => {
+                    nlp.set_scales(&first, settings)?;
+                    nlp.guess_helpers(&mut first);
+                }
             }
             if let Some(last) = last.as_ref().filter(|last| last.status.has_solution()) {
                 from = Start::Warm(last.multipliers());

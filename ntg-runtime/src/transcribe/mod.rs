@@ -25,6 +25,7 @@ mod evaluate;
 mod fault;
 mod folded;
 pub(crate) mod frame;
+mod helper_sizes;
 mod implied;
 pub(crate) mod instances;
 pub(crate) mod layout;

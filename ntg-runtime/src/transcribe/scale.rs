@@ -13,7 +13,7 @@ use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
 use ntg_nlp::multiples;
 use ntg_structure::{Family, GuessKind, Unit};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
@@ -203,8 +203,12 @@ impl Transcription<'_> {
             self.balance_sizes(&groups, (&guess, &sizes), scale);
         }
         let sizes: Vec<f64> = quantities.iter().map(|quantity| largest(quantity, scale)).collect();
-        let own = guessed.iter().zip(&sizes).map(|(guessed, size)| if guessed == size { *size } else { 0.0 });
-        let kinds = Kinds::of(quantities.iter().zip(own));
+        // One unit for want of a guess is no example of its kind.
+        let is_example = |quantity: &&Quantity| !is_unit(quantity) || is_told(quantity);
+        let own = quantities.iter().zip(guessed.iter().zip(&sizes)).map(|(quantity, (guessed, size))| {
+            (quantity, if guessed == size && is_example(&quantity) { *size } else { 0.0 })
+        });
+        let kinds = Kinds::of(own);
         for ((quantity, guessed), size) in quantities.iter().zip(&guessed).zip(sizes) {
             let Some((least, most)) = kinds.range(quantity).filter(|_| *guessed != size) else { continue };
             // What has a guess, however small, is of the kind; what has none may differ by more.
@@ -214,7 +218,25 @@ impl Transcription<'_> {
                 quantity.coefficients.iter().for_each(|v| scale[*v as usize] = size);
             }
         }
+        let is_helper = |quantity: &&Quantity| is_unit(quantity) && ntg_structure::is_helper(quantity.name);
+        let helpers = outputs.iter().filter(is_helper).map(|own| own.coefficients.clone()).collect::<Vec<_>>();
+        if !helpers.is_empty() {
+            let sizes = self.helper_sizes(&helpers, &guess, scale);
+            let found = helpers.iter().zip(sizes).filter_map(|(own, size)| Some((own, size?)));
+            found.for_each(|(own, size)| own.iter().for_each(|v| scale[*v as usize] = size));
+        }
         doubtful
+    }
+
+    /// Gives helpers that nobody has guessed, which are one unit everywhere, their size: at the tip of a cone, where one unit
+    /// is next to nothing, it tells no direction. Afterwards their size by the guess is the same.
+    pub(crate) fn guess_helpers(&self, x: &mut [f64]) {
+        let helpers: BTreeSet<u32> = self.helpers().collect();
+        for (own, unit) in self.groups() {
+            if own.iter().all(|v| x[*v as usize] == unit && helpers.contains(v)) {
+                own.iter().for_each(|v| x[*v as usize] = self.limits.scale[*v as usize]);
+            }
+        }
     }
 
     /// Replaces sizes that a point shows to be too large, if it is a solution (docs/maths.md, section 11.12): what a solution
