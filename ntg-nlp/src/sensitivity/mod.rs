@@ -35,9 +35,6 @@ const WEIGHTLESS: f64 = 1e-30;
 const FIRST_SHIFT: f64 = 1e-8;
 const SHIFT_FACTOR: f64 = 100.0;
 const LARGEST_SHIFT: f64 = 1.0;
-/// Points at most at which derivatives are taken: the one given, and those that Newton's steps lead to. A law: they converge
-/// quadratically, and the first is nearly a solution.
-const EVALUATIONS: usize = 4;
 
 /// Why there are no derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,25 +126,28 @@ impl<W> Sensitivity<W> {
         let system = System::for_program(earlier, nlp, is_unchanged, held);
         let held = vec![Held::No; system.functions()];
         let mut found = Self { system, activity: vec![], held, shift: 0.0, work: work.unwrap_or_default() };
-        let mut at = Point { x: x.to_vec(), rows: multipliers.rows.to_vec(), bounds: multipliers.bounds.to_vec() };
-        for _ in 0..EVALUATIONS {
-            found.system.at_solution(nlp, &at.x, &at.rows).map_err(Unavailable::NotFinite)?;
-            let multipliers = Multipliers { rows: &at.rows, bounds: &at.bounds };
-            let bounded = bounded(limits, &found.system.scales, found.system.latest(), (&at.x, multipliers));
-            found.hold(&bounded);
+        let at = Point { x: x.to_vec(), rows: multipliers.rows.to_vec(), bounds: multipliers.bounds.to_vec() };
+        found.evaluate(nlp, &at)?;
+        let first = bounded(limits, &found.system.scales, found.system.latest(), (x, multipliers));
+        found.hold(&first);
+        found.factorise()?;
+        let (bounded, nearest) = found.settle(first)?;
+        found.activity = bounded.iter().map(Bounded::activity).collect();
+        if let Some(nearest) = nearest.filter(|nearest| nearest.is_far) {
+            let at = found.moved(&bounded, &nearest, at);
+            found.evaluate(nlp, &at)?;
             found.factorise()?;
-            let (bounded, nearest) = found.settle(bounded)?;
-            found.activity = bounded.iter().map(Bounded::activity).collect();
-            match nearest {
-                Some(nearest) if nearest.is_far => found.advance(&bounded, &nearest, &mut at),
-                _ => break,
-            }
         }
         Ok(found)
     }
 
-    /// Moves a point and its multipliers to the nearest solution.
-    fn advance(&self, bounded: &[Bounded], nearest: &Nearest, at: &mut Point) {
+    /// Takes derivatives at a point with its multipliers.
+    fn evaluate<N: Nlp<Workspace = W>>(&mut self, nlp: &N, at: &Point) -> Result<(), Unavailable> {
+        self.system.at_solution(nlp, &at.x, &at.rows).map_err(Unavailable::NotFinite)
+    }
+
+    /// A point and its multipliers, moved to the nearest solution.
+    fn moved(&self, bounded: &[Bounded], nearest: &Nearest, mut at: Point) -> Point {
         let Scales { variables, rows, objective, .. } = &self.system.scales;
         at.x.iter_mut().zip(&nearest.step).zip(variables).for_each(|((x, step), size)| *x += step * size);
         let multipliers =
@@ -156,6 +156,7 @@ impl<W> Sensitivity<W> {
         let factors = factors.chain(variables.iter().map(|size| 1.0 / (size * objective)));
         let all = at.rows.iter_mut().chain(&mut at.bounds);
         all.zip(multipliers.zip(factors)).for_each(|(to, (multiplier, factor))| *to = multiplier * factor);
+        at
     }
 
     /// The functions that have bounds: rows, then variables.

@@ -60,7 +60,16 @@ impl<W> Sensitivity<W> {
     /// Solves the system for the scaled right-hand sides in `work.left` and `work.rows`, by refinement of what the factors
     /// give. How variables that are held move is known from the beginning: the first pass concerns one part, later ones
     /// another.
-    pub(super) fn solve(&mut self, (first_part, later): (Part, Part)) -> Result<(), Unavailable> {
+    pub(super) fn solve(&mut self, parts: (Part, Part)) -> Result<(), Unavailable> {
+        self.solve_within(REFINEMENTS, parts)
+    }
+
+    /// As [`Sensitivity::solve`], with so many refinements at most.
+    pub(super) fn solve_within(
+        &mut self,
+        refinements: usize,
+        (first_part, later): (Part, Part),
+    ) -> Result<(), Unavailable> {
         let first = self.system.first_variable();
         let Work { x, left, rows, step, .. } = &mut self.work;
         for (j, _) in self.system.held().iter().enumerate().filter(|(_, held)| **held) {
@@ -70,13 +79,13 @@ impl<W> Sensitivity<W> {
         let mut sizes = self.pass(first_part, &mut terms, true);
         terms.rows = both(terms.rows, sizes.rows, larger);
         let (mut before, mut least, mut open) = ([f64::INFINITY; COLUMNS], [f64::INFINITY; COLUMNS], [true; COLUMNS]);
-        for round in 0..=REFINEMENTS {
+        for round in 0..=refinements {
             let relative = self.relative(&sizes, &terms);
             for k in 0..COLUMNS {
                 let is_best = relative[k] < least[k];
                 least[k] = if is_best { relative[k] } else { least[k] };
                 let is_stuck = least[k] <= ALLOWED && relative[k] > 0.5 * before[k];
-                let is_last = !relative[k].is_finite() || relative[k] <= REFINED || is_stuck || round == REFINEMENTS;
+                let is_last = !relative[k].is_finite() || relative[k] <= REFINED || is_stuck || round == refinements;
                 if open[k] && is_last {
                     open[k] = false;
                     self.close(k, is_best);

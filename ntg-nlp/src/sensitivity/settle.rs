@@ -21,6 +21,8 @@ const ROUNDS: usize = 100;
 /// Changes of variables beside their sizes, and of multipliers beside the largest one, that are more than the error of second
 /// order that is left. A choice.
 const FAR: f64 = 1e-6;
+/// Refinements at most: two or three are usual, and what is left of contradictions does not become less. A choice.
+const REFINEMENTS: usize = 8;
 /// A multiplier counts as 0 below this fraction of the largest one. A law: some thousand roundings.
 const ROUNDING: f64 = 1e-12;
 
@@ -30,7 +32,7 @@ pub(super) struct Nearest {
     pub(super) step: Vec<f64>,
     /// The changes of the multipliers of all rows and variables.
     pub(super) multipliers: Vec<f64>,
-    /// Whether derivatives there are others than at the point.
+    /// Whether other bounds hold there, and multipliers differ by so much that derivatives do.
     pub(super) is_far: bool,
 }
 
@@ -73,31 +75,31 @@ impl<W> Sensitivity<W> {
     /// Moves sides until the bounds that hold are those of the nearest solution; none where that is not reached.
     fn nearest(&mut self, bounded: &mut [Bounded]) -> Option<Nearest> {
         let mut at = vec![0.0; bounded.len()];
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             let least = self.least(bounded)?;
-            let (changed, side) = match first_met(bounded, &at, &least.values).filter(|_| least.is_resolved) {
+            let change = match first_met(bounded, &at, &least.values).filter(|_| least.is_resolved) {
                 Some((length, met, side)) => {
                     at.iter_mut().zip(&least.values).for_each(|(at, to)| *at += length * (to - *at));
-                    (met, side)
+                    Some((met, side))
                 }
                 None => {
                     if least.is_resolved {
                         at.copy_from_slice(&least.values);
                     }
-                    match least_held(bounded, &least.multipliers) {
-                        Some(worst) => (worst, Side::Free),
-                        None if least.is_resolved => {
-                            let changes = least.values.iter().zip(&least.multipliers);
-                            for (own, (value, multiplier)) in bounded.iter_mut().zip(changes) {
-                                own.note(*value, *multiplier);
-                                own.is_undecided = false;
-                            }
-                            let is_far = least.is_far(bounded);
-                            return Some(Nearest { step: least.step, multipliers: least.multipliers, is_far });
-                        }
-                        None => return None,
-                    }
+                    wrongly_held(bounded, &least.multipliers).map(|worst| (worst, Side::Free))
                 }
+            };
+            let Some((changed, side)) = change else {
+                if !least.is_resolved {
+                    return None;
+                }
+                let changes = least.values.iter().zip(&least.multipliers);
+                for (own, (value, multiplier)) in bounded.iter_mut().zip(changes) {
+                    own.note(*value, *multiplier);
+                    own.is_undecided = false;
+                }
+                let is_far = round > 0 && least.is_far(bounded);
+                return Some(Nearest { step: least.step, multipliers: least.multipliers, is_far });
             };
             bounded[changed].side = side;
             bounded[changed].is_undecided = true;
@@ -119,7 +121,7 @@ impl<W> Sensitivity<W> {
         let mut left = vec![0.0; self.work.left.len()];
         self.system.transposed_product(&weights, &mut left);
         self.work.left.iter_mut().zip(left).for_each(|(to, left)| to[0] = left);
-        let is_resolved = match self.solve((Part::Free, Part::Free)) {
+        let is_resolved = match self.solve_within(REFINEMENTS, (Part::Free, Part::Free)) {
             Ok(()) => true,
             // Bounds contradict each other: the multipliers grow with what is left, and have the wrong sign at those that do
             // not hold.
@@ -147,7 +149,7 @@ fn first_met(bounded: &[Bounded], from: &[f64], to: &[f64]) -> Option<(f64, usiz
 }
 
 /// The bound whose multiplier has the wrong sign by most.
-fn least_held(bounded: &[Bounded], changes: &[f64]) -> Option<usize> {
+fn wrongly_held(bounded: &[Bounded], changes: &[f64]) -> Option<usize> {
     let held = || bounded.iter().zip(changes).enumerate().filter_map(|(k, (own, y))| Some((k, own.hold_of(*y)?)));
     let most = held().fold(0.0_f64, |most, (_, y)| most.max(y.abs()));
     held().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, y)| *y < -ROUNDING * most).map(|(k, _)| k)
