@@ -10,6 +10,9 @@ use crate::scaling::Scales;
 /// What the nearest solution has of a scaled distance, or of a scaled multiplier, is nothing up to this size. A choice: what an
 /// interior-point method leaves of two that both become 0 is about 1e-5 at the default tolerance, and rounding 1e-15.
 const NOTHING: f64 = 1e-9;
+/// Where the nearest solution is not known, a bound is undecided if the smaller one of distance and multiplier is more than
+/// this fraction of the larger one. A choice.
+const UNDECIDED: f64 = 0.1;
 
 /// Whether a row or a variable is at a bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,7 +142,11 @@ impl Bounded {
 
     pub(super) fn activity(&self) -> Activity {
         let active = self.side != Side::Free;
-        let is_nothing = self.left.is_some_and(|left| left.abs() <= NOTHING);
+        let (distance, multiplier) = (self.distance_to(self.side), self.multiplier.abs());
+        let is_nothing = match self.left {
+            Some(left) => left.abs() <= NOTHING,
+            None => distance.min(multiplier) > UNDECIDED * distance.max(multiplier),
+        };
         match self.side {
             Side::Both => Activity::Active,
             _ if self.is_undecided || is_nothing => Activity::Weak { active },
