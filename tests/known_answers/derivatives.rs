@@ -22,7 +22,7 @@ fn of_time(spec: Shipped, (name, value, change): (&str, f64, f64)) -> (f64, f64)
 }
 
 /// Of the points of an arc at its limit few hold the solution, and what an interior-point method leaves of distances and
-/// multipliers does not tell which: 7 to 36 % were missed.
+/// multipliers does not tell which: 6 to 16 % were missed.
 #[test]
 fn along_an_arc_at_its_limit() {
     for intervals in [8, 10, 20] {

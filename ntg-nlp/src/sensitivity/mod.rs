@@ -133,7 +133,7 @@ impl<W> Sensitivity<W> {
         found.factorise()?;
         let (bounded, nearest) = found.settle(first)?;
         found.activity = bounded.iter().map(Bounded::activity).collect();
-        if let Some(nearest) = nearest.filter(|nearest| nearest.is_far) {
+        if let Some(nearest) = nearest.filter(|nearest| nearest.is_other) {
             let at = found.moved(&bounded, &nearest, at);
             found.evaluate(nlp, &at)?;
             found.factorise()?;

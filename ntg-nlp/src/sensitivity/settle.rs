@@ -32,8 +32,8 @@ pub(super) struct Nearest {
     pub(super) step: Vec<f64>,
     /// The changes of the multipliers of all rows and variables.
     pub(super) multipliers: Vec<f64>,
-    /// Whether other bounds hold there, and multipliers differ by so much that derivatives do.
-    pub(super) is_far: bool,
+    /// Whether other bounds hold there, and multipliers differ by so much that derivatives have to be taken again.
+    pub(super) is_other: bool,
 }
 
 /// Where a quadratic program with some bounds that hold is least.
@@ -98,8 +98,8 @@ impl<W> Sensitivity<W> {
                     own.note(*value, *multiplier);
                     own.is_undecided = false;
                 }
-                let is_far = round > 0 && least.is_far(bounded);
-                return Some(Nearest { step: least.step, multipliers: least.multipliers, is_far });
+                let is_other = round > 0 && least.is_far(bounded);
+                return Some(Nearest { step: least.step, multipliers: least.multipliers, is_other });
             };
             bounded[changed].side = side;
             bounded[changed].is_undecided = true;

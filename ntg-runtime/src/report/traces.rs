@@ -33,8 +33,8 @@ pub struct Trace {
     pub multipliers: Vec<(f64, f64)>,
     /// Whether the multipliers are densities over time (docs/maths.md, equation 9.4).
     pub density: bool,
-    /// Start and end of each knot interval in mission time, and the mean density of the multipliers there, those at the ends
-    /// of the interval included (equation 9.4a); empty where points belong to no intervals.
+    /// Start and end of each knot interval in mission time, or of the part of it in which the constraint holds, and the mean
+    /// density of the multipliers there, those at the ends included (equation 9.4a); empty where points belong to no intervals.
     pub means: Vec<(f64, f64, f64)>,
 }
 
