@@ -175,6 +175,55 @@ fn a_weight_that_vanishes_by_the_clock_leaves_the_rest_exact() {
     assert!(iterations <= 40, "{iterations}");
 }
 
+/// What is pushed by less and less far away is at its corner all the same where a limit keeps it from there.
+#[test]
+fn a_push_that_fades_far_away_is_one_within_limits() {
+    let best = |objective: &str, rows: &str| {
+        let spec = Shipped::text(&format!(
+            "problem Fading {{
+                duration T = 1; state s[2], w[2]; input a[2]; collocation gauss(points = 3, intervals = 16);
+                dynamics {{ der(s) == w; der(w) == a; }} trajectory {{ {rows} }}
+                initial {{ s == 0; w == 0; }} final {{ s == (0.6, 0.8); w == 0; }} {objective};
+            }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert_eq!(report.status, Status::Solved, "{objective}: {report}");
+        assert!(report.iterations <= 120, "{objective}: {}", report.iterations);
+        report.objective
+    };
+    for (corner, rows) in
+        [("norm(a)", "norm(a) <= 8;"), ("abs(a[1]) + abs(a[2])", "-6.4 <= a[1] <= 6.4; abs(a[2]) <= 6.4;")]
+    {
+        let least = best(&format!("minimize integral({corner})"), rows);
+        close(best(&format!("maximize exp(-integral({corner}) / 2)"), rows), (-least / 2.0).exp(), 1e-6);
+        close(best(&format!("maximize 1 / (1 + integral({corner}))"), rows), 1.0 / (1.0 + least), 1e-6);
+        close(best(&format!("minimize tanh(integral({corner}) / 4)"), rows), (least / 4.0).tanh(), 1e-6);
+    }
+}
+
+/// A weight that is solved for and may be 0 goes into the corner: work at a speed that begins and ends at rest.
+#[test]
+fn a_weight_that_may_vanish_stands_inside_its_corner() {
+    let work = |work: &str| {
+        let spec = Shipped::text(&format!(
+            "problem Train {{
+                duration T = 400 [s];  state x [m], v in 0 .. 60 [m/s];  input f in -0.2 .. 0.37 [m/s^2];
+                collocation gauss(points = 3, intervals = 30);
+                dynamics {{ der(x) == v;  der(v) == f - 0.02 [m/s^2]; }}
+                initial {{ x == 0;  v == 0; }}  final {{ x == 5 [km];  v == 0; }}  minimize integral({work});
+            }}"
+        ));
+        let report = spec.solver().solve().expect("it can be set up");
+        assert!(report.is_solved() && report.iterations <= 80, "{work}: {report}");
+        report.objective
+    };
+    let inside = work("max(0, f * v)");
+    close(work("max(0, f) * v"), inside, 1e-6);
+    close(work("v * max(0, f)"), inside, 1e-6);
+    close(work("-v * min(0, -f)"), inside, 1e-6);
+    close(work("(abs(f) * v + f * v) / 2"), inside, 1e-6);
+}
+
 /// Sides may be negative where a corner is not: (18.3) asks for a function that rises for all of them.
 #[test]
 fn a_limit_on_a_function_of_a_corner_is_no_limit_on_its_sides() {

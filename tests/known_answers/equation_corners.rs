@@ -78,6 +78,24 @@ fn the_fuel_of_a_mass_is_worth_what_its_rows_by_hand_are() {
     }
 }
 
+/// A specific thrust that is a factor of the mass vanishes along coasts as one that is none does; a distance seldom vanishes.
+#[test]
+fn a_rate_in_proportion_to_the_mass_has_its_helper_too() {
+    for mesh in MESHES {
+        let left = |input: &str, rows: &str, rate: &str| {
+            let rest = format!(
+                "state y, w; input a[2]{input}; maximize final(m);
+                 dynamics {{ der(x) == v; der(v) == a[1]; der(y) == w; der(w) == a[2]; der(m) == -m * {rate} / 2; }}
+                 trajectory {{ {rows} }} initial {{ y == 0; w == 0; m == 1; }} final {{ y == 3; w == 0; }}"
+            );
+            solved(&cart("m", mesh, &rest), 150).objective
+        };
+        let by_hand = left(", q in 0 .. 1", "q^2 >= dot(a, a);", "q");
+        close(left("", "norm(a) <= 1;", "norm(a)"), by_hand, 1e-6);
+        close(left("", "hypot(a[1], a[2]) <= 1;", "hypot(a[1], a[2])"), by_hand, 1e-6);
+    }
+}
+
 /// A battery that loses a tenth each way, bought for by a tariff of the day.
 fn battery(power: &str, energy: &str, rate: &str, intervals: usize) -> String {
     format!(

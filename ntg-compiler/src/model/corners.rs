@@ -28,8 +28,8 @@ pub(super) struct Site {
     pub(super) loops: Vec<Loop>,
     /// The phase along which it is integrated.
     pub(super) along: Option<PhaseAt>,
-    /// Whether its weight may vanish: nothing pushes a helper then, which needs a bound away from its corner too.
-    pub(super) floats: bool,
+    /// How what is around it pushes a helper there: by a weight that may vanish, or fades, to a bound away from its corner too.
+    pub(super) push: Push,
 }
 
 /// The pass's state.
@@ -107,7 +107,7 @@ impl Elaborator<'_> {
         self.corners_limited(&mut pass);
         for term in 0..self.problem.objective.len() {
             let own = &self.problem.objective[term];
-            let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None, floats: false });
+            let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None, push: Push::Steep });
             pass.span = own.span;
             let smooth = self.smooth(&mut pass, body, (&site, true), 0);
             if smooth != body {
@@ -233,6 +233,12 @@ impl Elaborator<'_> {
             let smooth = self.smooth(pass, sum, (site, growing), depth + 1);
             self.has_none(pass, smooth).then_some(smooth)
         });
+        let by_sides = || {
+            let product = self.with_factor_inside(pass, node)?;
+            let smooth = self.smooth(pass, product, (site, growing), depth + 1);
+            self.has_none(pass, smooth).then_some(smooth)
+        };
+        let by_branches = by_branches.or_else(by_sides);
         let smooth = match by_branches.or_else(|| self.helper(pass, node, (site, growing), depth)) {
             Some(smooth) => {
                 pass.treated.insert(node);
@@ -288,8 +294,7 @@ impl Elaborator<'_> {
             let push = rises.map(|rises| (rises, self.push(pass, &own, at, growing == rises, both)));
             let image = match push {
                 Some((rises, push)) if push != Push::Nothing => {
-                    let floats = inner.floats || push == Push::Floating;
-                    let site = Site { floats, ..inner.clone() };
+                    let site = Site { push: push.max(inner.push), ..inner.clone() };
                     self.smooth(pass, operand, (&site, growing == rises), depth)
                 }
                 _ => operand,

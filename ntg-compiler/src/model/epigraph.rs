@@ -9,6 +9,7 @@ use ntg_structure::{Block, Unit};
 
 use super::corners::{Corners, Site, squares};
 use super::elaborator::Elaborator;
+use super::monotone::Push;
 use super::problem::{
     At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, PhaseAt, Variable,
 };
@@ -34,7 +35,10 @@ impl Elaborator<'_> {
         (site, growing): (&Site, bool),
         depth: usize,
     ) -> Option<NodeId> {
-        let limit = if site.floats { self.limit_of(pass, corner, growing) } else { None };
+        let limit = if site.push == Push::Steep { None } else { self.limit_of(pass, corner, growing) };
+        if site.push == Push::Fading && limit.is_none() {
+            return None;
+        }
         let against = self.against(pass, corner, (site, growing), depth)?;
         if let Against::Members(members) = &against
             && let [(only, loops)] = members.as_slice()

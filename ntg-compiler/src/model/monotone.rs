@@ -7,12 +7,15 @@ use super::unknowns::is_given;
 use crate::expr::{Binary, Fold, Node, NodeId, Unary};
 
 /// How what stands for an operand is pushed onto it by the objective.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Push {
     /// Everywhere, by no less than a positive factor.
     Steep,
     /// By a weight that is given before the solve and may be 0: what floats there costs nothing.
     Floating,
+    /// Everywhere, but far away by less and less: an exponential on its way down, a reciprocal. What has a bound away from its
+    /// corner stays where it is pushed.
+    Fading,
     /// Not everywhere, or by what is solved for: what floats there would make a point look stationary that is none.
     Nothing,
 }
@@ -72,11 +75,10 @@ impl Elaborator<'_> {
     /// others may stand for other operands too.
     pub(super) fn push(&self, pass: &mut Corners, node: &Node, at: usize, down: bool, both: bool) -> Push {
         let factor = match *node {
-            // Far away these do not change any more.
-            Node::Unary(Unary::Tanh | Unary::Logistic | Unary::Atan, _) => return Push::Nothing,
-            Node::Unary(Unary::Exp | Unary::Softplus, _) if !down => return Push::Nothing,
-            Node::Binary(Binary::Div, ..) if at == 1 => return Push::Nothing,
-            Node::Powi(_, n) if n < 0 => return Push::Nothing,
+            Node::Unary(Unary::Tanh | Unary::Logistic | Unary::Atan, _) => return Push::Fading,
+            Node::Unary(Unary::Exp | Unary::Softplus, _) if !down => return Push::Fading,
+            Node::Binary(Binary::Div, ..) if at == 1 => return Push::Fading,
+            Node::Powi(_, n) if n < 0 => return Push::Fading,
             Node::Binary(Binary::Pow, _, power) => {
                 let rises = self.problem.dag.is_constant(power).is_some_and(|power| power > 0.0);
                 return if rises && down { Push::Steep } else { Push::Nothing };

@@ -52,7 +52,10 @@ impl Ranges {
     pub(super) fn within(problem: &Problem) -> Self {
         let mut ranges = Self::of_indices(problem);
         let number = |end: Option<NodeId>| end.and_then(|end| problem.dag.is_constant(end));
-        let both = |own: &Constraint| number(own.bounds.lower).zip(number(own.bounds.upper));
+        let both = |own: &Constraint| {
+            let lower = number(own.bounds.lower).or(is_magnitude(problem, own.body).then_some(0.0));
+            lower.zip(number(own.bounds.upper))
+        };
         ranges.outputs = covered::ranges(problem).into_iter().collect();
         for own in &problem.constraints {
             if let Domain::Path(phase, Part::WHOLE) = &own.domain
@@ -159,6 +162,11 @@ fn moves_along(problem: &Problem, node: NodeId, along: &PhaseAt) -> bool {
         .inputs_of(&[node])
         .into_iter()
         .any(|input| matches!(problem.leaves.leaf(input), Leaf::Flat { phase, at: At::Here, .. } if phase == along))
+}
+
+/// Whether an expression is never negative by what it is.
+fn is_magnitude(problem: &Problem, node: NodeId) -> bool {
+    matches!(problem.dag.node(node), Node::Unary(Unary::Abs | Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..))
 }
 
 fn product(a: Range, b: Range) -> Range {

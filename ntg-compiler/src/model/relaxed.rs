@@ -7,6 +7,7 @@
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
+use super::monotone::Push;
 use super::problem::{Bounds, Constraint, Domain, Imposed, Leaf, Part, Relaxation};
 use super::unknowns::is_given;
 use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
@@ -25,6 +26,17 @@ struct Used {
     held: Option<Helper>,
     /// Whether inputs have no part in the corner.
     has_states_alone: bool,
+}
+
+/// What a node of an equation is to the rest of it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// A term, with given factors.
+    Term,
+    /// A factor of something that is solved for.
+    Factor,
+    /// What something is divided by, or the base of a power.
+    Divisor,
 }
 
 /// What is known of the equations.
@@ -62,9 +74,9 @@ impl Elaborator<'_> {
             Domain::Mission => None,
             _ => return,
         };
-        let site = Site { loops: own.loops.clone(), along, floats: false };
+        let site = Site { loops: own.loops.clone(), along, push: Push::Steep };
         pass.span = own.span;
-        let relaxed = self.relaxed(pass, known, (own.body, false), &site, 0);
+        let relaxed = self.relaxed(pass, known, (own.body, Role::Term), &site, 0);
         let used = std::mem::take(&mut known.used);
         if relaxed == own.body {
             return;
@@ -84,13 +96,12 @@ impl Elaborator<'_> {
         });
     }
 
-    /// An equation's node in which helpers stand for corners; `is_multiplied` says whether it is multiplied by what is solved
-    /// for.
+    /// An equation's node in which helpers stand for corners.
     fn relaxed(
         &mut self,
         pass: &mut Corners,
         known: &mut Known,
-        (node, is_multiplied): (NodeId, bool),
+        (node, role): (NodeId, Role),
         site: &Site,
         depth: usize,
     ) -> NodeId {
@@ -98,7 +109,7 @@ impl Elaborator<'_> {
             return node;
         }
         if let Some(sum) = pass.branches.get(&node).copied() {
-            let relaxed = self.relaxed(pass, known, (sum, is_multiplied), site, depth + 1);
+            let relaxed = self.relaxed(pass, known, (sum, role), site, depth + 1);
             if !self.has_none(pass, relaxed) {
                 return node;
             }
@@ -107,17 +118,18 @@ impl Elaborator<'_> {
         }
         let own = self.problem.dag.node(node).clone();
         match own {
-            _ if is_smooth(&own) => self.relaxed_below(pass, known, (&own, is_multiplied), site, depth + 1),
+            _ if is_smooth(&own) => self.relaxed_below(pass, known, (&own, role), site, depth + 1),
             Node::Input(input) => match self.problem.leaves.leaf(input).clone() {
                 Leaf::Integral { phase, integrand } if site.along.is_none() => {
                     let along = Site { along: Some(phase.clone()), ..site.clone() };
-                    let integrand = self.relaxed(pass, known, (integrand, is_multiplied), &along, depth + 1);
+                    let integrand = self.relaxed(pass, known, (integrand, role), &along, depth + 1);
                     self.leaf(Leaf::Integral { phase, integrand })
                 }
                 _ => node,
             },
-            // What a distance is a factor of seldom vanishes with it: gravitation, a spring.
-            Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if is_multiplied => node,
+            Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, ..) if self.is_distance(known, node, role) => {
+                node
+            }
             _ => self.in_place_of(pass, known, node, (site, depth)).unwrap_or(node),
         }
     }
@@ -127,7 +139,7 @@ impl Elaborator<'_> {
         &mut self,
         pass: &mut Corners,
         known: &mut Known,
-        (own, is_multiplied): (&Node, bool),
+        (own, role): (&Node, Role),
         site: &Site,
         depth: usize,
     ) -> NodeId {
@@ -145,8 +157,12 @@ impl Elaborator<'_> {
             let mut others = operands.iter().enumerate().filter(|(other, _)| *other != at);
             let by_unknown = !is_sum && others.any(|(_, other)| !is_given(&self.problem, *other));
             let is_divisor = at > 0 && matches!(own, Node::Binary(Binary::Div, ..));
-            let is_multiplied = is_multiplied || by_unknown || is_divisor || matches!(own, Node::Powi(..));
-            let image = self.relaxed(pass, known, (*operand, is_multiplied), &inner, depth);
+            let role = match role {
+                _ if is_divisor || matches!(own, Node::Powi(..)) => Role::Divisor,
+                Role::Term if by_unknown => Role::Factor,
+                role => role,
+            };
+            let image = self.relaxed(pass, known, (*operand, role), &inner, depth);
             images.insert(*operand, image);
         }
         self.problem.dag.rebuild(own, |operand| images[&operand])
@@ -202,7 +218,7 @@ impl Elaborator<'_> {
         if !is_lattice || self.has_one_corner(pass, corner) {
             return corner;
         }
-        let within = self.relaxed_below(pass, known, (&own, false), site, depth + 1);
+        let within = self.relaxed_below(pass, known, (&own, Role::Term), site, depth + 1);
         if within != corner {
             pass.treated.insert(corner);
             if let Some(span) = self.problem.origin.get(&corner).copied() {
@@ -255,7 +271,7 @@ impl Elaborator<'_> {
         }
         let first = self.problem.constraints.len();
         // What nothing pushes is held by what it can be at all.
-        let free = Site { floats: true, ..site.clone() };
+        let free = Site { push: Push::Floating, ..site.clone() };
         let node = [true, false].into_iter().find_map(|growing| self.helper(pass, corner, (&free, growing), depth))?;
         let after = self.problem.constraints.len();
         let zero = self.problem.dag.constant(0.0);
@@ -263,6 +279,16 @@ impl Elaborator<'_> {
         let (bounds, sides) = (first..after).partition(|row| self.problem.constraints[*row].body == node);
         let held = Some(Helper { sides, bounds, at_zero: after });
         Some(Used { node, span, held, has_states_alone })
+    }
+
+    /// Whether a root is one that seldom vanishes: a distance or a speed in gravitation, a spring, a drag, or what a direction is
+    /// divided by. The magnitude of an input vanishes along coasts, whatever it is a factor of.
+    fn is_distance(&self, known: &Known, root: NodeId, role: Role) -> bool {
+        match role {
+            Role::Term => false,
+            Role::Factor => self.has_states_alone(&known.orders, root),
+            Role::Divisor => true,
+        }
     }
 
     /// Whether a limit keeps a corner at 0 away from it: the least magnitude of a thrust.

@@ -7,6 +7,7 @@
 
 use super::corners::{Corners, Site};
 use super::elaborator::Elaborator;
+use super::monotone::Push;
 use super::problem::{Domain, Form, Leaf, Loop};
 use crate::expr::{Binary, Fold, Map, Node, NodeId, Unary};
 
@@ -64,7 +65,7 @@ impl Elaborator<'_> {
     /// Whether helpers stand for corners of a constraint now.
     fn by_helpers(&mut self, pass: &mut Corners, number: usize, growing: bool) -> bool {
         let own = &self.problem.constraints[number];
-        let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None, floats: false });
+        let (body, site) = (own.body, Site { loops: own.loops.clone(), along: None, push: Push::Steep });
         pass.span = own.span;
         let smooth = self.smooth(pass, body, (&site, growing), 0);
         if smooth == body {
