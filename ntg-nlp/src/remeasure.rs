@@ -74,10 +74,20 @@ pub(crate) enum Measure {
     Sizes(Vec<f64>),
     /// By this size of the objective, which is that at the end, the end is no solution.
     Objective(f64),
-    /// They hold, and the end is a saddle; beside it, at this point, the Lagrangian is less.
-    Saddle(Vec<f64>),
+    /// They hold, and the Lagrangian is less beside the end: it is a saddle, or seems to be one.
+    Saddle(Below),
     /// Variables have outgrown their sizes on the way; these are larger.
     Outgrown(Vec<f64>),
+}
+
+/// A point beside the end of a solve at which the Lagrangian is less.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Below {
+    /// The point, in the program's own units.
+    pub(crate) point: Vec<f64>,
+    /// Whether the end is a saddle beyond doubt. Where equalities may forbid the way to the point, the end is one only if a better
+    /// solution is found from there.
+    pub(crate) is_certain: bool,
 }
 
 /// One of several solves in a row.
@@ -167,7 +177,7 @@ pub(crate) fn until_measured(
         };
         match measure {
             Measure::Holds | Measure::Saddle(_) if !is_damped && has_lost_digits(nlp, &outcome, &options) => {
-                let is_saddle = matches!(measure, Measure::Saddle(_));
+                let is_saddle = matches!(&measure, Measure::Saddle(below) if below.is_certain);
                 (resized, start, undamped) = (Resized::new(nlp), None, Some(Outcome { is_saddle, ..outcome }));
                 continue;
             }
@@ -195,13 +205,14 @@ pub(crate) fn until_measured(
                 wide = Some((end, objective.max(LEAST_OBJECTIVE)));
                 continue;
             }
-            Measure::Saddle(_) if saddles == SADDLES => {
-                return unless_worse(left_saddle, Outcome { is_saddle: true, ..outcome });
+            Measure::Saddle(below) if saddles == SADDLES => {
+                return unless_worse(left_saddle, Outcome { is_saddle: below.is_certain, ..outcome });
             }
             Measure::Saddle(below) => {
                 saddles += 1;
+                let Below { point: below, is_certain } = below;
                 beside = Some(Beside { saddle: outcome.x.clone(), below: below.clone(), left: NEARER });
-                let saddle = Outcome { is_saddle: true, ..outcome };
+                let saddle = Outcome { is_saddle: is_certain, ..outcome };
                 left_saddle = Some(unless_worse(left_saddle, saddle));
                 start = Some(below);
                 continue;

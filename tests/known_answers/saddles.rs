@@ -347,3 +347,56 @@ fn a_saddle_at_the_first_step_is_left() {
         }
     }
 }
+
+/// A start at the centre of what the end is to be on has no slope to leave it by, and the constraints look contradictory.
+#[test]
+fn the_centre_of_an_end_is_left() {
+    let end = |rate: &str, end: &str, limit: &str| {
+        format!(
+            "problem End {{
+                duration T in 0.9 .. 1400 [ms];  state x, y [mm];  input p, q [mm/ms];
+                collocation gauss(points = 3, intervals = 15);
+                dynamics {{ der(x) == p;  der(y) == {rate}; }}
+                initial {{ x == 0;  y == 0; }}  final {{ {end}; }}  trajectory {{ {limit} <= 2.5 [mm/ms]; }}  minimize T;
+            }}"
+        )
+    };
+    for limit in ["norm((p, q))", "hypot(p, q)"] {
+        solved(&end("q", "x^2 / 1.5 + y^2 == 10000 [mm^2]", limit), 0.04);
+        solved(&end("q", "x * y == 5000 [mm^2]", limit), 0.04);
+        solved(&end("q", "abs(x) + abs(y) >= 150 [mm]", limit), 0.06 / 2.0_f64.sqrt());
+    }
+    // By shooting, of a step of two lengths in one time, 20.6463 squares of lengths by time.
+    solved_to(
+        "problem Sideways {
+            duration T = 6.5 [s];  state x, y [m], h [1];  input v [m/s], w [1/s];
+            collocation gauss(points = 2, intervals = 24);
+            dynamics { der(x) == v * cos(h);  der(y) == v * sin(h);  der(h) == w; }
+            initial { x == 0;  y == 0;  h == 0; }  final { x == 0;  y == -108 [m];  h == 0; }
+            minimize integral(v^2 + 2916 [m^2] * w^2);
+        }",
+        20.6463 * 54.0 * 54.0 / 6.5,
+        1e-3,
+    );
+}
+
+/// Where equations leave nothing free, the Lagrangian may fall to both sides of what they hold: the apogee of a rocket.
+#[test]
+fn what_an_equation_holds_at_its_best_is_no_saddle() {
+    for (points, intervals) in [(5, 12), (4, 12), (3, 9)] {
+        solved_to(
+            &format!(
+                "problem Sounding {{
+                    state h [km], v [m/s], m [t];  collocation gauss(points = {points}, intervals = {intervals});
+                    phase burn {{ duration in 8 .. 250 [s];  let F = 320 [kN];  final {{ m >= 10.57 [t]; }} }}
+                    phase coast after burn {{ duration in 1 .. 500 [s];  let F = 0 [kN]; }}
+                    dynamics {{ der(h) == v;  der(v) == F / m - 9.81 [m/s^2];  der(m) == -F / 2.8 [km/s]; }}
+                    initial {{ h == 0;  v == 0;  m == 20 [t]; }}  final {{ v == 0; }}
+                    maximize final(h);
+                }}"
+            ),
+            81060.946,
+            1e-5,
+        );
+    }
+}

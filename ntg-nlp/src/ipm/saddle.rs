@@ -15,6 +15,7 @@ use crate::options::Options;
 use crate::outcome::IterationRecord;
 #[cfg(feature = "sqp")]
 use crate::outcome::{Outcome, Start};
+use crate::remeasure::Below;
 
 /// Steps of the power method. A law: the direction need not be the best one, and where two are as good, any of both will do.
 const STEPS: usize = 20;
@@ -62,16 +63,15 @@ struct Descent {
 
 /// A point beside the end of another method, as [`State::below_saddle`].
 #[cfg(feature = "sqp")]
-pub(crate) fn below_saddle<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<Vec<f64>> {
+pub(crate) fn below_saddle<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) -> Option<Below> {
     let mut kept = Kept::default();
     let state = State::new(nlp, &end.x, Start::Warm(end.multipliers()), options, &mut kept);
     state.ok()?.below_saddle()
 }
 
 impl<N: Nlp> State<'_, N> {
-    /// A point beside the present one, in the program's own units, at which the Lagrangian is less than at the present
-    /// one; none where the present one is a minimum. Precondition: the present point is a solution by its residuals.
-    pub(super) fn below_saddle(&mut self) -> Option<Vec<f64>> {
+    /// A point beside the present one at which the Lagrangian is less than at the present one; none where the present one is a minimum. Precondition: the present point is a solution by its residuals.
+    pub(super) fn below_saddle(&mut self) -> Option<Below> {
         let limits = self.nlp.limits();
         let equalities = limits.row_lower.iter().zip(&limits.row_upper).filter(|(lower, upper)| lower == upper).count();
         if equalities == limits.lower.iter().zip(&limits.upper).filter(|(lower, upper)| lower < upper).count() {
@@ -83,7 +83,7 @@ impl<N: Nlp> State<'_, N> {
         let is_told = self.history.last().is_some_and(is_near) && (self.is_warm || self.history.len() > FIRST);
         let descent = if is_told { None } else { self.descent() };
         match descent {
-            Some(descent) => self.below_curvature(&descent),
+            Some(descent) => self.below_curvature(&descent).map(|point| Below { point, is_certain: true }),
             None if is_told && self.is_warm => None,
             None => self.below_corner(),
         }
@@ -107,7 +107,7 @@ impl<N: Nlp> State<'_, N> {
 
     /// A point beside the present one at which the Lagrangian is less although no second derivative says so; none where
     /// it is no less on one side. Such are corners of what is maximised, `abs(x)` at 0, and `-x^4`.
-    fn below_corner(&mut self) -> Option<Vec<f64>> {
+    fn below_corner(&mut self) -> Option<Below> {
         let n = self.x.len() - 1;
         let mut along: Vec<f64> = nearly_one(n).collect();
         let mut border = vec![0.0; self.step.border.len()];
@@ -124,13 +124,15 @@ impl<N: Nlp> State<'_, N> {
         }
         let here = self.lagrangian()?;
         let enough = LOWER * here.abs().max(1.0);
-        if distance * self.cost_of_active_bounds() > ARMIJO * enough {
+        let [bounds, equalities] = self.cost_of_constraints();
+        if distance * bounds > ARMIJO * enough {
             return None;
         }
+        let is_certain = distance * equalities <= ARMIJO * enough;
         let [one, other] = [1.0, -1.0].map(|sign| self.lagrangian_beside(&along, sign * distance));
         let (one, other) = (one?, other?);
         let sign = if one <= other { 1.0 } else { -1.0 };
-        (one.max(other) < here - enough).then(|| self.beside(&along, sign * distance))
+        (one.max(other) < here - enough).then(|| Below { point: self.beside(&along, sign * distance), is_certain })
     }
 
     /// The direction of the most negative curvature by scaled variables, as far as equalities leave it free; none where no
@@ -197,11 +199,16 @@ impl<N: Nlp> State<'_, N> {
         self.slacks.equalities.iter().all(|of| self.step.jacobian_x[of.function].abs() <= LEVEL)
     }
 
-    /// What a motion along the direction whose product is at hand costs at the active bounds that it does not leave as they are.
-    fn cost_of_active_bounds(&self) -> f64 {
+    /// What a motion along the direction whose product is at hand costs at the active bounds and at the equalities that it does not
+    /// leave as they are. Where nothing is free the Lagrangian may fall on both sides along what equalities forbid.
+    fn cost_of_constraints(&self) -> [f64; 2] {
         let slacks = &self.slacks;
+        let motion = |function: usize| self.step.jacobian_x[function].abs();
         let active = slacks.inequalities.iter().zip(slacks.s.iter().zip(&slacks.z)).filter(|(_, (s, z))| s <= z);
-        active.map(|(of, (_, z))| z * self.step.jacobian_x[of.function].abs()).sum()
+        let bounds = active.map(|(of, (_, z))| z * motion(of.function)).sum::<f64>();
+        let equalities =
+            slacks.equalities.iter().zip(&slacks.y).map(|(of, y)| y.abs() * motion(of.function)).sum::<f64>();
+        [bounds, equalities]
     }
 
     /// The Lagrangian at the present point, whose values are known, with the present multipliers.

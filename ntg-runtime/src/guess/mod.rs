@@ -10,12 +10,14 @@ mod aside;
 mod earlier;
 mod equations;
 mod heading;
+mod perturbed;
 mod program;
 mod route;
 mod simulate;
 mod start;
 mod statements;
 
+pub(crate) use perturbed::{between, perturbed, perturbed_variables};
 pub use program::Guess;
 pub(crate) use route::Route;
 pub(crate) use simulate::{Defect, defect, simulated};

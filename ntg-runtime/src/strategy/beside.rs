@@ -1,8 +1,10 @@
 //! Points beside a first point (docs/maths.md, section 8.5).
 
 use super::session::{FirstPoint, Session};
+use crate::guess::perturbed;
 use crate::settings::Settings;
 use crate::transcribe::{SetupError, Transcription};
+use fastrand::Rng;
 use ntg_nlp::{Nlp, Outcome, Start, Status};
 
 /// How far every variable is moved from a point at which something is not finite, as a fraction of its size: far enough
@@ -41,7 +43,17 @@ fn is_singular(outcome: &Outcome) -> bool {
     matches!((&outcome.status, outcome.iterations), (Status::NotFinite { .. }, 0))
 }
 
-/// A point beside one near which violations have a local minimum.
+/// The seed of the waves that are added to a point near which violations have a local minimum.
+const SEED: u64 = 1;
+
+/// A point beside one near which violations have a local minimum, with smooth functions added to all outputs (12.2): a motion
+/// stays near one. An output that rests has the size of its variables.
+pub(super) fn bent(nlp: &Transcription, x: &[f64]) -> Result<Vec<f64>, SetupError> {
+    let sizes = &nlp.limits().scale;
+    perturbed(nlp, x, &mut Rng::with_seed(SEED), &|coefficient, _| sizes[coefficient])
+}
+
+/// A point beside one near which violations have a local minimum, every variable by itself.
 pub(super) fn beside_infeasible(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
     beside(nlp, x, INFEASIBLE)
 }

@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! interior point, from coarser knots where there are many -> from the guess itself -> along rays where all is linear
-//!                -> sizes anew -> from beside the guess
+//!                -> sizes anew -> from beside the guess, in two ways
 //!                -> from a simulation -> restoring by squares -> augmented Lagrangian -> from fewer knots
 //!                -> sequential quadratic programming -> on from the best point
 //! ```
 
-use super::beside::beside_infeasible;
+use super::beside::{bent, beside_infeasible};
 use super::budget::{Budget, QUADRATIC, better};
 use super::coarse_start::start_from_fewer;
 use super::session::{FirstPoint, Session, Task, holds_along, solution};
@@ -18,10 +18,11 @@ use ntg_nlp::residuals::violation;
 use ntg_nlp::{Nlp, Outcome, Start, Status, method};
 
 /// All of them, in their order.
-const ATTEMPTS: [Attempt; 10] = [
+const ATTEMPTS: [Attempt; 11] = [
     Attempt::Rays,
     Attempt::BySlopes,
     Attempt::SizesAnew,
+    Attempt::Bent,
     Attempt::Beside,
     Attempt::Simulated,
     Attempt::OtherWays,
@@ -42,8 +43,10 @@ enum Attempt {
     /// From the first point, with sizes of variables from where the failed attempt ended: a guess may be far smaller than
     /// what it guesses.
     SizesAnew,
-    /// From beside the first point: near a symmetric guess violations may have a local minimum, or a saddle that nothing
-    /// leaves.
+    /// From beside the first point, with smooth functions added: near a symmetric guess violations may have a local minimum, or a
+    /// saddle that nothing leaves.
+    Bent,
+    /// From beside the first point, with every variable moved by itself.
     Beside,
     /// From a simulation with the guessed inputs: what the guess says of the motion may be far from any motion.
     Simulated,
@@ -76,7 +79,7 @@ fn other_ways(settings: Settings) -> Settings {
 impl Attempt {
     /// Whether it measures by other sizes than those of the first point.
     fn has_other_sizes(self) -> bool {
-        matches!(self, Self::SizesAnew | Self::Simulated)
+        matches!(self, Self::SizesAnew | Self::Simulated | Self::Bent)
     }
 
     /// Whether it follows an outcome of this status: any that is not final. After an acceptable point only what has been
@@ -89,7 +92,7 @@ impl Attempt {
             Status::Infeasible { .. } if self == Self::Rays => false,
             Status::IterationLimit | Status::StepTooSmall if self == Self::Onwards => true,
             _ if self == Self::Onwards => false,
-            _ => !status.is_final() && (seems_infeasible || self != Self::Beside),
+            _ => !status.is_final() && (seems_infeasible || !matches!(self, Self::Bent | Self::Beside)),
         }
     }
 }
@@ -205,6 +208,12 @@ impl Session {
                 }
                 nlp.set_scales(&failed.x, &settings)?;
                 self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &settings)
+            }
+            Attempt::Bent => {
+                let x = bent(nlp, x)?;
+                // What rests at the guess has no size of its own there.
+                nlp.set_scales(&x, &settings)?;
+                self.solve_measured(nlp, FirstPoint { x: &x, from: Start::Cold }, &settings)
             }
             Attempt::Beside => {
                 let x = beside_infeasible(nlp, x);
