@@ -391,3 +391,83 @@ fn what_rests_far_from_nothing_misses_nothing() {
         }
     }
 }
+
+/// A parabola through three points within a limit leaves it by as much as its input jumps; what is missed in one interval of many says
+/// nothing of the solution, be the limit one of the input alone, of it and a state, or of its square. An input that leaves its limit in
+/// every interval does.
+#[test]
+fn an_input_leaves_its_limit_where_it_turns_round() {
+    let turn = |limit: &str, points: usize, intervals: usize| {
+        resolution(&format!(
+            "problem Turn {{
+                duration T in 0.1 .. 10;  state x, v, z;  input a;
+                collocation gauss(points = {points}, intervals = {intervals}, inequalities = points);
+                minimize T;  dynamics {{ der(x) == v;  der(v) == a;  der(z) == 1; }}
+                initial {{ x == 0;  v == 0;  z == 1; }}  final {{ x == 1;  v == 0; }}
+                trajectory {{ {limit} }}
+            }}"
+        ))
+    };
+    let limits = ["a in -1 .. 1;", "a^2 <= 1;", "abs(a) <= 1;", "(a * z)^2 <= z^2;", "a^2 + v^2 * (1 - z / z) <= 1;"];
+    for (points, intervals) in [(2, 17), (3, 11), (4, 25), (5, 7)] {
+        for limit in limits {
+            let (found, report) = turn(limit, points, intervals);
+            assert!(found < Resolution::Unresolved, "{limit}, {points} of {intervals}: {report}");
+            assert!((report.objective - 2.0).abs() < 0.05, "{limit}: {report}");
+        }
+    }
+    let (found, report) = resolution(
+        "problem Aliased {
+            duration T = 20;  state x;  input a in -1 .. 1;
+            collocation gauss(points = 2, intervals = 20, inequalities = points);
+            minimize integral((a - 3 * sin(2 * pi * t))^2);  dynamics { der(x) == a; }  initial { x == 0; }
+        }",
+    );
+    assert!(report.constraints.iter().any(|own| own.mean_between > 0.05), "{report}");
+    assert_eq!(found, Resolution::Unresolved, "{report}");
+}
+
+/// A bound that is a declared variable is the measure of what is missed, as a number in its place is.
+#[test]
+fn a_variable_is_a_bound_as_a_number_is() {
+    for (top, limit) in [("variable top in 0 .. 1000 [g*m^2/s^2];", "top"), ("", "20 [g*m^2/s^2]")] {
+        let goal = if top.is_empty() { "integral(dot(u, u))" } else { "top" };
+        let (found, report) = resolution(&format!(
+            "problem Detumble {{
+                state w[3] [1/s];  input u[3] [g*m^2/s^2];  {top}  duration T = 130 [s];
+                collocation gauss(points = 2, intervals = 28, inequalities = points);
+                param J[3] = (5, 5, 8) [kg*m^2];
+                dynamics {{ diagonal(J) * der(w) == u - cross(w, diagonal(J) * w); }}
+                trajectory {{ norm(u) <= {limit}; }}
+                initial {{ w == (0.1080160886, 0.1712433094, -0.2689048052) [1/s]; }}  final {{ w == 0; }}
+                minimize {goal};
+            }}"
+        ));
+        assert!(found < Resolution::Unresolved, "{limit}: {report}");
+        let limit = report.constraints.iter().find(|own| own.name.contains("norm")).expect("it is one");
+        let between = limit.between.as_ref().expect("it is checked").relative;
+        assert!(between < 0.05, "{between}");
+    }
+}
+
+/// What holds a speed over hills is as large as the force that does, whatever the force is divided by.
+#[test]
+fn what_holds_a_speed_has_the_size_of_its_force() {
+    for rate in [
+        "der(v) == (f - 0.022 [m/s^2] - 1e-5 [1/m] * v^2 - 9.81 [m/s^2] * grade) / v;",
+        "v * der(v) == f - 0.022 [m/s^2] - 1e-5 [1/m] * v^2 - 9.81 [m/s^2] * grade;",
+    ] {
+        let (found, report) = resolution(&format!(
+            "problem Train {{
+                domain s [km];  duration S = 40 [km];
+                state v in 3 .. 110 [m/s], t_run [s];  input f in -0.5 .. 0.8 [m/s^2];
+                collocation gauss(points = 3, intervals = 14);
+                let grade = 0.00033 + 0.00088 * sin(2 * pi * s / 10 [km]);
+                dynamics {{ {rate}  der(t_run) == 1 / v; }}
+                initial {{ v == 27.8 [m/s]; t_run == 0; }}  final {{ v == 27.8 [m/s]; t_run <= 1438.85 [s]; }}
+                minimize integral(f);
+            }}"
+        ));
+        assert!(found < Resolution::Unresolved && (report.objective / 1318.63 - 1.0).abs() < 1e-4, "{report}");
+    }
+}

@@ -3,7 +3,7 @@
 use super::ending::Missed;
 use super::fine::{Checked, Plan, Wanted};
 use super::foreseen::Foreseen;
-use super::jumped::{Jumped, is_of_states};
+use super::jumped::{Jumped, is_continuous, is_of_states};
 use super::sides::Sides;
 use super::sizes::{Sizes, with_side};
 use super::{ConstraintReport, Worst, multipliers};
@@ -78,12 +78,7 @@ pub(super) fn constraints(
         }
         hold(nlp, &outcome.x, &mut report.between, (measured, unit), (&checked.point, indices));
     })?;
-    means.write(nlp, &mut reports);
-    // What may not jump does so where an equation of it is missed by all of it in one interval of many.
-    let gross = reports.iter_mut().enumerate().filter(|(_, report)| report.is_equation && report.mean_between > 0.0);
-    for (_, report) in gross.filter(|(number, _)| is_of_states(nlp, *number)) {
-        report.mean_between = report.between.as_ref().map_or(report.mean_between, |worst| worst.relative);
-    }
+    let in_mean = means.write(nlp, &mut reports);
     sides.visit(nlp, (fine, &outcome.x), |place, side| {
         let (constraint, indices, _) = &place.key;
         let size = || with_side(all_sizes.between(nlp, *constraint, indices), side);
@@ -99,12 +94,24 @@ pub(super) fn constraints(
             *between = jump.map(|jump| Worst { relative: 1.0, ..jump });
         }
     }
+    // What does not jump by itself does so where it is missed by all of it in one interval of many.
+    for (number, report) in reports.iter_mut().enumerate() {
+        let most = report.between.as_ref().map_or(0.0, |worst| worst.relative);
+        let is_gross = most > Missed::GROSS || report.mean_between > 0.0;
+        let jumps = || match report.is_equation {
+            true => !is_of_states(nlp, number),
+            false => in_mean[number] && !is_continuous(nlp, number),
+        };
+        if is_gross && !jumps() && (report.mean_between > 0.0 || !report.is_equation) {
+            report.mean_between = most;
+        }
+    }
     let own = structure.constraints.iter().position(|constraint| constraint.block == Block::Corner);
     reports.truncate(own.unwrap_or(reports.len()));
     Ok((reports, all_sizes, Fine { terms, correction: foreseen.correction() }))
 }
 
-/// The mean violation of equations between the points.
+/// The mean violation of constraints between the points.
 pub(super) struct Means {
     /// At how many places each constraint was evaluated.
     places: Vec<usize>,
@@ -121,12 +128,12 @@ impl Means {
         let (lower, upper) = checked.bounds;
         // A constraint at no time, or at one, has no mean.
         let is_along = checked.point.phase.is_some() && is_path(nlp, checked.group);
-        if lower != upper || !is_along {
+        if !is_along {
             return;
         }
         self.places[checked.constraint] += 1;
-        let missed = (checked.value - lower).abs();
-        if missed == 0.0 {
+        let missed = (lower - checked.value).max(checked.value - upper);
+        if missed <= 0.0 {
             return;
         }
         let relative = missed / scale(lower, upper, size());
@@ -135,10 +142,11 @@ impl Means {
         }
     }
 
-    /// Writes the means into reports of the constraints, which may leave out the last ones.
-    pub(super) fn write(self, nlp: &Transcription, reports: &mut [ConstraintReport]) {
+    /// Writes the means into reports of the constraints, which may leave out the last ones. Gives which constraints have any.
+    pub(super) fn write(self, nlp: &Transcription, reports: &mut [ConstraintReport]) -> Vec<bool> {
+        let in_mean = self.places.iter().map(|places| *places > 0).collect();
         if self.sums.is_empty() {
-            return;
+            return in_mean;
         }
         let mut members = vec![0_usize; self.places.len()];
         nlp.elements.relations.of_constraints().for_each(|(constraint, ..)| members[constraint] += 1);
@@ -147,6 +155,7 @@ impl Means {
             let Some(report) = reports.get_mut(constraint) else { continue };
             report.mean_between = crate::math::max(report.mean_between, mean);
         }
+        in_mean
     }
 }
 

@@ -22,15 +22,15 @@ pub enum Resolution {
 /// What a solution misses between the points, relative to the size of what is missed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Missed {
-    /// An equation: by how much where it is missed most, and in the mean over all times, of which only those count at which
-    /// it is missed by more than half.
-    Equation {
+    /// A constraint: by how much where it is missed most, and in the mean over all times, of which only those count at which
+    /// it is missed by more than half ([`ConstraintReport::mean_between`](super::ConstraintReport::mean_between)).
+    Constraint {
         /// Where it is missed most.
         most: f64,
         /// In the mean.
         mean: f64,
     },
-    /// A limit, where it is missed most.
+    /// A limit of which the mean is not known, where it is missed most.
     Limit(f64),
     /// The objective and its finer integral, or the objective without and with its correction, differ by this part of the
     /// larger of both.
@@ -44,19 +44,20 @@ impl Missed {
     /// The largest violation or difference.
     fn most(self) -> f64 {
         match self {
-            Self::Equation { most, .. } | Self::Limit(most) | Self::Objective(most) => most,
+            Self::Constraint { most, .. } | Self::Limit(most) | Self::Objective(most) => most,
         }
     }
 
     /// Whether so much is missed that the points say nothing of what is between them. An equation that is missed by half of
     /// its size or more, now here and now there, holds nowhere but at the points; in one interval of many that is an input
-    /// that jumps there, as a thrust that turns round does. A limit that is missed by more than half of its size is jumped:
-    /// a path through a disc along a diameter misses `x^2 + y^2 >= R^2` by all of it. An objective of which less than half is
+    /// that jumps there, as a thrust that turns round does; so it is for a limit of what jumps, which a polynomial through points
+    /// within it leaves by as much as it has jumped. A limit of what does not jump, of which more than half is missed, is jumped: a
+    /// path through a disc along a diameter misses `x^2 + y^2 >= R^2` by all of it. An objective of which less than half is
     /// counted is that of other curves. Choices, between the thrust reversals of the gallery on ten intervals and aliased
     /// oscillations, which miss their equations by 0.5 and more in the mean.
     pub fn is_unresolved(self) -> bool {
         let (missed, most) = match self {
-            Self::Equation { mean, .. } => (mean, 0.05),
+            Self::Constraint { mean, .. } => (mean, 0.05),
             Self::Limit(most) | Self::Objective(most) => (most, 0.5),
         };
         missed > most || missed.is_nan() || self.most().is_nan()
@@ -122,7 +123,7 @@ impl Report {
         let constraints = self.constraints.iter().filter_map(|constraint| {
             let most = constraint.between.as_ref()?.relative;
             let mean = constraint.mean_between;
-            Some(if constraint.is_equation { Missed::Equation { most, mean } } else { Missed::Limit(most) })
+            Some(Missed::Constraint { most, mean })
         });
         let cost = Missed::Objective(self.cost_missed());
         let equations = Missed::Objective(self.correction_part());
@@ -227,7 +228,7 @@ mod tests {
     #[test]
     fn a_head_says_what_does_not_hold_between_the_points() {
         let ending = |missed: &[Missed]| Resolution::of(missed.iter().copied(), 0.01).ending("solved");
-        let equation = |most: f64, mean: f64| Missed::Equation { most, mean };
+        let equation = |most: f64, mean: f64| Missed::Constraint { most, mean };
         assert_eq!(ending(&[]), "solved");
         assert_eq!(ending(&[equation(1e-6, 0.0), Missed::Objective(0.009)]), "solved");
         assert_eq!(ending(&[equation(1.3, 0.02), Missed::Limit(0.4)]), "solved at the points");

@@ -173,9 +173,9 @@ pub struct ConstraintReport {
     pub points: Option<Worst>,
     /// Where it is violated most on the finer grid; none where it is not checked there.
     pub between: Option<Worst>,
-    /// By how much an equation is missed between the points in the mean over all times, relative to its size; only where
-    /// that is more than half it counts. Of several members the largest mean; 0 for a limit. Of an equation between states, which
-    /// do not jump, not the mean but the largest, once that counts.
+    /// By how much it is missed between the points in the mean over all times, relative to its size; only where that is more than
+    /// half it counts. Of several members the largest mean. Of what does not jump, an equation between states or a limit without
+    /// inputs, not the mean but the largest, once that counts.
     pub mean_between: f64,
     /// The largest multiplier by size; none where it has no row.
     pub multiplier: Option<Multiplier>,

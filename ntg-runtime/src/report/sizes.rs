@@ -23,6 +23,10 @@ const LEAST_RANGE: f64 = 3e-4;
 /// is written in as good as linear. A choice: by the width of a cone (18.4) the slope is 1 at the bound and 1/2 far within it.
 const BENT: f64 = 3.0;
 
+/// A slope that varies by no more than this factor makes the term of an input as good as linear in any row: the force in `f / v` at
+/// a speed that is held. A choice: a percent.
+const STEADY: f64 = 1.01;
+
 /// A limit with two sides has the size of what the side varies by that varies by less, and at least this part of the other
 /// size. A choice: the points may not see a hill, and what is missed by 3e-5 of all is no hill.
 const LEAST_SIDE: f64 = 3e-3;
@@ -55,6 +59,8 @@ struct Terms {
     variation: f64,
     /// The same with terms whose slope is the same at all points, in a block with rows in which their slot is curved.
     steady: f64,
+    /// Of a limit: the largest term that a declared variable is, as a number in its place would be its bound.
+    bound: f64,
     /// The steepest slope of a row by a variable of its size.
     slope: f64,
     /// Of an equation that holds at single points: what it says, if more is missed than rounding.
@@ -77,7 +83,7 @@ impl Terms {
             // What is at rest is held by what varies: a temperature by the heat that is taken away.
             seen = seen.max(self.steady);
         }
-        let between = match self.limited {
+        let between: f64 = match self.limited {
             _ if self.rate > 0.0 => seen.min(at_points).max(LEAST_BETWEEN * at_points).max(self.least),
             // Neither a height above the sea nor the slope of a wall says how high the wall is.
             Some((low, high)) if seen.max(high - low) > LEAST_RANGE * at_points => {
@@ -86,6 +92,8 @@ impl Terms {
             }
             _ => at_points,
         };
+        let bound = self.limited.map_or(0.0, |_| self.bound.min(at_points));
+        let between = between.max(bound);
         Some(Size { at_points, between })
     }
 }
@@ -108,14 +116,27 @@ fn add_values(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation), block
     }
 }
 
-/// The least and largest value of each term of each relation of a block, and of its slope.
+/// What a slot is in the rows of a block.
+#[derive(Clone, Copy)]
+struct Kind {
+    /// A derivative by time.
+    is_rate: bool,
+    /// No second derivative depends on it.
+    is_linear: bool,
+    /// A declared variable.
+    is_variable: bool,
+    /// An input: nothing says how it moves.
+    is_input: bool,
+}
+
+/// The least and largest value of each term of each relation of a block, of its slope and of its slot.
 struct Ranges {
     /// The first relation of the block.
     first: usize,
     /// How many terms each has.
     terms: usize,
-    /// By relation, from the first on, and term: value and slope.
-    ranges: Vec<[(f64, f64); 2]>,
+    /// By relation, from the first on, and term.
+    ranges: Vec<[(f64, f64); 3]>,
 }
 
 impl Ranges {
@@ -129,25 +150,35 @@ impl Ranges {
         };
         let (first, terms) = (own().min().unwrap_or(0), block.jacobian.len());
         let count = own().max().map_or(0, |last| last + 1 - first);
-        Self { first, terms, ranges: vec![[(f64::INFINITY, f64::NEG_INFINITY); 2]; count * terms] }
+        Self { first, terms, ranges: vec![[(f64::INFINITY, f64::NEG_INFINITY); 3]; count * terms] }
     }
 
-    fn add(&mut self, (relation, term): (usize, usize), (value, slope): (f64, f64)) {
+    fn add(&mut self, (relation, term): (usize, usize), (slope, value): (f64, f64)) {
         let ranges = &mut self.ranges[(relation - self.first) * self.terms + term];
-        for (range, own) in ranges.iter_mut().zip([value, slope]) {
+        for (range, own) in ranges.iter_mut().zip([slope * value, slope, value]) {
             *range = (range.0.min(own), range.1.max(own));
         }
     }
 
     /// Raises the variations of relations to those of these terms, of which a curved one counts where it is nearly linear in a row
     /// that is posed in another form.
-    fn raise(&self, all: &mut [Terms], is_posed: &[bool], is_linear: impl Fn(usize) -> bool) {
+    fn raise(&self, all: &mut [Terms], is_posed: &[bool], kind: impl Fn(usize) -> Kind) {
         let relations = all.iter_mut().zip(is_posed).skip(self.first);
         for ((own, is_posed), ranges) in relations.zip(self.ranges.chunks_exact(self.terms.max(1))) {
-            for (term, [(low, high), (flat, steep)]) in ranges.iter().enumerate() {
-                let bent = flat.abs().max(steep.abs()) / flat.abs().min(steep.abs());
-                if is_linear(term) || *is_posed && flat * steep > 0.0 && bent <= BENT {
+            for (term, [(low, high), (flat, steep), (least, most)]) in ranges.iter().enumerate() {
+                let bent = if flat * steep > 0.0 {
+                    flat.abs().max(steep.abs()) / flat.abs().min(steep.abs())
+                } else {
+                    f64::INFINITY
+                };
+                let kind = kind(term);
+                if kind.is_linear || *is_posed && bent <= BENT {
                     own.variation = own.variation.max(high - low);
+                    if kind.is_variable {
+                        own.bound = own.bound.max(low.abs()).max(high.abs());
+                    }
+                } else if kind.is_input && bent <= STEADY {
+                    own.variation = own.variation.max(steep.abs().max(flat.abs()) * (most - least));
                 }
                 if flat == steep {
                     own.steady = own.steady.max(high - low);
@@ -177,10 +208,26 @@ impl Sizes {
             }
             let is_rate = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Flat { derivative: 1.., .. }));
             let is_linear = |slot: usize| block.hessian.iter().all(|(i, j)| *i != slot && *j != slot);
-            let kinds: Vec<(bool, bool)> = (0..block.slots).map(|slot| (is_rate(slot), is_linear(slot))).collect();
+            let is_variable = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Variable { .. }));
+            let is_input = |slot: usize| match group.call.slots.get(slot) {
+                Some(Slot::Flat { phase, output, derivative: 0, .. }) => {
+                    nlp.model.structure.phases[phase.phase].outputs[*output].spline.smoothness == 0
+                }
+                _ => false,
+            };
+            let kind = |slot| Kind {
+                is_rate: is_rate(slot),
+                is_linear: is_linear(slot),
+                is_variable: is_variable(slot),
+                is_input: is_input(slot),
+            };
+            let kinds: Vec<Kind> = (0..block.slots).map(kind).collect();
             let mut ranges = Ranges::of(block, &relations.of_row);
             let has_slots = |row: usize, linear: bool| {
-                block.jacobian.iter().any(|(of, slot)| *of == row && kinds[*slot] == (false, linear))
+                block
+                    .jacobian
+                    .iter()
+                    .any(|(of, slot)| *of == row && !kinds[*slot].is_rate && kinds[*slot].is_linear == linear)
             };
             let two_sided: Vec<bool> =
                 (0..block.rows).map(|row| has_slots(row, true) && has_slots(row, false)).collect();
@@ -210,15 +257,15 @@ impl Sizes {
                     let own = &mut terms[relation];
                     own.largest = own.largest.max(term);
                     match kinds[slot] {
-                        (true, _) => {
+                        Kind { is_rate: true, .. } => {
                             own.rate = own.rate.max(term);
                             own.least = own.least.max((slope * LEAST_RATE * typical).abs());
                         }
-                        (false, true) => {
-                            ranges.add((relation, entry), (slope * value, slope));
+                        Kind { is_linear: true, .. } => {
+                            ranges.add((relation, entry), (slope, value));
                             rest[row] -= slope * value;
                         }
-                        (false, false) => ranges.add((relation, entry), (slope * value, slope)),
+                        _ => ranges.add((relation, entry), (slope, value)),
                     }
                 }
                 for (row, rest) in rest.iter().enumerate().filter(|(row, rest)| two_sided[*row] && rest.is_finite()) {
@@ -228,7 +275,7 @@ impl Sizes {
                     (*low, *high) = (low.min(*rest), high.max(*rest));
                 }
             }
-            ranges.raise(&mut terms, &is_posed, |entry| kinds[block.jacobian[entry].1].1);
+            ranges.raise(&mut terms, &is_posed, |entry| kinds[block.jacobian[entry].1]);
         }
         let bounds = nlp.limits.row_lower.iter().zip(&nlp.limits.row_upper);
         for ((relation, value), (lower, upper)) in relations.of_row.iter().zip(&at.rows).zip(bounds) {
