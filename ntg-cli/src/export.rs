@@ -256,7 +256,7 @@ fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Found, Str
             of_others,
         });
     }
-    let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
+    let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
     let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
     let read = Solution::read(&text, &Order::of(&expressions));
     read.map(|solution| Found { solution, is_interpolated: false, of_others: 0 })

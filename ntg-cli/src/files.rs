@@ -1,6 +1,6 @@
 //! Reads specs and the tables they name; shows findings.
 
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 
@@ -9,6 +9,7 @@ use ntg_compiler::diagnostic::{Code, Diagnostic};
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::{Source, Span};
 
+use crate::reading;
 use crate::values::Assignments;
 
 /// Share of letters in place from which a file's name is taken for a slip of the pen.
@@ -22,7 +23,7 @@ pub(crate) struct BesideSpec {
 impl Loader for BesideSpec {
     fn load(&self, path: &str) -> Result<String, String> {
         let path = self.folder.join(path);
-        std::fs::read_to_string(&path).map_err(|error| reason(&path, &error, &self.folder))
+        reading::named(&path).map_err(|error| reason(&path, &error, &self.folder))
     }
 }
 
@@ -134,10 +135,9 @@ pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
         return Err(Failure::Unread { name, message });
     }
     let bytes = if is_standard_input(path) {
-        let mut bytes = vec![];
-        std::io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+        reading::all(std::io::stdin())
     } else {
-        std::fs::read(path)
+        reading::bytes(path)
     };
     let bytes = bytes.map_err(|error| Failure::Unread { name: name.clone(), message: unread(path, &error) })?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();

@@ -29,7 +29,7 @@ pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, b
 
 /// A saved solution of a version that can be read, with an entry for each element of its arrays.
 fn saved(path: &Path) -> Result<Value, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
+    let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
     let mut saved: Value =
         serde_json::from_str(&text).map_err(|e| format!("`{}` is not JSON: {e}; {SAVED}", path.display()))?;
     if saved["format"] != FORMAT {

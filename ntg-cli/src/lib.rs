@@ -23,6 +23,7 @@ mod merge;
 mod new;
 mod options;
 mod plot;
+mod reading;
 mod report;
 mod route;
 mod runs;

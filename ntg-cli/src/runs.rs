@@ -56,7 +56,7 @@ impl Inputs {
                 return Err(format!("`{}` is solved already; {option} goes with a spec", path.display()));
             }
         }
-        let text = std::fs::read_to_string(path).map_err(|error| files::unread(path, &error))?;
+        let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
         Run::read(&text).map_err(|message| format!("`{}` {message}; {SAVED}", path.display()))
     }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use ntg_sweep::Summary;
 
-use crate::{Exit, files};
+use crate::{Exit, files, reading};
 
 /// Summarise a table of `ntg sweep`: share solved, limits that bind, quantiles of every number.
 ///
@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
-    if let Err(error) = std::fs::File::open(&arguments.table) {
+    if let Err(error) = reading::checked(&arguments.table) {
         return Err(files::unread(&arguments.table, &error));
     }
     let table = ntg_sweep::read(&arguments.table)?;

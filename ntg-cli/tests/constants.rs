@@ -139,6 +139,43 @@ fn a_file_of_numbers_that_cannot_be_read_says_why_and_which_may_be_meant() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn a_file_without_an_end_or_too_large_is_refused_before_it_fills_the_memory() {
+    let folder = folder();
+    let large = std::fs::File::create(folder.path().join("large.csv")).expect("a file can be made");
+    large.set_len(300 << 20).expect("a file of nothing");
+    let use_of = |path: &str| format!("use \"{path}\" as f; {SPEC}");
+    let data = |path: &str| SPEC.replace("data/run.csv", path);
+    let table = |path: &str| SPEC.replacen('{', &format!("{{ table f(a) = linear from \"{path}\"; "), 1);
+    let device = "it is no regular file but a folder, a device or a pipe";
+    let size = "its 300 MiB are more than is read of a file, 256 MiB";
+    for (path, why, help) in [
+        ("/dev/zero", device, "help: copy what it gives to a file and name that"),
+        ("large.csv", size, "help: leave out rows that are not needed"),
+    ] {
+        for (spec, code) in [(data(path), "E072"), (table(path), "E072"), (use_of(path), "E087")] {
+            std::fs::write(folder.path().join("endless.ntg"), spec).expect("a file can be written");
+            let (_, err) = said(&ntg(folder.path(), &["check", "endless.ntg"]), 2);
+            let words = format!("error[{code}]: `{path}` cannot be read: {why}");
+            assert!(err.contains(&words) && err.contains(help) && err.contains("^^^"), "{err}");
+        }
+    }
+    // What a user names on the command line, too.
+    std::fs::write(folder.path().join("spec.ntg"), SPEC).expect("a file can be written");
+    for words in [
+        &["check", "/dev/zero"][..],
+        &["solve", "spec.ntg", "--guess", "/dev/zero"],
+        &["report", "/dev/zero", "-o", "page.html"],
+        &["check-solution", "spec.ntg", "/dev/zero"],
+        &["sweep", "spec.ntg", "--from", "/dev/zero", "-o", "study.csv"],
+        &["summary", "/dev/zero"],
+    ] {
+        let (_, err) = said(&ntg(folder.path(), words), 2);
+        assert!(err.contains(device), "{words:?}: {err}");
+    }
+}
+
 #[test]
 fn a_table_of_numbers_is_no_spec() {
     let folder = folder();

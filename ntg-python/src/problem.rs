@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ntg_compiler::diagnostic::Diagnostic;
+use ntg_compiler::model::loading::unfit;
 use ntg_compiler::model::{self, Loader};
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
@@ -58,8 +59,12 @@ impl Loader for Tables {
             return Err(format!("`{path}`: a spec given as text reads no files; give `folder` or `tables`"));
         };
         let place = folder.join(path);
-        let text =
-            std::fs::read_to_string(&place).map_err(|error| format!("cannot read `{}`: {error}", place.display()))?;
+        let failed = |error: std::io::Error| format!("cannot read `{}`: {error}", place.display());
+        let about = std::fs::metadata(&place).map_err(failed)?;
+        if let Some(why) = unfit(about.is_file(), about.len()) {
+            return Err(why);
+        }
+        let text = std::fs::read_to_string(&place).map_err(failed)?;
         found.insert(path.to_owned(), text.clone());
         Ok(text)
     }

@@ -8,8 +8,8 @@ use ntg_runtime::structure::Parameter;
 use ntg_sweep::{Range, grid};
 
 use super::dispersion;
-use crate::files;
 use crate::values::Assignments;
+use crate::{files, reading};
 
 /// How a range is written.
 const FORM: &str = "a range is NAME=FIRST:LAST:COUNT, such as `v_max=0.2:0.3:11` or `v_max=\"200:300:11 [m/s]\"`";
@@ -123,7 +123,7 @@ type Read = (Vec<String>, Vec<Vec<f64>>);
 
 /// A table of parameter sets.
 fn table(problem: &Interpreted, path: &Path) -> Result<Read, String> {
-    if let Err(error) = std::fs::File::open(path) {
+    if let Err(error) = reading::checked(path) {
         return Err(files::unread(path, &error));
     }
     let table = ntg_sweep::read(path)?;

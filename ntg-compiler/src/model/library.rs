@@ -9,10 +9,10 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::Loader;
 use super::elaborator::Elaborator;
 use super::scope::{Declared, PROBLEM, ScopeId, library_named};
 use super::suggest::nearest;
+use super::{Loader, loading};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, InLibrary, Severity};
 use crate::source::{Source, Span};
 use crate::standard::{self, APPLIED, VALUES};
@@ -187,17 +187,14 @@ impl Libraries {
         open: &mut Vec<String>,
         loader: &dyn Loader,
     ) -> Option<usize> {
-        let source =
-            match read {
-                Ok(source) => source,
-                Err(why) => {
-                    let finding = Diagnostic::new(Code::WrongLibrary, place, format!("`{key}` cannot be read: {why}"));
-                    self.found.push(finding.help(
-                        "paths are relative to the file that names them, or to Cargo.toml for a spec inside Rust",
-                    ));
-                    return None;
-                }
-            };
+        let source = match read {
+            Ok(source) => source,
+            Err(why) => {
+                let finding = Diagnostic::new(Code::WrongLibrary, place, format!("`{key}` cannot be read: {why}"));
+                self.found.push(finding.help(loading::help(&why, "the file that names them")));
+                return None;
+            }
+        };
         self.joined.text.push('\n');
         if is_standard {
             let blank = self.joined.text.len().next_multiple_of(STEP) - self.joined.text.len();

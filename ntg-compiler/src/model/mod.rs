@@ -52,6 +52,7 @@ mod kinds;
 mod known_shapes;
 mod library;
 mod listed;
+pub mod loading;
 mod measure;
 mod mention;
 mod mission;
@@ -120,7 +121,7 @@ pub use given::{Given, constants, given};
 use library::Libraries;
 use problem::Problem;
 
-/// Gets the text of the files that a spec names; the compiler reads none itself.
+/// Gets the text of the files that a spec names; the compiler reads none itself. Loaders of files ask [`loading::unfit`] first.
 pub trait Loader {
     /// The text of a file whose path is as the spec writes it, or why it cannot be had.
     ///

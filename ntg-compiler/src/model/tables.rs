@@ -9,6 +9,7 @@ use ntg_structure::{Table, TableAxis, TableExtrapolation, TableMethod, TableSymm
 
 use super::dimension::Dimension;
 use super::elaborator::{Elaborator, TableSignature, doc_text};
+use super::loading;
 use super::scope::{Allow, Context, Entity, ScopeId};
 use super::table_data::{FileFault, Numbers, Place, read};
 use crate::diagnostic::{Code, Diagnostic};
@@ -222,9 +223,7 @@ impl<'a> Elaborator<'a> {
             Ok(text) => Some(text),
             Err(why) => {
                 let finding = Diagnostic::new(Code::UnreadableTable, span, format!("`{path}` cannot be read: {why}"));
-                self.report(
-                    finding.help("paths are relative to the spec file, or to Cargo.toml for a spec inside Rust"),
-                );
+                self.report(finding.help(loading::help(&why, "the spec file")));
                 None
             }
         }
