@@ -56,7 +56,8 @@ pub(crate) struct Export {
 /// Say how far a point is from a solution, without solving: objective, violations by name, optimality.
 ///
 /// The point is a solver's answer to `ntg export` (.sol) or what `ntg solve --save` has written.
-/// Exit status: 0 when violation and optimality are within the tolerance, 1 when they are not, 2 on errors.
+/// Exit status: 0 when violation and optimality are within the tolerance, 1 when one is not, 2 on errors, 3 when the violation
+/// is and the optimality is not known, as of a point without multipliers.
 ///
 /// Examples:
 ///   ntg check-solution specs/van_der_pol.ntg van_der_pol.sol
@@ -218,7 +219,11 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         Format::Text => files::print(&said.text()),
         Format::Json => files::print(&format!("{:#}", said.json())),
     }
-    Ok(if said.is_solution { Exit::Done } else { Exit::NotSolved })
+    Ok(match (said.is_solution, &judged.optimality) {
+        (true, Some(_)) => Exit::Done,
+        (true, None) => Exit::Acceptable,
+        (false, _) => Exit::NotSolved,
+    })
 }
 
 /// What is bounded, in the user's words.
