@@ -45,7 +45,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     dispersion: dispersion::Dispersed,
     /// Add a column: initial(NAME), final(NAME), min(NAME), max(NAME) of an output or named
-    /// expression, violation(CONSTRAINT), sensitivity(CONSTRAINT), or the name of a number.
+    /// expression, violation(CONSTRAINT), sensitivity(CONSTRAINT), or the name of a number; of an array or of several agents
+    /// a column for each member, `final(r[1])` and so on.
     /// Objective, violations, times and variables are always there.
     #[arg(long = "value", value_name = "VALUE")]
     value: Vec<String>,
@@ -88,7 +89,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     let mut problem = Interpreted::new(&compiled.program);
     let sets = inputs::sets(&mut problem, (&set, arguments.from.as_deref()), &arguments.dispersion)?;
     let structure = problem.structure();
-    let wanted = arguments.value.iter().map(|text| Wanted::parse(text, &structure)).collect::<Result<Vec<_>, _>>()?;
     let settings = settings(arguments)?;
     // The structure holds tables and fixed parameters, which the spec's text does not.
     let mut about = vec![source.text.clone(), format!("{structure:?}"), format!("{settings:?}")];
@@ -98,6 +98,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
 
     let interrupt = Interrupt::install();
     let places = study.inputs.iter().map(|name| inputs::place(&problem, name)).collect::<Result<Vec<_>, _>>()?;
+    // What is wrong with a set is told by its row.
+    let mut first = problem.clone();
+    _ = put(&mut first, &places, &study.sets[0]);
+    let wanted = Wanted::all(&arguments.value, &first)?;
     let rows = Rows::new(problem, Box::new(move |problem, set| put(problem, &places, set)), wanted, {
         let mut settings = settings;
         interrupt.over(&mut settings);

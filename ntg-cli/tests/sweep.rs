@@ -293,3 +293,73 @@ fn a_row_that_no_shorter_intervals_confirm_is_none_of_the_solved() {
     assert!(column(&rows, "objective").iter().any(|objective| objective.starts_with('-')), "{rows:?}");
     assert_ne!(done.status.code(), Some(0));
 }
+
+#[test]
+fn what_is_wanted_of_arrays_and_agents_is_a_column_for_each_member() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let arm = "problem Arm {
+        param far = 2;
+        duration T = 1;
+        output r[3]: spline(order = 5, intervals = 2);
+        variable slack[2];
+        let twice[3] = 2 * r;
+        let sides[2] = (1, far);
+        initial { r == 0; }
+        final { goal: r == (far, 0, 1); }
+        temporal { slack == (3, 4); }
+        minimize integral(norm(der(r, 2))^2);
+    }";
+    let fleet = "problem Fleet {
+        param far = 2;
+        agent uav[k in 1 .. 2] {
+            phase out { duration = 1; output r[2]: spline(order = 5, intervals = 2); final { r == (far * k, 1); } }
+            phase back after out { duration = 1; output r[2]: spline(order = 5, intervals = 2); final { r == 0; } }
+            initial { r == 0; }
+            let speed = norm(der(r));
+            minimize integral(norm(der(r, 2))^2);
+        }
+    }";
+    for (name, text) in [("arm.ntg", arm), ("fleet.ntg", fleet)] {
+        std::fs::write(folder.path().join(name), text).expect("a file can be written");
+    }
+    let study = |spec: &str, values: &[&str]| {
+        let mut words = vec![spec, "--set", "far=1:2:2", "-o", "o.csv", "--force"];
+        words.extend(values.iter().flat_map(|value| ["--value", value]));
+        let ran = ntg(folder.path(), &words);
+        (ran.status.code(), String::from_utf8_lossy(&ran.stderr).into_owned())
+    };
+    let (code, said) = study("arm.ntg", &["final(r)", "final(r)", "max(twice)", "sides", "slack", "final(r[3])"]);
+    assert_eq!(code, Some(0), "{said}");
+    let arm = table(folder.path().join("o.csv"));
+    for (name, values) in [
+        ("final(r[1])", [1.0, 2.0]),
+        ("final(r[2])", [0.0, 0.0]),
+        ("final(r[3])", [1.0, 1.0]),
+        ("max(twice[1])", [2.0, 4.0]),
+        ("max(twice[3])", [2.0, 2.0]),
+        ("sides[1]", [1.0, 1.0]),
+        ("sides[2]", [1.0, 2.0]),
+        ("slack[2]", [4.0, 4.0]),
+    ] {
+        assert_eq!(arm[0].iter().filter(|head| *head == name).count(), 1, "{name}: {:?}", arm[0]);
+        for (cell, value) in column(&arm, name).iter().zip(values) {
+            let cell: f64 = cell.parse().unwrap_or_else(|_| panic!("{name} is `{cell}`"));
+            assert!((cell - value).abs() < 1e-6, "{name}: {cell} for {value}");
+        }
+    }
+    let (code, said) = study("fleet.ntg", &["max(speed)", "final(uav[2].out.r)", "final(uav.r[1])"]);
+    assert_eq!(code, Some(0), "{said}");
+    let fleet = table(folder.path().join("o.csv"));
+    for name in ["max(uav[1].speed)", "max(uav[2].speed)", "final(uav[1].r[1])"] {
+        assert!(column(&fleet, name).iter().all(|cell| !cell.is_empty()), "{name}");
+    }
+    let reached: Vec<f64> =
+        column(&fleet, "final(uav[2].out.r[1])").iter().map(|cell| cell.parse().expect("a number")).collect();
+    assert!((reached[0] - 2.0).abs() < 1e-6 && (reached[1] - 4.0).abs() < 1e-6, "{reached:?}");
+    for (wanted, words) in
+        [("final(r[4])", "solutions have no `r[4]`; they have `r[1]`, `r[2]`"), ("slack[3]", "`slack[3]`")]
+    {
+        let (code, said) = study("arm.ntg", &[wanted]);
+        assert!(code == Some(2) && said.contains(words), "{code:?}: {said}");
+    }
+}

@@ -58,6 +58,10 @@ pub(crate) fn blocks<'py>(
     size: Option<usize>,
 ) -> Vec<Bound<'py, PyArray1<i64>>> {
     let sets = vectors(&sets);
+    let mut first = problem.clone();
+    // What is wrong with a set is told by its row.
+    _ = sets.first().map(|set| put(&mut first, &places, set));
+    let wanted = Wanted::all(&how.values, &first).map_err(|message| invalid("ParameterError", &message))?;
     let size = size.unwrap_or_else(|| ntg_sweep::usual_block(sets.len()));
     let rows =
         |block: Block| -> Vec<i64> { std::iter::once(block.first).chain(block.rest).map(|row| row as i64).collect() };
@@ -85,8 +89,6 @@ pub(crate) fn sweep<'py>(
     let invalid = |class, message: &str| errors::plain(py, class, message);
     let places = inputs.iter().map(|name| place(&problem, name)).collect::<Result<Vec<_>, _>>();
     let places = places.map_err(|message| invalid("ParameterError", &message))?;
-    let wanted = how.values.iter().map(|text| Wanted::parse(text, &structure)).collect::<Result<Vec<_>, _>>();
-    let wanted = wanted.map_err(|message| invalid("ParameterError", &message))?;
     let mut settings = settings.settings(py)?;
     let mut about = vec![compiled.spec.source.text.clone(), format!("{structure:?}"), format!("{settings:?}")];
     about.extend(how.values.iter().cloned());

@@ -2,10 +2,14 @@
 
 use ntg_runtime::problem::Problem;
 use ntg_runtime::report::Report;
+use ntg_runtime::solution::Solution;
 use ntg_runtime::structure::Structure;
 
 /// Samples of a quantity for its least and greatest value.
 const SAMPLES: usize = 401;
+
+/// Names that are told where one is none of them. A choice: a line or two of a terminal.
+const TOLD: usize = 12;
 
 /// A wanted value.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +67,80 @@ impl Wanted {
             value.name,
             known.join("`, `")
         ))
+    }
+
+    /// Reads wanted values; one of an array, or of a family of agents, is one for each member.
+    ///
+    /// # Errors
+    /// In words: an unknown form or name, or a member that there is not.
+    pub fn all(texts: &[String], problem: &dyn Problem) -> Result<Vec<Self>, String> {
+        let structure = problem.structure();
+        // What is wrong with the problem itself is told by its rows.
+        let solution = Solution::unsolved(problem).ok();
+        let mut all: Vec<Self> = vec![];
+        for text in texts {
+            let value = Self::parse(text, &structure)?;
+            let members = match &solution {
+                Some(solution) => value.members(problem, solution)?,
+                None => vec![value],
+            };
+            for member in members {
+                if !all.contains(&member) {
+                    all.push(member);
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// The value itself if solutions have one of its name, else those of the members of what it names.
+    fn members(self, problem: &dyn Problem, solution: &Solution) -> Result<Vec<Self>, String> {
+        let signals = solution.signals(problem).into_iter().map(|signal| signal.name().to_owned());
+        let names: Vec<String> = match self.kind {
+            Kind::Violation | Kind::Sensitivity => return Ok(vec![self]),
+            Kind::Number => {
+                let times = solution.event_times().into_iter().map(|time| time.0);
+                let variables = solution.variables().into_iter().map(|variable| variable.name);
+                variables.chain(times).chain(signals).collect()
+            }
+            _ => {
+                let outputs = solution.trajectories().into_iter().map(|output| output.name().to_owned());
+                outputs.chain(signals).collect()
+            }
+        };
+        let is_there = |name: &str| match self.kind {
+            Kind::Number => names.iter().any(|known| known == name) || solution.signal(problem, name).is_some(),
+            _ => solution.output(name).is_some() || solution.signal(problem, name).is_some(),
+        };
+        if is_there(&self.name) {
+            return Ok(vec![self]);
+        }
+        // In one phase alone: `leg.r` is `leg.r[1]` and so on.
+        let phases = solution.phases().into_iter().map(|phase| phase.name).filter(|name| !name.is_empty());
+        let last = |name: &str| name.rsplit('.').next().unwrap_or(name).to_owned();
+        let in_phases: Vec<String> =
+            phases.flat_map(|phase| names.iter().map(move |name| format!("{phase}.{}", last(name)))).collect();
+        let mut found: Vec<&String> = vec![];
+        for name in names.iter().chain(in_phases.iter().filter(|name| self.name.contains('.') && is_there(name))) {
+            if is_member(name, &self.name) && !found.contains(&name) {
+                found.push(name);
+            }
+        }
+        if found.is_empty() {
+            let more = if names.len() > TOLD { format!(", and {} more", names.len() - TOLD) } else { String::new() };
+            let told = &names[..names.len().min(TOLD)];
+            return Err(format!(
+                "`{}`: solutions have no `{}`; they have `{}`{more}",
+                self.text,
+                self.name,
+                told.join("`, `")
+            ));
+        }
+        let of = |name: &String| {
+            let text = if self.kind == Kind::Number { name.clone() } else { self.text.replacen(&self.name, name, 1) };
+            Self { text, kind: self.kind, name: name.clone() }
+        };
+        Ok(found.into_iter().map(of).collect())
     }
 
     /// The names that may stand in this form.
@@ -137,6 +215,28 @@ impl Wanted {
             Kind::Least => values.fold(f64::INFINITY, f64::min),
             Kind::Greatest => values.fold(f64::NEG_INFINITY, f64::max),
             _ => values.next().unwrap_or(f64::NAN),
+        }
+    }
+}
+
+/// Whether a name is that of a member of what another one names: `uav[2].r[1]` of `r`, `r[1]`, `uav.r` and `uav[2].r`.
+fn is_member(name: &str, of: &str) -> bool {
+    let (name, of): (Vec<&str>, Vec<&str>) = (name.split('.').collect(), of.split('.').collect());
+    let is_like = |(own, wanted): (&&str, &&str)| own == wanted || own.split('[').next() == Some(wanted);
+    name.len() >= of.len() && name[name.len() - of.len()..].iter().zip(&of).all(is_like)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_member;
+
+    #[test]
+    fn members_are_those_of_arrays_and_of_agents() {
+        for of in ["r", "r[1]", "uav.r", "uav[2].r", "uav.r[1]"] {
+            assert!(is_member("uav[2].r[1]", of), "{of}");
+        }
+        for of in ["r[2]", "uav[1].r", "u", "x.uav.r", "2].r"] {
+            assert!(!is_member("uav[2].r[1]", of), "{of}");
         }
     }
 }

@@ -16,9 +16,10 @@ pub use signal::Signal;
 pub use trajectory::Trajectory;
 pub use vector::{Matrix, Vector};
 
+use crate::problem::Problem;
 use crate::transcribe::instances::family_members;
 use crate::transcribe::rows::RowInfo;
-use crate::transcribe::{Model, names};
+use crate::transcribe::{Model, SetupError, Transcription, names};
 use ntg_nlp::Multipliers;
 use ntg_structure::{Structure, Unit};
 use std::fmt;
@@ -103,6 +104,18 @@ impl fmt::Debug for Solution {
 }
 
 impl Solution {
+    /// A point that is no solution, all unknowns at 0: what solutions of a problem have, by which names, before there is one.
+    ///
+    /// # Errors
+    /// What is wrong with the problem and its parameters.
+    pub fn unsolved(problem: &dyn Problem) -> Result<Self, SetupError> {
+        let nlp = Transcription::new(problem)?;
+        let (model, rows, sizes) = (nlp.model.clone(), nlp.elements.rows.clone(), nlp.limits.scale.clone());
+        let x = vec![0.0; sizes.len()];
+        let (row_multipliers, bound_multipliers) = (vec![0.0; rows.len()], x.clone());
+        Ok(Self { inner: Arc::new(Inner { model, x, rows, row_multipliers, bound_multipliers, sizes }) })
+    }
+
     /// What the problem is.
     pub fn structure(&self) -> &Structure {
         &self.inner.model.structure
