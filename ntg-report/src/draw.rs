@@ -31,6 +31,11 @@ const HEIGHT: u32 = 540 * PIXEL;
 const MAP_HEIGHT: u32 = 1100 * PIXEL;
 /// Height of a row of the legend.
 const ROW: i32 = 400;
+/// Digits that numbers have at most behind the first one.
+const MOST_DIGITS: f64 = 15.0;
+/// The strip of numbers and words beside an axis that goes up, where numbers are short, and what each sign takes of it.
+const BESIDE: u32 = 1100;
+const SIGN: u32 = 140;
 
 const INK: RGBColor = RGBColor(30, 30, 30);
 const GREY: RGBColor = RGBColor(110, 110, 110);
@@ -103,10 +108,11 @@ fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
     let below = area.split_vertically(480).1;
     let plot = if panel.lines.len() > 1 { legend(&below, &panel.lines)? } else { below };
     let (mut xs, mut ys) = ranges(panel);
+    let beside = beside(&ys);
     if panel.equal {
         let (width, height) = plot.dim_in_pixel();
         // What the labels and margins below take.
-        let aspect = f64::from(width.saturating_sub(1700)) / f64::from(height.saturating_sub(1100));
+        let aspect = f64::from(width.saturating_sub(600 + beside)) / f64::from(height.saturating_sub(1100));
         equalise(&mut xs, &mut ys, aspect);
     }
     let mut chart = ChartBuilder::on(&plot)
@@ -115,7 +121,7 @@ fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .margin_top(120)
         .margin_bottom(100)
         .x_label_area_size(780)
-        .y_label_area_size(1100)
+        .y_label_area_size(beside)
         .build_cartesian_2d(xs.clone(), ys.clone())?;
     chart
         .configure_mesh()
@@ -388,16 +394,35 @@ fn equalise(xs: &mut Range<f64>, ys: &mut Range<f64>, aspect: f64) {
     *axis = middle - 0.5 * wanted..middle + 0.5 * wanted;
 }
 
+/// How wide the strip beside an axis is, for numbers like those near its ends.
+fn beside(ys: &Range<f64>) -> u32 {
+    /// Signs that have room in the usual strip.
+    const SHORT: usize = 6;
+    let length = ys.end - ys.start;
+    let step = 10_f64.powf((length / 10.0).log10().floor());
+    // As many steps as there are last digits.
+    let places = (0..10).map(|k| ((ys.start / step).round() + f64::from(k)) * step);
+    let signs = places.map(|place| number(place, length).chars().count());
+    let more = signs.max().unwrap_or_default().saturating_sub(SHORT);
+    BESIDE + SIGN * u32::try_from(more).unwrap_or_default()
+}
+
 /// A number as short as it can be said on an axis of a given length.
 fn number(x: f64, length: f64) -> String {
     if x.abs() < 1e-9 * length {
         return "0".to_owned();
     }
-    if !(1e-4..1e6).contains(&x.abs()) {
-        return format!("{x:.1e}");
-    }
     // Two digits beyond the tenth part of the axis tell neighbouring labels apart.
-    let decimals = (1.0 - (length / 10.0).log10().floor()).clamp(0.0, 9.0) as usize;
+    let last = (length / 10.0).log10().floor() - 1.0;
+    if !(1e-4..1e6).contains(&x.abs()) {
+        let decimals = (x.abs().log10().floor() - last).clamp(1.0, MOST_DIGITS) as usize;
+        let text = format!("{x:.decimals$e}");
+        let (number, power) = text.split_once('e').unwrap_or((&text, "0"));
+        let short = number.trim_end_matches('0');
+        let short = if short.ends_with('.') { format!("{short}0") } else { short.to_owned() };
+        return format!("{short}e{power}");
+    }
+    let decimals = (-last).clamp(0.0, MOST_DIGITS) as usize;
     let text = format!("{x:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
@@ -412,6 +437,25 @@ mod tests {
         let unique: std::collections::BTreeSet<_> = looks.iter().collect();
         assert_eq!(unique.len(), looks.len());
         assert!(looks[..8].iter().all(|(_, dashes)| dashes.is_none()));
+    }
+
+    #[test]
+    fn numbers_of_an_axis_differ() {
+        for (middle, length) in
+            [(1e6, 400.0), (1e6, 100.0), (6.378e6, 1e3), (3e-5, 3e-9), (-1e9, 2e5), (0.5, 5e-5), (7e5, 1e-3)]
+        {
+            for parts in [4, 8, 10] {
+                let ticks = (0..=parts).map(|k| middle + length * (f64::from(k) / f64::from(parts) - 0.5));
+                let labels: Vec<String> = ticks.map(|x| number(x, length)).collect();
+                let unique: std::collections::BTreeSet<_> = labels.iter().collect();
+                assert_eq!(unique.len(), labels.len(), "{labels:?}");
+            }
+        }
+        // Where numbers are far apart they stay short.
+        assert_eq!([1e6, 2.5e6, 0.0, -4e6].map(|x| number(x, 1e7)), ["1.0e6", "2.5e6", "0", "-4.0e6"]);
+        assert_eq!([0.25, 0.5].map(|x| number(x, 1.0)), ["0.25", "0.5"]);
+        assert_eq!(beside(&(0.0..1.0)), BESIDE);
+        assert_eq!(beside(&(1.0e6..1.0004e6)), BESIDE + 3 * SIGN, "`1.00005e6` has three signs more");
     }
 
     #[test]

@@ -11,7 +11,7 @@ function NtgAt(line, t) {
   const at = { x: of(line.x), y: of(line.y), z: of(line.z) };
   return isFinite(at.x) && isFinite(at.y) ? at : null;
 }
-function NtgMap(place, chart, { colour, dash, number }) {
+function NtgMap(place, chart, { colour, dash, number, told }) {
   const NS = "http://www.w3.org/2000/svg";
   const make = (name, attributes, parent) => {
     const element = document.createElementNS(NS, name);
@@ -132,13 +132,14 @@ function NtgMap(place, chart, { colour, dash, number }) {
     const f = fitted();
     const clip = make("clipPath", { id: `clip${place.dataset.chart}` }, make("defs", {}, svg));
     make("rect", { x: margin.left, y: margin.top, width: f.w, height: f.h }, clip);
-    for (const v of ticks(f.x0, f.x1, f.w / 90)) {
+    const across = ticks(f.x0, f.x1, f.w / 90), up = ticks(f.y0, f.y1, f.h / 60);
+    for (const [v, text] of told(across).map((text, i) => [across[i], text])) {
       make("line", { class: "grid", x1: f.px(v), x2: f.px(v), y1: margin.top, y2: margin.top + f.h }, svg);
-      make("text", { x: f.px(v), y: margin.top + f.h + 16, "text-anchor": "middle" }, svg).textContent = number(v);
+      make("text", { x: f.px(v), y: margin.top + f.h + 16, "text-anchor": "middle" }, svg).textContent = text;
     }
-    for (const v of ticks(f.y0, f.y1, f.h / 60)) {
+    for (const [v, text] of told(up).map((text, i) => [up[i], text])) {
       make("line", { class: "grid", x1: margin.left, x2: margin.left + f.w, y1: f.py(v), y2: f.py(v) }, svg);
-      make("text", { x: margin.left - 6, y: f.py(v) + 4, "text-anchor": "end" }, svg).textContent = number(v);
+      make("text", { x: margin.left - 6, y: f.py(v) + 4, "text-anchor": "end" }, svg).textContent = text;
     }
     make("rect", { class: "frame", x: margin.left, y: margin.top, width: f.w, height: f.h }, svg);
     make("text", { x: margin.left + f.w / 2, y: height - 8, "text-anchor": "middle" }, svg).textContent = chart.x;

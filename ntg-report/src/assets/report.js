@@ -213,10 +213,10 @@
     place.classList.toggle("crowded", chart.lines.length > 6);
     if (chart.kind === "space") {
       place.classList.add("wide");
-      drawn.push(NtgSpace(place, chart, { colour, dash, number, css }));
+      drawn.push(NtgSpace(place, chart, { colour, dash, number, told, css }));
     } else if (chart.kind === "map") {
       place.classList.add("wide");
-      drawn.push(NtgMap(place, chart, { colour, dash, number }));
+      drawn.push(NtgMap(place, chart, { colour, dash, number, told }));
     } else {
       time(place, chart);
     }

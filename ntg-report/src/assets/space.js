@@ -1,6 +1,6 @@
 // Tracks in space: a picture that turns, with the ground, zones, balls and places that they pass.
 "use strict";
-function NtgSpace(place, chart, { colour, dash, number, css }) {
+function NtgSpace(place, chart, { colour, dash, number, told, css }) {
   const canvas = place.appendChild(document.createElement("canvas"));
   canvas.className = "space"; canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
@@ -126,10 +126,11 @@ function NtgSpace(place, chart, { colour, dash, number, css }) {
     const below = (p, label) => { const [x, y] = project(p); free(label, [x, y + 12], quiet, "center"); };
     // As many numbers as have room.
     const room = (p, q) => { const [a, b] = [project(p), project(q)]; return Math.max(1, Math.min(7, Math.hypot(a[0] - b[0], a[1] - b[1]) / 48)); };
-    for (const x of steps(x0, x1, room([x0, ynear, z0], [x1, ynear, z0]))) below([x, ynear, z0], number(x));
-    for (const y of steps(y0, y1, room([xnear, y0, z0], [xnear, y1, z0]))) below([xnear, y, z0], number(y));
+    const marked = (all, mark) => told(all).forEach((text, i) => mark(all[i], text));
+    marked([...steps(x0, x1, room([x0, ynear, z0], [x1, ynear, z0]))], (x, text) => below([x, ynear, z0], text));
+    marked([...steps(y0, y1, room([xnear, y0, z0], [xnear, y1, z0]))], (y, text) => below([xnear, y, z0], text));
     stroke(project, [[cx, cy, z0], [cx, cy, z1]], quiet, 1);
-    for (const z of steps(z0, z1, 5)) { const [x, y] = project([cx, cy, z]); free(number(z), [x - 6, y], quiet, "right"); }
+    marked([...steps(z0, z1, 5)], (z, text) => { const [x, y] = project([cx, cy, z]); free(text, [x - 6, y], quiet, "right"); });
   };
 
   // The part of an area, or of a segment, that lies in the box.
