@@ -59,7 +59,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         write::may_write(path, arguments.force)?;
     }
     let Some(spec) = files::compile(&arguments.spec, &arguments.set) else { return Err(String::new()) };
-    let files::Spec { source, compiled, set } = spec;
+    let files::Spec { source, compiled, set, read } = spec;
+    write::spares(arguments.output.as_slice(), &read)?;
     let mut problem = Interpreted::new(&compiled.program);
     set.put(&mut problem)?;
     let mut settings = Settings::default();

@@ -118,6 +118,7 @@ pub(crate) fn run(arguments: &Embed) -> Result<Exit, String> {
         problem: &structure.name,
         spec: (&file_name(&source.name), &source.text),
         loaded: &loader.loaded.borrow(),
+        read: &[vec![arguments.spec.clone()], loader.loader.loaded()].concat(),
         header: &header.text(),
         dependency: &dependency,
         loops: &loops::Loops { name: &name, readings: &readings, state: &state },

@@ -100,6 +100,8 @@ enum Kind {
 /// A problem before it is transcribed.
 struct Read {
     source: Source,
+    /// The files that were read.
+    files: Vec<PathBuf>,
     program: Program,
     problem: Interpreted,
     guess: Option<Guess>,
@@ -108,11 +110,12 @@ struct Read {
 impl Problem {
     fn read(&self) -> Result<Read, String> {
         let Some(spec) = files::compile(&self.spec, &self.set) else { return Err(String::new()) };
-        let files::Spec { source, compiled, set } = spec;
+        let files::Spec { source, compiled, set, mut read } = spec;
+        read.extend(self.guess.clone());
         let mut problem = Interpreted::new(&compiled.program);
         set.put(&mut problem)?;
         let guess = self.guess.as_deref().map(|path| guess::read(path, &problem)).transpose()?;
-        Ok(Read { source, program: compiled.program, problem, guess })
+        Ok(Read { source, files: read, program: compiled.program, problem, guess })
     }
 }
 
@@ -171,6 +174,7 @@ pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
     }
     paths.iter().try_for_each(|path| crate::write::may_write(path, arguments.force))?;
     let read = arguments.problem.read()?;
+    crate::write::spares(&paths, &read.files)?;
     let problem = read.posed();
     let nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
     let first = start(&nlp, read.guess.as_ref()).map_err(|error| read.said(error))?;

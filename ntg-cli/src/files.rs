@@ -1,5 +1,6 @@
 //! Reads specs and the tables they name; shows findings.
 
+use std::cell::RefCell;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
@@ -15,15 +16,29 @@ use crate::values::Assignments;
 /// Share of letters in place from which a file's name is taken for a slip of the pen.
 const LIKE: f64 = 0.6;
 
-/// Finds table files relative to the spec that names them.
+/// Finds table files relative to the spec that names them, and remembers which.
 pub(crate) struct BesideSpec {
     folder: PathBuf,
+    loaded: RefCell<Vec<PathBuf>>,
+}
+
+impl BesideSpec {
+    fn new(folder: PathBuf) -> Self {
+        Self { folder, loaded: RefCell::default() }
+    }
+
+    /// The files that were found.
+    pub(crate) fn loaded(&self) -> Vec<PathBuf> {
+        self.loaded.borrow().clone()
+    }
 }
 
 impl Loader for BesideSpec {
     fn load(&self, path: &str) -> Result<String, String> {
         let path = self.folder.join(path);
-        reading::named(&path).map_err(|error| reason(&path, &error, &self.folder))
+        let text = reading::named(&path).map_err(|error| reason(&path, &error, &self.folder))?;
+        self.loaded.borrow_mut().push(path);
+        Ok(text)
     }
 }
 
@@ -134,15 +149,11 @@ pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
             format!("`{name}` is a table of numbers; name a spec, which may read it: `from \"...\" column 1`");
         return Err(Failure::Unread { name, message });
     }
-    let bytes = if is_standard_input(path) {
-        reading::all(std::io::stdin())
-    } else {
-        reading::bytes(path)
-    };
+    let bytes = if is_standard_input(path) { reading::all(std::io::stdin()) } else { reading::bytes(path) };
     let bytes = bytes.map_err(|error| Failure::Unread { name: name.clone(), message: unread(path, &error) })?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     match String::from_utf8(bytes) {
-        Ok(text) => Ok((Source::new(name, text), BesideSpec { folder })),
+        Ok(text) => Ok((Source::new(name, text), BesideSpec::new(folder))),
         Err(error) => Err(not_text(name, &error)),
     }
 }
@@ -163,6 +174,8 @@ pub(crate) struct Spec {
     pub(crate) source: Source,
     pub(crate) compiled: Compiled,
     pub(crate) set: Assignments,
+    /// The files that it is made of: its own, those of its tables and libraries.
+    pub(crate) read: Vec<PathBuf>,
 }
 
 /// Reads and compiles a spec with the constants that are set. Findings go to standard error; `None` when there are
@@ -173,7 +186,8 @@ pub(crate) fn compile(path: &Path, set: &[String]) -> Option<Spec> {
     match ntg_compiler::compile_with(&source, &loader, &given) {
         Ok(compiled) => {
             show(&source, compiled.notes.iter());
-            Some(Spec { source, compiled, set })
+            let read = std::iter::once(path.to_owned()).chain(loader.loaded()).collect();
+            Some(Spec { source, compiled, set, read })
         }
         Err(found) => {
             show(&source, found.iter());

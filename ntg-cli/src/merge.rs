@@ -45,6 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
              the journals with --from"
         ));
     }
+    write::spares(&[output], &journals)?;
     let results = ntg_sweep::merge(&journals)?;
     write::whole(output, arguments.force, &ntg_sweep::write(&results, format)?)?;
     if !arguments.keep {

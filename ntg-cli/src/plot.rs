@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         _ => return Err(format!("`{}`: plots are .svg or .png files", arguments.output.display())),
     };
     write::may_write(&arguments.output, arguments.force)?;
-    let loaded = arguments.inputs.load()?;
+    let loaded = arguments.inputs.load(&arguments.output)?;
     let runs: Vec<(String, &Run)> = loaded.iter().map(|(name, run)| (name.clone(), run)).collect();
     let panels = panels(arguments, &runs)?;
     let names: Vec<&str> = runs.iter().map(|(_, run)| run.problem.as_str()).collect();

@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     write::may_write(&arguments.output, arguments.force)?;
-    let loaded = arguments.inputs.load()?;
+    let loaded = arguments.inputs.load(&arguments.output)?;
     let runs: Vec<(String, &Run)> = loaded.iter().map(|(name, run)| (name.clone(), run)).collect();
     let page = html::page(&runs, &html::Page { tracks: arguments.xy.clone(), all: arguments.all })?;
     write::whole(&arguments.output, arguments.force, page.as_bytes())?;

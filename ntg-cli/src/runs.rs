@@ -14,7 +14,7 @@ use ntg_runtime::settings::{Progress, Settings};
 
 use crate::solve::explained;
 use crate::watch::{Interrupt, Watch};
-use crate::{arguments, files, options, setup, starts};
+use crate::{arguments, files, options, setup, starts, write};
 
 /// What can be read as a run.
 pub(crate) const SAVED: &str = "give a file that `ntg solve --save` has written";
@@ -37,13 +37,15 @@ const SHOWN: usize = 8;
 
 impl Inputs {
     /// The runs, each with its name: one for each file, or for each local minimum where there are many starts.
-    pub(crate) fn load(&self) -> Result<Vec<(String, Run)>, String> {
+    /// A result never takes the place of one of the files.
+    pub(crate) fn load(&self, output: &Path) -> Result<Vec<(String, Run)>, String> {
+        write::spares(&[output], &self.files)?;
         let interrupt = Interrupt::install();
         let mut found = vec![];
         for path in &self.files {
             let runs = match path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
                 true => vec![(name(path), self.saved(path)?)],
-                false => self.solved(path, &interrupt)?,
+                false => self.solved(path, output, &interrupt)?,
             };
             found.extend(runs);
         }
@@ -60,9 +62,10 @@ impl Inputs {
         Run::read(&text).map_err(|message| format!("`{}` {message}; {SAVED}", path.display()))
     }
 
-    fn solved(&self, path: &Path, interrupt: &Interrupt) -> Result<Vec<(String, Run)>, String> {
+    fn solved(&self, path: &Path, output: &Path, interrupt: &Interrupt) -> Result<Vec<(String, Run)>, String> {
         // Findings have been said.
-        let files::Spec { source, compiled, set } = files::compile(path, &self.set).ok_or_else(String::new)?;
+        let files::Spec { source, compiled, set, read } = files::compile(path, &self.set).ok_or_else(String::new)?;
+        write::spares(&[output], &read)?;
         let mut problem = Interpreted::new(&compiled.program);
         set.put(&mut problem)?;
         let spec = Spec { path, problem, source, notes: compiled.notes };

@@ -34,6 +34,11 @@ impl Arguments {
         csv.chain(self.parquet.iter().map(|path| (path.as_path(), Format::Parquet)))
     }
 
+    /// The files that are written.
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.files().map(|(path, _)| path)
+    }
+
     /// Whether all can be written, before anything is solved.
     pub(crate) fn checked(&self, force: bool) -> Result<(), String> {
         for (path, format) in self.files() {

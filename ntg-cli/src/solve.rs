@@ -5,6 +5,7 @@ mod sensitivity;
 mod starts;
 mod text;
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ntg_certify::guarantee::{Guaranteed, Task};
@@ -65,7 +66,10 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     }
     arguments.sampled.checked(arguments.force)?;
     let Some(spec) = files::compile(&arguments.spec, &arguments.set) else { return Err(String::new()) };
-    let files::Spec { source, compiled, set } = spec;
+    let files::Spec { source, compiled, set, mut read } = spec;
+    read.extend(arguments.guess.clone());
+    let outputs: Vec<&Path> = arguments.save.as_deref().into_iter().chain(arguments.sampled.paths()).collect();
+    write::spares(&outputs, &read)?;
     let mut problem = Interpreted::new(&compiled.program);
     set.put(&mut problem)?;
     let every = arguments.sampled.spacing(&problem.structure().independent)?;

@@ -80,12 +80,15 @@ const REDRAW: Duration = Duration::from_millis(100);
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     let format = Format::of(&arguments.output)?;
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
     if arguments.shard.is_none() {
         write::may_write(&arguments.output, arguments.force)?;
     }
     // Findings have been said.
     let spec = files::compile(&arguments.spec, &arguments.set).ok_or_else(String::new)?;
-    let files::Spec { source, compiled, set } = spec;
+    let files::Spec { source, compiled, set, mut read } = spec;
+    read.extend(arguments.from.clone());
+    write::spares(&[&arguments.output, &journal::beside(&arguments.output, shard)], &read)?;
     let mut problem = Interpreted::new(&compiled.program);
     let sets = inputs::sets(&mut problem, (&set, arguments.from.as_deref()), &arguments.dispersion)?;
     let structure = problem.structure();
@@ -107,7 +110,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
         interrupt.over(&mut settings);
         settings
     });
-    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
     let journal = journal::beside(&arguments.output, shard);
     let count = shard.blocks(blocks(&study.sets, study.block)).iter().map(|block| 1 + block.rest.len()).sum();
     let progress = Progress::new(count, interrupt);

@@ -1,9 +1,11 @@
-//! Files that are either whole or not there.
+//! Files that are either whole or not there, and in the place of none that the same command reads.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tempfile::Builder;
+
+use crate::files::is_standard_input;
 
 /// Refuses a file that exists, before anything is computed; and a spec in any case: a result never replaces one.
 pub(crate) fn may_write(path: &Path, force: bool) -> Result<(), String> {
@@ -24,6 +26,45 @@ fn may_replace(path: &Path, force: bool) -> Result<(), String> {
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses outputs that are one of the files that a command reads, by whatever name, or one another.
+pub(crate) fn spares<P: AsRef<Path>>(outputs: &[P], inputs: &[PathBuf]) -> Result<(), String> {
+    for (number, output) in outputs.iter().enumerate() {
+        let output = output.as_ref();
+        let shown = output.display();
+        if let Some(input) = inputs.iter().find(|input| is_same(input, output)) {
+            let by = if input == output { String::new() } else { format!(" as `{}`", input.display()) };
+            return Err(format!("`{shown}` is read by this command{by}; give the result another name"));
+        }
+        if outputs[..number].iter().any(|other| is_same(other.as_ref(), output)) {
+            return Err(format!("`{shown}` would be written twice; give each result a name of its own"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether two paths lead to one file.
+pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
+    let [one, other] = [one, other].map(|path| match is_standard_input(path) {
+        // Where a shell has put a file in the place of standard input.
+        true => Path::new("/dev/stdin"),
+        false => path,
+    });
+    std::path::absolute(one).ok().zip(std::path::absolute(other).ok()).is_some_and(|(one, other)| one == other)
+        || identity(one).zip(identity(other)).is_some_and(|(one, other)| one == other)
+}
+
+/// What all names of a file have in common; none of a file that is not there.
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    path.metadata().ok().map(|about| (about.dev(), about.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(path: &Path) -> Option<PathBuf> {
+    path.canonicalize().ok()
 }
 
 /// Writes a file beside its place first and then moves it there.

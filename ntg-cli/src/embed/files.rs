@@ -1,6 +1,6 @@
 //! The files of a written crate.
 
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 use super::loops::Loops;
 use super::source::Dependency;
@@ -14,6 +14,8 @@ pub(super) struct Crate<'a> {
     pub(super) spec: (&'a str, &'a str),
     /// What the spec has loaded, by the paths that it gives.
     pub(super) loaded: &'a [(String, String)],
+    /// The files that were read.
+    pub(super) read: &'a [PathBuf],
     pub(super) header: &'a str,
     pub(super) dependency: &'a Dependency,
     pub(super) loops: &'a Loops<'a>,
@@ -60,6 +62,13 @@ impl Crate<'_> {
             let path = folder.join(place);
             if path.exists() && !force {
                 return Err(format!("`{}` exists; give --force to replace it, or another folder", path.display()));
+            }
+        }
+        for (place, text) in &files {
+            let path = folder.join(place);
+            // The spec and its tables may stand in the crate already, as they are written.
+            if std::fs::read(&path).is_ok_and(|own| own != text.as_bytes()) {
+                crate::write::spares(&[path], self.read)?;
             }
         }
         for (place, text) in &files {
