@@ -165,7 +165,7 @@ pub(crate) struct Solve {
     /// Let `--save`, `--csv` and `--parquet` replace an existing file.
     #[arg(long)]
     pub(crate) force: bool,
-    /// Give up after that many seconds.
+    /// Give up after that many seconds, those counted in which the spec is read and compiled.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) time_limit: Option<f64>,
     /// Give up after that many iterations.

@@ -6,6 +6,8 @@ mod starts;
 mod text;
 
 use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use ntg_certify::guarantee::{Guaranteed, Task};
@@ -65,8 +67,10 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         write::may_write(path, arguments.force)?;
     }
     arguments.sampled.checked(arguments.force)?;
-    let Some(spec) = files::compile(&arguments.spec, &arguments.set) else { return Err(String::new()) };
-    let files::Spec { source, compiled, set, mut read } = spec;
+    let files::Spec { source, compiled, set, mut read } = match compiled(arguments, settings.time_limit) {
+        Ok(spec) => spec,
+        Err(exit) => return Ok(exit),
+    };
     read.extend(arguments.guess.clone());
     let outputs: Vec<&Path> = arguments.save.as_deref().into_iter().chain(arguments.sampled.paths()).collect();
     write::spares(&outputs, &read)?;
@@ -75,6 +79,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
     let every = arguments.sampled.spacing(&problem.structure().independent)?;
     let guess = first_guess(arguments, &problem)?;
     let compile_seconds = began.elapsed().as_secs_f64();
+    // The limit is that of the call.
+    settings = settings.after(began.elapsed());
 
     let (interrupt, solving) = (Interrupt::install(), Instant::now());
     let guess = guess.unwrap_or_default();
@@ -160,6 +166,31 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         false if report.has_solution() => Exit::Acceptable,
         false => Exit::NotSolved,
     })
+}
+
+/// The spec, compiled within a time if there is a limit; else how the command ends, and why has been told.
+fn compiled(arguments: &arguments::Solve, limit: Option<Duration>) -> Result<files::Spec, Exit> {
+    /// More than specs need that are nested as deeply as they may be; what is not touched costs nothing.
+    const STACK: usize = 256 << 20;
+    let Some(limit) = limit else { return files::compile(&arguments.spec, &arguments.set).ok_or(Exit::Bad) };
+    let (done, waiting) = mpsc::channel();
+    let (spec, set) = (arguments.spec.clone(), arguments.set.clone());
+    // The compiler has no clock: where it is late its thread is left behind, and ends with the program.
+    let compiler = thread::Builder::new().stack_size(STACK);
+    let compiler = compiler.spawn(move || _ = done.send(files::compile(&spec, &set)));
+    let found = match compiler {
+        Ok(_) => waiting.recv_timeout(limit),
+        Err(error) => {
+            tell!("error: no thread can be started: {error}");
+            return Err(Exit::Bad);
+        }
+    };
+    if let Err(RecvTimeoutError::Timeout) = found {
+        let spec = arguments.spec.display();
+        tell!("{spec}: the time limit was reached before the spec was compiled; allow more time (`--time-limit`)");
+        return Err(Exit::NotSolved);
+    }
+    found.ok().flatten().ok_or(Exit::Bad)
 }
 
 /// Whether a solve was stopped from outside.

@@ -252,11 +252,29 @@ fn documents_of_a_solve_have_the_notes_of_the_spec_as_those_of_check_do() {
 }
 
 #[test]
-fn starts_for_which_there_is_no_time_are_no_mistake_of_the_spec() {
+fn a_solve_for_which_there_is_no_time_is_no_mistake_of_the_spec() {
     let folder = with(FIT);
-    let found = ntg(folder.path(), &["solve", "spec.ntg", "--starts", "3", "--time-limit", "1e-9"]);
+    for more in [&[][..], &["--starts", "3"]] {
+        let found = ntg(folder.path(), &[&["solve", "spec.ntg", "--time-limit", "1e-9"], more].concat());
+        assert_eq!(found.status.code(), Some(1), "{}", said(&found));
+        assert!(said(&found).contains("the time limit was reached before"), "{}", said(&found));
+    }
+    // What is wrong with it is told where there is time.
+    fs::write(folder.path().join("wrong.ntg"), FIT.replace("duration", "durations"))
+        .expect("a file can be written");
+    let found = ntg(folder.path(), &["solve", "wrong.ntg", "--time-limit", "1000"]);
+    assert_eq!(found.status.code(), Some(2), "{}", said(&found));
+}
+
+/// Forty thousand nodes take longer to be read than the limit is.
+#[test]
+fn the_time_limit_holds_for_the_compiler_too() {
+    let nodes: Vec<String> = (0..40_000).map(|k| format!("{k}: {}", k % 7)).collect();
+    let table = format!("table f(a) = monotone {{ {} }};", nodes.join("; "));
+    let folder = with(&FIT.replacen('{', &format!("{{ {table} "), 1));
+    let found = ntg(folder.path(), &["solve", "spec.ntg", "--time-limit", "1e-3"]);
     assert_eq!(found.status.code(), Some(1), "{}", said(&found));
-    assert!(said(&found).contains("the time limit was reached before a start began"), "{}", said(&found));
+    assert!(said(&found).contains("the time limit was reached before the spec was compiled"), "{}", said(&found));
 }
 
 #[test]
