@@ -39,6 +39,7 @@ macro_rules! messages {
 
 messages! {
     numbers: inside("let a = 5s;\nlet a = 1_000;\nlet a = 0x1F;\nlet a = 1.;\nlet a = 1.e5;\nlet a = .5;\nlet a = 1.5.2;\nlet a = 2e;\nlet a = 3em;");
+    numbers_with_points: inside("let a = 1e5.0;\nlet a = 1e5.;\nlet a = 2.5E-3.00;\nlet a = 2e0.5;\nlet a = 1.2e3.75;\nlet a = 1.e-5;\nlet a = 1.;");
     a_number_that_overflows: inside("let a = 1e400;");
     ranges_of_other_languages: inside("variable m in 1...2;\nvariable n in 1..=2;");
     primes: inside("let v = x';\nlet a = x'';\nlet s = 'text';");

@@ -17,8 +17,7 @@ impl Scanner<'_> {
             // `1.`, `1.e5`, `1.x`, `1.5.2`: what follows the point belongs to the mistake.
             let length = good + 1 + name_length(&after[1..]);
             let number = &rest[..good];
-            let help = format!("write digits after the point, `{}.0`, or none at all", number.replace('.', ""));
-            let help = if number.contains('.') { "a number has one point".into() } else { help };
+            let help = of_point(number, &after[1..]);
             self.malformed(length, good, &help);
         } else if rest[..good].parse::<f64>().is_ok_and(f64::is_infinite) {
             let finding = Diagnostic::new(Code::NumberTooLarge, self.ahead(good), "this number is too large");
@@ -81,6 +80,23 @@ impl Scanner<'_> {
             shown.push_str("...");
         }
         shown
+    }
+}
+
+/// What to write for a number with a point behind it and what follows that.
+fn of_point(number: &str, tail: &str) -> String {
+    let digits: String = tail.chars().take_while(char::is_ascii_digit).collect();
+    match number.find(['e', 'E']) {
+        Some(_) if digits.chars().all(|digit| digit == '0') => format!("an exponent is a whole number: `{number}`"),
+        Some(at) => {
+            let (factor, power) = (&number[..at], &number[at + 1..]);
+            format!("an exponent is a whole number; others are powers: `{factor} * 10^({power}.{digits})`")
+        }
+        None if number.contains('.') => "a number has one point".into(),
+        None => {
+            let exponent = number_length(&format!("0{tail}")) - 1;
+            format!("write digits after the point, `{number}.0{}`, or none at all", &tail[..exponent])
+        }
     }
 }
 
