@@ -117,12 +117,21 @@ impl Dag {
         true
     }
 
+    /// As [`Self::schedule_outside`], without nodes that are known and what these need alone.
+    pub(super) fn schedule_unknown(&self, roots: &[NodeId], is_known: impl Fn(NodeId) -> bool) -> Vec<NodeId> {
+        self.reached(roots, false, is_known)
+    }
+
     fn reachable(&self, roots: &[NodeId], into_bodies: bool) -> Vec<NodeId> {
+        self.reached(roots, into_bodies, |_| false)
+    }
+
+    fn reached(&self, roots: &[NodeId], into_bodies: bool, is_known: impl Fn(NodeId) -> bool) -> Vec<NodeId> {
         let mut seen: Set<NodeId> = Set::default();
         let mut found = Vec::new();
         let mut open: Vec<NodeId> = roots.to_vec();
         while let Some(id) = open.pop() {
-            if !seen.insert(id) {
+            if is_known(id) || !seen.insert(id) {
                 continue;
             }
             found.push(id);

@@ -66,8 +66,18 @@ pub fn eval_in<S: Scalar>(
     roots: &[NodeId],
     environment: &mut impl Environment<S>,
 ) -> Result<Vec<S>, EvalError> {
-    let mut values: Map<NodeId, S> = Map::default();
-    for id in dag.schedule_outside(roots) {
+    eval_from(dag, roots, environment, &mut Map::default())
+}
+
+/// As [`eval_in`], where the values of some nodes in the same environment are known; those of all nodes outside reductions that
+/// the roots are made of are known afterwards. So what many roots share is evaluated once.
+pub fn eval_from<S: Scalar>(
+    dag: &Dag,
+    roots: &[NodeId],
+    environment: &mut impl Environment<S>,
+    values: &mut Map<NodeId, S>,
+) -> Result<Vec<S>, EvalError> {
+    for id in dag.schedule_unknown(roots, |id| values.contains_key(&id)) {
         let value = match dag.node(id) {
             Node::Const(number) => S::constant(number.value()),
             Node::Input(input) => environment.input(*input),

@@ -21,7 +21,7 @@ mod tests;
 
 pub use dag::Dag;
 pub use derivative::{Again, DerivativeError, Entry, Rates, SecondIndex, forward, forward_from, gradient, hessian};
-pub use eval::{Environment, EvalError, eval, eval_in};
+pub use eval::{Environment, EvalError, eval, eval_from, eval_in};
 pub use hash::{Map, Set};
 pub use node::{Binary, Fold, InputId, Node, NodeId, Number, Unary};
 pub use scalar::Scalar;

@@ -208,6 +208,14 @@ impl<'a> Elaborator<'a> {
         forward(dag, node, |input| rates.get(&input).copied(), &mut again)
     }
 
+    /// The slope of a node by one input, where the slopes of some nodes by it are known.
+    pub(super) fn slope_by(&mut self, node: NodeId, input: InputId, known: &mut Rates) -> NodeId {
+        let one = self.problem.dag.constant(1.0);
+        let Problem { dag, leaves, ranges, .. } = &mut self.problem;
+        let mut again = MoreIndices { leaves, ranges, next: &mut self.next_index };
+        forward_from(dag, node, |other| (other == input).then_some(one), &mut again, known)
+    }
+
     fn rate_of_tau(&mut self, cx: &Context<'a>) -> Option<NodeId> {
         let phase = self.scopes[cx.scope].phase?;
         let duration = self.leaf(Leaf::Duration(cx.phase_at(phase)));

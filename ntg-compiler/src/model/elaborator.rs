@@ -5,6 +5,7 @@
 //! pass. A template that several phases share is elaborated once for each, so findings
 //! are kept without repetition.
 
+use std::cell::{Cell, RefCell};
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
@@ -222,6 +223,10 @@ pub(super) struct Elaborator<'a> {
     /// How many expressions were looked at for that, and how many were elaborated: what tests of growth count.
     pub(super) looks: usize,
     pub(super) elaborated: usize,
+    /// What stands in brackets behind the names of definitions, of so many of them, with the first one.
+    pub(super) behind_names: RefCell<(usize, HashMap<String, &'a str>)>, // Looked up, never iterated.
+    /// How often names like an unknown one were looked for, and among how many.
+    pub(super) searched: Cell<(usize, usize)>,
     reported: HashSet<(Code, Span, String)>, // Asked, never iterated.
     pub(super) next_index: u32,
     pub(super) next_symbol: u32,
@@ -304,6 +309,8 @@ impl<'a> Elaborator<'a> {
             function_needs: HashMap::new(),
             looks: 0,
             elaborated: 0,
+            behind_names: RefCell::default(),
+            searched: Cell::default(),
             reported: HashSet::new(),
             next_index: 0,
             next_symbol: 0,

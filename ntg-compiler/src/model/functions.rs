@@ -13,7 +13,7 @@ use super::elaborator::Elaborator;
 use super::function_habits::HABITS;
 use super::kinds::Kind;
 use super::problem::Form;
-use super::scope::{Allow, Context, Entity, Meaning, look_up, visible};
+use super::scope::{Allow, Context, Entity, Meaning, look_up};
 use super::suggest::{behind_near, nearest};
 use super::value::{Flaw, Misplaced, Value, What};
 use super::vectors::{VECTOR_FUNCTIONS, vector_function};
@@ -177,7 +177,7 @@ impl<'a> Elaborator<'a> {
         if self.is_of_broken_library(cx.names(), name) {
             return self.poison(call.span);
         }
-        let names = visible(&self.scopes, cx.names());
+        let names = self.in_sight(cx.names());
         let own = names.iter().filter(|(_, e)| matches!(e, Entity::Function(_) | Entity::Table(_))).map(|(n, _)| *n);
         let standard = || self.in_standard(name, APPLIED).filter(|_| HABITS.iter().all(|(habit, _)| *habit != name));
         if let Some(help) = self.library_help(cx.names(), name).or_else(standard) {

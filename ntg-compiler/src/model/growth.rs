@@ -98,6 +98,58 @@ fn nested(count: usize) -> String {
     )
 }
 
+/// Definitions made of names that are none, each like no other.
+fn unknown(count: usize) -> String {
+    let definitions: String = (0..count).map(|k| format!("let a{k} = unknown_{k} * f_{k}(x);")).collect();
+    format!("problem Unknown {{ duration T = 5; output x: spline(order = 5, intervals = 4); {definitions} }}")
+}
+
+/// As many branches as there are numbers; `is_continuous` says whether they meet.
+fn chain(count: usize, is_continuous: bool) -> String {
+    let mut branches = String::new();
+    for k in 1..=count {
+        let value = if is_continuous { format!("{k} * x - {}", k * (k - 1) / 2) } else { format!("{k} * x^2 + {k}") };
+        let _ = write!(branches, "if x <= {k} {{ {value} }} else ");
+    }
+    let last = if is_continuous { format!("{} * x - {}", count + 1, count * (count + 1) / 2) } else { "x".to_owned() };
+    format!(
+        "problem Chain {{ duration T = 5; state x; input u; collocation gauss(points = 3, intervals = 4); \
+         dynamics {{ der(x) == u + 0.001 * ({branches} {{ {last} }}); }} minimize integral(u^2); initial {{ x == 0; }} }}"
+    )
+}
+
+/// How many nodes a spec has become.
+fn nodes(text: &str) -> usize {
+    let source = Source::new("growth", text);
+    let spec = syntax::parse(&source).expect("the spec can be read");
+    let (problem, found) = super::build(&spec, &source, &NoFiles);
+    problem.unwrap_or_else(|| panic!("{found:?}")).dag.len()
+}
+
+#[test]
+fn a_chain_of_branches_is_compared_once_a_branch() {
+    for is_continuous in [false, true] {
+        let [first, second, third] = [30, 60, 90].map(|count| nodes(&chain(count, is_continuous)));
+        assert!(third - second <= second - first + 30, "{is_continuous}: {first}, {second}, {third}");
+    }
+}
+
+#[test]
+fn very_many_unknown_names_are_held_against_few() {
+    let among = |count: usize| {
+        let text = unknown(count);
+        let source = Source::new("growth", text.as_str());
+        let spec = syntax::parse(&source).expect("the spec can be read");
+        let libraries = Libraries::load(&spec.uses, &source, &NoFiles);
+        let mut pass = Elaborator::new(&libraries.joined, &NoFiles);
+        pass.elaborate(&spec.problem, (&libraries, &spec.uses), &[]);
+        assert_eq!(pass.found.len(), 2 * count, "each is told");
+        pass.searched.get().1
+    };
+    let [first, second, third] = [300, 600, 900].map(among);
+    assert!(third - second <= second - first, "{first}, {second}, {third}");
+}
+
 #[test]
 fn work_is_in_proportion_to_the_text() {
     let kinds: [Kind; 4] = [("bodies", bodies), ("functions", functions), ("phases", phases), ("nested", nested)];

@@ -146,7 +146,7 @@ impl<'a> Elaborator<'a> {
             return Some((inner, declared.entity));
         }
         let finding = Diagnostic::new(Code::UnknownName, last.name.span, format!("unknown name `{name}`"));
-        let names = super::scope::visible(&self.scopes, inner.scope);
+        let names = self.in_sight(inner.scope);
         let finding = match (self.path_to(name), nearest(name, names.iter().map(|(name, _)| *name))) {
             (Some(path), _) => finding.help(format!("it belongs to `{path}`: write `{path}.{name}`")),
             (None, Some(near)) => finding.help(format!("did you mean `{near}`?")),

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use ntg_structure::Unit;
 
 use super::dimension::{Dimension, Ratio};
-use super::elaborator::{Definition, Elaborator};
+use super::elaborator::Elaborator;
 use super::scope::Entity;
 use super::value::Value;
 use crate::diagnostic::{Code, Diagnostic};
@@ -70,14 +70,14 @@ impl<'a> Elaborator<'a> {
 
     /// The definition whose brackets hold only the name of an index: `let z[i] = r[i];`
     pub(super) fn family_without_range(&self, index: &str) -> Option<&'a str> {
-        let is_it = |definition: &&Definition<'a>| {
-            let unit = definition.unit.map(|unit| self.text(unit.span));
-            !definition.is_const
-                && !super::units::is_symbol(index)
-                && unit.is_some_and(|unit| unit == format!("[{index}]"))
-        };
-        let found = self.definitions.iter().find(is_it)?;
-        Some(&found.name.text)
+        let (count, known) = &mut *self.behind_names.borrow_mut();
+        for definition in &self.definitions[*count..] {
+            if let Some(unit) = definition.unit.filter(|_| !definition.is_const) {
+                known.entry(self.text(unit.span)).or_insert(&definition.name.text);
+            }
+        }
+        *count = self.definitions.len();
+        known.get(&format!("[{index}]")).copied().filter(|_| !super::units::is_symbol(index))
     }
 
     /// The value at an end that is meant by `x[0]` or `x[T]`.

@@ -10,7 +10,7 @@ use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::mention::names_in;
 use super::problem::{At, Form, Instant, Leaf};
-use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up, visible};
+use super::scope::{Allow, Context, Entity, Meaning, Point, ScopeId, look_up};
 use super::shape::Ends;
 use super::suggest::{behind_near, nearest};
 use super::value::{Flaw, Misplaced, Value, What};
@@ -141,11 +141,13 @@ impl<'a> Elaborator<'a> {
     /// Tells of a name that nothing has.
     pub(super) fn unknown(&mut self, cx: &Context<'a>, segment: &'a Segment, outwards: bool) -> Value {
         let (scope, text) = (cx.names(), &segment.name.text);
-        let names: Vec<&str> = if outwards {
-            visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
-        } else {
-            self.scopes[scope].order.clone()
-        };
+        let in_sight = self.in_sight(scope);
+        let outputs: Vec<&str> =
+            in_sight.iter().filter(|(_, entity)| *entity == Entity::Output).map(|(name, _)| *name).collect();
+        let mut names: Vec<&str> = in_sight.into_iter().map(|(name, _)| name).collect();
+        if !outwards {
+            names.retain(|name| self.scopes[scope].names.contains_key(name));
+        }
         let finding = Diagnostic::new(Code::UnknownName, segment.name.span, format!("unknown name `{text}`"));
         let is_told = self.is_told_in_statement(text, segment.name.span);
         if is_told || self.is_of_broken_library(scope, text) || self.family_without_range(text).is_some() {
@@ -168,7 +170,7 @@ impl<'a> Elaborator<'a> {
         let divides =
             text == "d" && after.trim_start().strip_prefix('/').is_some_and(|by| by.trim_start().starts_with('d'));
         let elsewhere = elsewhere.or_else(|| divides.then(|| "write `der(x)` for the derivative".to_owned()));
-        let elsewhere = elsewhere.or_else(habit).or_else(|| as_end(text, &self.outputs_in_sight(scope)));
+        let elsewhere = elsewhere.or_else(habit).or_else(|| as_end(text, &outputs));
         let elsewhere = elsewhere.or_else(|| self.in_standard(text, VALUES).map(|help| behind_near(near, help)));
         let finding = match (elsewhere, near) {
             (Some(help), _) => finding.help(help),
@@ -177,12 +179,6 @@ impl<'a> Elaborator<'a> {
             (None, None) => finding.help(format!("known names are {}", listed(&names))),
         };
         self.refuse(finding, segment.span)
-    }
-
-    /// The names of outputs, states and inputs that are in sight.
-    fn outputs_in_sight(&self, scope: ScopeId) -> Vec<&'a str> {
-        let names = visible(&self.scopes, scope).into_iter();
-        names.filter(|(_, entity)| *entity == Entity::Output).map(|(name, _)| name).collect()
     }
 
     /// What to write for a name in a template that one phase defines and another does not.

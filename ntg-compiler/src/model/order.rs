@@ -6,7 +6,7 @@
 //! agents' own lists. (Whether the index in `after leg[i - 1]` is right is `mission`'s affair.)
 
 use super::elaborator::Elaborator;
-use super::scope::{Entity, visible};
+use super::scope::Entity;
 use super::suggest::nearest;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast;
@@ -43,7 +43,7 @@ impl<'a> Elaborator<'a> {
                     Some(entity) => format!("`{name}` is {}, not a phase", entity.describe()),
                     None => format!("unknown phase `{name}`"),
                 };
-                let names = visible(&self.scopes, outer);
+                let names = self.in_sight(outer);
                 let phases = names.iter().filter(|(_, entity)| matches!(entity, Entity::Phase(_)));
                 let near = nearest(name, phases.map(|(name, _)| *name));
                 let mut finding = Diagnostic::new(Code::UnknownPhase, after.name.span, message);

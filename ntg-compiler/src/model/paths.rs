@@ -5,7 +5,7 @@
 
 use super::elaborator::Elaborator;
 use super::problem::{Form, Loop};
-use super::scope::{Context, Entity, PROBLEM, ScopeId, look_up, visible};
+use super::scope::{Context, Entity, PROBLEM, ScopeId, look_up};
 use super::suggest::nearest;
 use super::time::Stretch;
 use crate::diagnostic::{Code, Diagnostic};
@@ -109,7 +109,7 @@ impl<'a> Elaborator<'a> {
         let is_path = |entity: &Entity| matches!(entity, Entity::Phase(_) | Entity::Agent(_));
         let names = match outer {
             Some(_) => self.scopes[scope].order.iter().map(|n| (*n, self.scopes[scope].names[n].entity)).collect(),
-            None => visible(&self.scopes, scope),
+            None => self.in_sight(scope),
         };
         let paths: Vec<&str> = names.iter().filter(|(_, entity)| is_path(entity)).map(|(name, _)| *name).collect();
         let message = match (entity, outer) {

@@ -273,13 +273,16 @@ impl<'a> Context<'a> {
     }
 }
 
-/// The names that may be meant at a place: of the scope and of those around it, without repetition.
-pub(super) fn visible<'s, 'a: 's>(scopes: &'s [Scope<'a>], scope: ScopeId) -> Vec<(&'a str, Entity)> {
+/// The first names that may be meant at a place: of the scope and of those around it, without repetition.
+pub(super) fn visible<'s, 'a: 's>(scopes: &'s [Scope<'a>], scope: ScopeId, most: usize) -> Vec<(&'a str, Entity)> {
     let mut names: Vec<(&str, Entity)> = Vec::new();
     let mut known: HashSet<&str> = HashSet::new();
     let mut next = Some(scope);
     while let Some(id) = next {
         for name in &scopes[id].order {
+            if names.len() == most {
+                return names;
+            }
             if known.insert(name) {
                 names.push((name, scopes[id].names[name].entity));
             }

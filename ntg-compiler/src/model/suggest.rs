@@ -2,16 +2,45 @@
 //!
 //! Nearness is the number of letters to insert, remove, replace or exchange with a neighbour.
 
+use super::elaborator::Elaborator;
+use super::scope::{Entity, ScopeId, visible};
+
+/// How many unknown names of a spec are held against all names in sight; of more there is one cause, and who has so many reads the
+/// first ones. A choice.
+const SEARCHES: usize = 200;
+/// How many names are enough to be told.
+const ENOUGH: usize = 16;
+
+impl<'a> Elaborator<'a> {
+    /// The names that an unknown one at a place may stand for; a few where there are very many unknown ones.
+    pub(super) fn in_sight(&self, scope: ScopeId) -> Vec<(&'a str, Entity)> {
+        let (searches, among) = self.searched.get();
+        let names = visible(&self.scopes, scope, if searches < SEARCHES { usize::MAX } else { ENOUGH });
+        self.searched.set((searches + 1, among + names.len()));
+        names
+    }
+}
+
 /// The candidate nearest to `name`, if one is near enough to be a slip of the pen; of equally
 /// near ones the first.
 pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A third of the letters may be wrong: one of three, two of six.
-    let allowed = (name.chars().count() / 3).max(1);
+    let length = name.chars().count();
+    let allowed = (length / 3).max(1);
+    let own: Vec<char> = name.chars().flat_map(char::to_lowercase).collect();
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
-        let distance = if candidate.to_lowercase() == name.to_lowercase() { 0 } else { distance(name, candidate) };
+        let count = candidate.chars().count();
+        // What is longer or shorter by more letters is not near.
+        let distance = if candidate.chars().flat_map(char::to_lowercase).eq(own.iter().copied()) {
+            0
+        } else if count.abs_diff(length) > allowed {
+            continue;
+        } else {
+            distance(name, candidate)
+        };
         // A name all of whose letters differ is no slip.
-        let near = distance <= allowed && distance < candidate.chars().count().max(name.chars().count());
+        let near = distance <= allowed && distance < count.max(length);
         if near && best.is_none_or(|(d, _)| distance < d) {
             best = Some((distance, candidate));
         }
