@@ -18,6 +18,7 @@ mod derivatives;
 mod durations;
 mod equation_corners;
 mod estimates;
+mod few_iterations;
 mod fine_meshes;
 mod flat_limits;
 mod fleet;

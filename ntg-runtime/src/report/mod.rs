@@ -297,7 +297,7 @@ impl Report {
     /// Checks an outcome on the finer grid and puts everything together.
     pub(crate) fn new(
         nlp: &Transcription,
-        outcome: Outcome,
+        mut outcome: Outcome,
         (fine, (work, at)): (&mut Plan, &mut (Workspace, Evaluation)),
         history: Vec<StepReport>,
     ) -> Result<Self, SetupError> {
@@ -305,10 +305,15 @@ impl Report {
         // Where a value is not finite, the status says so; sums then show what there is, of this point alone.
         at.rows.fill(0.0);
         let wants_terms = constraints::have_zero_bounds(nlp);
-        if !wants_terms || nlp.derivatives(&outcome.x, 1.0, &outcome.row_multipliers, work, at).is_err() {
+        let mut evaluated = wants_terms && nlp.derivatives(&outcome.x, 1.0, &outcome.row_multipliers, work, at).is_ok();
+        if !evaluated {
             // Where slopes are not finite, sizes are those of the rows.
             at.blocks.iter_mut().for_each(|block| block.jacobian.fill(0.0));
-            _ = nlp.values(&outcome.x, work, at);
+            evaluated = nlp.values(&outcome.x, work, at).is_ok();
+        }
+        // A solve that did not begin has looked at no objective.
+        if evaluated && !outcome.objective.is_finite() {
+            outcome.objective = at.objective;
         }
         let (constraints, sizes, on_fine) = constraints::constraints(nlp, (&outcome, at), fine)?;
         let terms = cost::terms(nlp, at, &on_fine.terms);
