@@ -46,6 +46,33 @@ fn a_time_between_knots_moves_with_a_free_duration() {
     close(report.phases()[0].end, 6.0, 1e-6);
 }
 
+/// A price on where a state is at a time, and a limit on it, make an input jump there: a closed polygon of speeds 1, 0, -1.
+#[test]
+fn an_input_jumps_where_a_price_or_a_limit_stands_at_a_time() {
+    for (what, known) in [
+        ("minimize integral(v^2) - 2 * (at(1, x) + at(2, x));", -2.0),
+        ("let both = at(1, x) + at(2, x);  minimize integral(v^2) - 2 * both;", -2.0),
+        ("minimize integral(v^2) - 2 * sum(k in 1 .. 2, at(k, x));", -2.0),
+        // The tips of the speed are those where each place has the price 2 of the derivative.
+        ("minimize integral(v^2) + (at(1, x) - 2)^2 + (at(2, x) - 2)^2;", 4.0),
+        ("minimize integral(v^2);  temporal { at(1, x) == 1;  at(2, x) == 1; }", 2.0),
+        ("minimize integral(v^2);  temporal { for k in 1 .. 2 { at(k, x) == 1; } }", 2.0),
+    ] {
+        let spec = format!(
+            "problem Jumps {{
+                duration T = 3;
+                state x;  input v;
+                collocation gauss(points = 2, intervals = 11);
+                dynamics {{ der(x) == v; }}
+                initial {{ x == 0; }}  final {{ x == 0; }}
+                {what}
+            }}"
+        );
+        let found = Shipped::text(&spec).solve().objective;
+        assert!((found - known).abs() < 1e-7, "{what}: {found}, but {known} is known");
+    }
+}
+
 #[test]
 fn a_bound_on_a_part_of_the_way_leaves_the_rest_free() {
     let spec = Shipped::text(

@@ -2,13 +2,15 @@
 //!
 //! States and inputs without a spline of their own have the intervals of `collocation`. Where a limit begins within an
 //! interval, an input cannot jump to it there, and the limit costs as much as if it held over all of the interval. So these
-//! times are knots of such splines too. Splines, knots and points that are written out stay what they are, and so does an
+//! times are knots of such splines too. So is a time at which a state has a price, or a limit: what it is worth jumps there, and an input
+//! with it. Measurements are none: their times are as many as there are data. Splines, knots and points that are written out stay what they are, and so does an
 //! input that is held.
 
 use ntg_structure::{At, Instant};
 
 use super::elaborator::Elaborator;
 use super::problem::{Collocation, Domain, Leaf};
+use crate::expr::NodeId;
 use crate::syntax::ast::ItemKind;
 
 /// Times that differ by less than this part of a phase are one.
@@ -28,11 +30,17 @@ impl Elaborator<'_> {
             if let Domain::Path(phase, part) = &constraint.domain {
                 [part.from, part.to].into_iter().for_each(|instant| add(phase.phase, instant));
             }
-            for input in self.problem.dag.inputs_of(&[constraint.body]) {
-                if let Leaf::Flat { phase, at: At::Inside(instant), .. } = self.problem.leaves.leaf(input) {
-                    add(phase.phase, *instant);
-                }
-            }
+        }
+        let terms = self.problem.objective.iter().map(|term| term.body);
+        let bodies: Vec<NodeId> = terms.chain(self.problem.constraints.iter().map(|own| own.body)).collect();
+        for input in self.problem.dag.inputs_of(&self.below(&bodies)) {
+            let Leaf::Flat { phase, at, .. } = self.problem.leaves.leaf(input) else { continue };
+            let instants = match at {
+                At::Inside(instant) => std::slice::from_ref(instant),
+                At::Among { places, .. } => &self.problem.places[*places].instants,
+                _ => continue,
+            };
+            instants.iter().for_each(|instant| add(phase.phase, *instant));
         }
         for phase in 0..self.problem.phases.len() {
             let own = times.iter().filter(|(of, _)| *of == phase).map(|(_, tau)| *tau).collect::<Vec<_>>();
