@@ -260,8 +260,7 @@ fn a_solve_for_which_there_is_no_time_is_no_mistake_of_the_spec() {
         assert!(said(&found).contains("the time limit was reached before"), "{}", said(&found));
     }
     // What is wrong with it is told where there is time.
-    fs::write(folder.path().join("wrong.ntg"), FIT.replace("duration", "durations"))
-        .expect("a file can be written");
+    fs::write(folder.path().join("wrong.ntg"), FIT.replace("duration", "durations")).expect("a file can be written");
     let found = ntg(folder.path(), &["solve", "wrong.ntg", "--time-limit", "1000"]);
     assert_eq!(found.status.code(), Some(2), "{}", said(&found));
 }

@@ -36,6 +36,8 @@ const MOST_DIGITS: f64 = 15.0;
 /// The strip of numbers and words beside an axis that goes up, where numbers are short, and what each sign takes of it.
 const BESIDE: u32 = 1100;
 const SIGN: u32 = 140;
+/// Signs of numbers that are short.
+const SHORT: u32 = 6;
 
 const INK: RGBColor = RGBColor(30, 30, 30);
 const GREY: RGBColor = RGBColor(110, 110, 110);
@@ -130,7 +132,7 @@ fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .axis_style(GREY.stroke_width(PIXEL))
         .label_style(font(240).color(&INK))
         .axis_desc_style(font(260).color(&INK))
-        .x_labels(9)
+        .x_labels(along(&xs, plot.dim_in_pixel().0.saturating_sub(600 + beside)))
         .y_labels(8)
         .x_desc(panel.x.as_str())
         .y_desc(panel.y.as_str())
@@ -396,15 +398,27 @@ fn equalise(xs: &mut Range<f64>, ys: &mut Range<f64>, aspect: f64) {
 
 /// How wide the strip beside an axis is, for numbers like those near its ends.
 fn beside(ys: &Range<f64>) -> u32 {
-    /// Signs that have room in the usual strip.
-    const SHORT: usize = 6;
-    let length = ys.end - ys.start;
+    BESIDE + SIGN * longest(ys).saturating_sub(SHORT)
+}
+
+/// How many numbers have room along an axis of so many units of the drawing.
+fn along(xs: &Range<f64>, width: u32) -> usize {
+    /// As many as are told where they are short, and signs between two.
+    const USUAL: usize = 9;
+    const GAP: u32 = 3;
+    match longest(xs) {
+        ..=SHORT => USUAL,
+        signs => ((width / (SIGN * (signs + GAP))) as usize).clamp(2, USUAL),
+    }
+}
+
+/// How many signs the longest number of an axis has: among as many steps as there are last digits.
+fn longest(range: &Range<f64>) -> u32 {
+    let length = range.end - range.start;
     let step = 10_f64.powf((length / 10.0).log10().floor());
-    // As many steps as there are last digits.
-    let places = (0..10).map(|k| ((ys.start / step).round() + f64::from(k)) * step);
+    let places = (0..10).map(|k| ((range.start / step).round() + f64::from(k)) * step);
     let signs = places.map(|place| number(place, length).chars().count());
-    let more = signs.max().unwrap_or_default().saturating_sub(SHORT);
-    BESIDE + SIGN * u32::try_from(more).unwrap_or_default()
+    u32::try_from(signs.max().unwrap_or_default()).unwrap_or(u32::MAX)
 }
 
 /// A number as short as it can be said on an axis of a given length.
@@ -456,6 +470,7 @@ mod tests {
         assert_eq!([0.25, 0.5].map(|x| number(x, 1.0)), ["0.25", "0.5"]);
         assert_eq!(beside(&(0.0..1.0)), BESIDE);
         assert_eq!(beside(&(1.0e6..1.0004e6)), BESIDE + 3 * SIGN, "`1.00005e6` has three signs more");
+        assert_eq!((along(&(0.0..10.0), WIDTH / 2), along(&(1.0e6..1.0004e6), WIDTH / 2)), (9, 4));
     }
 
     #[test]
