@@ -21,6 +21,7 @@ mod estimates;
 mod few_iterations;
 mod fine_meshes;
 mod flat_limits;
+mod flat_optima;
 mod fleet;
 mod flight;
 mod flight_phases;

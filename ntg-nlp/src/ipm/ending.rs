@@ -19,6 +19,7 @@ impl<'a, N: Nlp> State<'a, N> {
     /// # Errors
     /// The status of a point whose derivatives are not finite.
     pub(super) fn advance(&mut self) -> Result<(), Status> {
+        self.note_crawl();
         self.history.push(self.record);
         self.iterations += 1;
         self.evaluate().map_err(|what| self.not_finite(what))?;

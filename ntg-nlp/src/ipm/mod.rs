@@ -6,7 +6,7 @@
 //! length of a trajectory.
 //!
 //! `state` holds the iterate and its residuals, `slacks` the bounds with slacks and multipliers, `barrier` the barrier
-//! parameter, `step` the primal-dual step, which `equalities` and `conjugate_residuals` refine, `line_search` the search by
+//! parameter, `crawl` whether shifts serve better than what `inertia` adds, `step` the primal-dual step, which `equalities` and `conjugate_residuals` refine, `line_search` the search by
 //! the `filter` with its second-order corrections and its `watchdog`; `angles` turn by little, and variables that rows
 //! define (`definitions`) are at every point what these say. `mode` says how violations are treated: `relaxed`
 //! rows cost a price, that of `penalty`, where bounds are elastic, or of the `augmented` Lagrangian; `penalty_search`
@@ -20,6 +20,7 @@ mod augmented;
 mod barrier;
 mod best;
 mod conjugate_residuals;
+mod crawl;
 mod definitions;
 mod ending;
 mod equalities;

@@ -2,6 +2,7 @@
 
 use super::best::Point;
 use super::conjugate_residuals::ConjugateResiduals;
+use super::crawl::Crawl;
 use super::equalities::Estimate;
 use super::filter::Filter;
 use super::inertia::Corrections;
@@ -66,6 +67,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) proximal: f64,
     /// What earlier corrections of the inertia tell later ones.
     pub(super) corrections: Corrections,
+    /// Whether convexified steps crawl.
+    pub(super) crawl: Crawl,
     /// How violations are treated.
     pub(super) mode: Mode,
     /// How often feasibility was restored.
