@@ -58,10 +58,6 @@ pub(crate) fn blocks<'py>(
     size: Option<usize>,
 ) -> Vec<Bound<'py, PyArray1<i64>>> {
     let sets = vectors(&sets);
-    let mut first = problem.clone();
-    // What is wrong with a set is told by its row.
-    _ = sets.first().map(|set| put(&mut first, &places, set));
-    let wanted = Wanted::all(&how.values, &first).map_err(|message| invalid("ParameterError", &message))?;
     let size = size.unwrap_or_else(|| ntg_sweep::usual_block(sets.len()));
     let rows =
         |block: Block| -> Vec<i64> { std::iter::once(block.first).chain(block.rest).map(|row| row as i64).collect() };
@@ -93,6 +89,10 @@ pub(crate) fn sweep<'py>(
     let mut about = vec![compiled.spec.source.text.clone(), format!("{structure:?}"), format!("{settings:?}")];
     about.extend(how.values.iter().cloned());
     let sets = vectors(&sets);
+    let mut first = problem.clone();
+    // What is wrong with a set is told by its row.
+    _ = sets.first().map(|set| put(&mut first, &places, set));
+    let wanted = Wanted::all(&how.values, &first).map_err(|message| invalid("ParameterError", &message))?;
     let block = how.block.unwrap_or_else(|| ntg_sweep::usual_block(sets.len()));
     let study = Study { inputs, sets, block, about };
     let state = std::sync::Arc::new(State::default());
