@@ -408,7 +408,7 @@ fn an_input_leaves_its_limit_where_it_turns_round() {
             }}"
         ))
     };
-    let limits = ["a in -1 .. 1;", "a^2 <= 1;", "abs(a) <= 1;", "(a * z)^2 <= z^2;", "a^2 + v^2 * (1 - z / z) <= 1;"];
+    let limits = ["a in -1 .. 1;", "a^2 <= 1;", "abs(a) <= 1;", "(a * z)^2 <= z^2;", "a^2 + (v / 10)^2 <= 1;"];
     for (points, intervals) in [(2, 17), (3, 11), (4, 25), (5, 7)] {
         for limit in limits {
             let (found, report) = turn(limit, points, intervals);

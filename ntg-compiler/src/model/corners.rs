@@ -233,13 +233,13 @@ impl Elaborator<'_> {
             let smooth = self.smooth(pass, sum, (site, growing), depth + 1);
             self.has_none(pass, smooth).then_some(smooth)
         });
-        let by_sides = || {
-            let product = self.with_factor_inside(pass, node)?;
+        let by_products = || {
+            let product = self.with_weight_inside(pass, node)?;
             let smooth = self.smooth(pass, product, (site, growing), depth + 1);
             self.has_none(pass, smooth).then_some(smooth)
         };
-        let by_branches = by_branches.or_else(by_sides);
-        let smooth = match by_branches.or_else(|| self.helper(pass, node, (site, growing), depth)) {
+        let in_other_form = by_branches.or_else(by_products);
+        let smooth = match in_other_form.or_else(|| self.helper(pass, node, (site, growing), depth)) {
             Some(smooth) => {
                 pass.treated.insert(node);
                 smooth

@@ -110,6 +110,7 @@ mod unknowns;
 mod unrolled;
 mod value;
 mod vectors;
+mod weighted;
 mod widths;
 mod windows;
 

@@ -6,7 +6,8 @@ use super::elaborator::Elaborator;
 use super::unknowns::is_given;
 use crate::expr::{Binary, Fold, Node, NodeId, Unary};
 
-/// How what stands for an operand is pushed onto it by the objective.
+/// How what stands for an operand is pushed onto it by the objective, the surest way first: within several functions the least sure
+/// one counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Push {
     /// Everywhere, by no less than a positive factor.

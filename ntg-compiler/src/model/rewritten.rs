@@ -1,10 +1,8 @@
 //! Formulas with other nodes in the place of some, those of integrands too.
 
-use super::corners::Corners;
 use super::elaborator::Elaborator;
 use super::problem::Leaf;
-use super::unknowns::is_given;
-use crate::expr::{Binary, Map, Node, NodeId, Unary};
+use crate::expr::{Map, Node, NodeId};
 
 impl Elaborator<'_> {
     /// A body with other nodes in the place of some: `change` takes a node, and the images of all nodes below it.
@@ -25,37 +23,6 @@ impl Elaborator<'_> {
             images.insert(id, image);
         }
         images[&root]
-    }
-
-    /// A corner times what is solved for and never negative, but may be 0, as the corner of the products: `v * max(a, b)` is
-    /// `max(v * a, v * b)`. Nothing would push what stands for the corner alone where the factor is 0.
-    pub(super) fn with_factor_inside(&mut self, pass: &mut Corners, node: NodeId) -> Option<NodeId> {
-        let Node::Binary(Binary::Mul, a, b) = *self.problem.dag.node(node) else { return None };
-        let (corner, factor) = if pass.has_corners(a) { (a, b) } else { (b, a) };
-        let is_solved_for = !pass.has_corners(factor) && !is_given(&self.problem, factor);
-        if !is_solved_for
-            || !pass.signs.is_positive(&self.problem, factor)
-            || pass.signs.is_above_zero(&self.problem, factor)
-        {
-            return None;
-        }
-        let product = match *self.problem.dag.node(corner) {
-            Node::Unary(Unary::Abs, x) => {
-                let side = self.problem.dag.mul(factor, x);
-                self.problem.dag.unary(Unary::Abs, side)
-            }
-            Node::Binary(op @ (Binary::Max | Binary::Min), x, y) => {
-                let [x, y] = [x, y].map(|side| self.problem.dag.mul(factor, side));
-                self.problem.dag.binary(op, x, y)
-            }
-            _ => return None,
-        };
-        if let Some(span) = self.problem.origin.get(&corner).copied() {
-            self.origin(product, span);
-        }
-        self.corners_found(pass, product);
-        pass.treated.insert(corner);
-        Some(product)
     }
 
     /// A node of the images of its operands.

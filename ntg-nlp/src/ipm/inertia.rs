@@ -66,7 +66,7 @@ impl<N: Nlp> State<'_, N> {
             self.assemble_exact(proximal);
         }
         match self.options.inertia_correction {
-            InertiaCorrection::ByElement if self.crawl.is_seen() => self.factorise_shifted(proximity),
+            InertiaCorrection::ByElement if self.crawls() => self.factorise_shifted(proximity),
             InertiaCorrection::ByElement => self.factorise_convexified(proximity),
             InertiaCorrection::ByShift => self.factorise_shifted(proximity),
         }

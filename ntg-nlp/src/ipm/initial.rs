@@ -2,7 +2,6 @@
 
 use super::best::Point;
 use super::conjugate_residuals::ConjugateResiduals;
-use super::crawl::Crawl;
 use super::equalities::Estimate;
 use super::filter::{Filter, LARGEST_THETA};
 use super::inertia::Corrections;
@@ -94,7 +93,7 @@ impl<'a, N: Nlp> State<'a, N> {
             estimate: Estimate::default(),
             proximal: LARGEST_PROXIMAL,
             corrections: Corrections::default(),
-            crawl: Crawl::default(),
+            crawl: Stagnation::default(),
             step,
             trial: Trial::new(&x, functions, slacks.s.clone()),
             record: IterationRecord::default(),

@@ -6,12 +6,13 @@
 //! length of a trajectory.
 //!
 //! `state` holds the iterate and its residuals, `slacks` the bounds with slacks and multipliers, `barrier` the barrier
-//! parameter, `crawl` whether shifts serve better than what `inertia` adds, `step` the primal-dual step, which `equalities` and `conjugate_residuals` refine, `line_search` the search by
-//! the `filter` with its second-order corrections and its `watchdog`; `angles` turn by little, and variables that rows
-//! define (`definitions`) are at every point what these say. `mode` says how violations are treated: `relaxed`
-//! rows cost a price, that of `penalty`, where bounds are elastic, or of the `augmented` Lagrangian; `penalty_search`
-//! searches by it, `restoration` restores feasibility by it. `initial` and `warm` are the start, `polish` and `ending` the
-//! end, and `saddle` looks whether that is a minimum.
+//! parameter, `crawl` whether shifts serve better than what `inertia` adds, `step` the primal-dual step, which
+//! `equalities` and `conjugate_residuals` refine, `line_search` the search by the `filter` with its second-order
+//! corrections and its `watchdog`; `angles` turn by little, and variables that rows define (`definitions`) are at every
+//! point what these say. `mode` says how violations are treated: `relaxed` rows cost a price, that of `penalty`, where
+//! bounds are elastic, or of the `augmented` Lagrangian; `penalty_search` searches by it, `restoration` restores
+//! feasibility by it. `initial` and `warm` are the start, `polish` and `ending` the end, and `saddle` looks whether that
+//! is a minimum.
 //!
 //! The globalisation follows A. Wächter and L. T. Biegler, *Math. Prog.* 106 (2006), cited as WB.
 

@@ -70,7 +70,8 @@ pub(crate) fn below_saddle<N: Nlp>(nlp: &N, end: &Outcome, options: &Options) ->
 }
 
 impl<N: Nlp> State<'_, N> {
-    /// A point beside the present one at which the Lagrangian is less than at the present one; none where the present one is a minimum. Precondition: the present point is a solution by its residuals.
+    /// A point beside the present one at which the Lagrangian is less than at the present one; none where the present one
+    /// is a minimum. Precondition: the present point is a solution by its residuals.
     pub(super) fn below_saddle(&mut self) -> Option<Below> {
         let limits = self.nlp.limits();
         let equalities = limits.row_lower.iter().zip(&limits.row_upper).filter(|(lower, upper)| lower == upper).count();

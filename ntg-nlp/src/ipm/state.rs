@@ -2,7 +2,6 @@
 
 use super::best::Point;
 use super::conjugate_residuals::ConjugateResiduals;
-use super::crawl::Crawl;
 use super::equalities::Estimate;
 use super::filter::Filter;
 use super::inertia::Corrections;
@@ -67,8 +66,8 @@ pub(super) struct State<'a, N: Nlp> {
     pub(super) proximal: f64,
     /// What earlier corrections of the inertia tell later ones.
     pub(super) corrections: Corrections,
-    /// Whether convexified steps crawl.
-    pub(super) crawl: Crawl,
+    /// How long convexified steps at the last barrier parameter have gained little.
+    pub(super) crawl: Stagnation,
     /// How violations are treated.
     pub(super) mode: Mode,
     /// How often feasibility was restored.

@@ -97,12 +97,13 @@ pub(super) fn constraints(
     // What does not jump by itself does so where it is missed by all of it in one interval of many.
     for (number, report) in reports.iter_mut().enumerate() {
         let most = report.between.as_ref().map_or(0.0, |worst| worst.relative);
-        let is_gross = most > Missed::GROSS || report.mean_between > 0.0;
-        let jumps = || match report.is_equation {
+        // A limit that is jumped over, or has a low side, is missed by more than its mean knows.
+        let is_gross = report.mean_between > 0.0 || !report.is_equation && most > Missed::GROSS;
+        let has_mean = || match report.is_equation {
             true => !is_of_states(nlp, number),
             false => in_mean[number] && !is_continuous(nlp, number),
         };
-        if is_gross && !jumps() && (report.mean_between > 0.0 || !report.is_equation) {
+        if is_gross && !has_mean() {
             report.mean_between = most;
         }
     }

@@ -151,7 +151,8 @@ fn declared<'n>(nlp: &'n Transcription, source: &Source) -> Option<(&'n Output, 
     Some((&nlp.model.structure.phases[phase.phase].outputs[phase.outputs[output].output], derivative))
 }
 
-fn may_jump((output, derivative): (&Output, usize)) -> bool {
+/// Whether an output's derivative by time may jump by itself, as an input does.
+pub(super) fn may_jump((output, derivative): (&Output, usize)) -> bool {
     derivative >= output.spline.smoothness && output.spline.breakpoints.len() > 2
 }
 

@@ -1,5 +1,6 @@
 //! What violations of bounds of 0 are relative to (docs/maths.md, equations 9.3a and 9.3b).
 
+use super::jumped::may_jump;
 use crate::transcribe::Transcription;
 use ntg_nlp::{Block, Evaluation, Outcome, Target};
 use ntg_structure::{Domain, Slot};
@@ -125,7 +126,7 @@ struct Kind {
     is_linear: bool,
     /// A declared variable.
     is_variable: bool,
-    /// An input: nothing says how it moves.
+    /// An input, or what may jump as one.
     is_input: bool,
 }
 
@@ -211,7 +212,7 @@ impl Sizes {
             let is_variable = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Variable { .. }));
             let is_input = |slot: usize| match group.call.slots.get(slot) {
                 Some(Slot::Flat { phase, output, derivative: 0, .. }) => {
-                    nlp.model.structure.phases[phase.phase].outputs[*output].spline.smoothness == 0
+                    may_jump((&nlp.model.structure.phases[phase.phase].outputs[*output], 0))
                 }
                 _ => false,
             };
