@@ -25,6 +25,7 @@ mod flat_optima;
 mod fleet;
 mod flight;
 mod flight_phases;
+mod free_ends;
 mod gates;
 mod headings;
 mod integrals;

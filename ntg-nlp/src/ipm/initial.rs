@@ -165,6 +165,7 @@ impl<'a, N: Nlp> State<'a, N> {
         let theta = self.theta();
         self.filter.clear();
         self.filter.theta_max = LARGEST_THETA * theta.max(1.0);
+        self.filter.residuals = self.slacks.inequalities.len();
     }
 }
 

@@ -160,7 +160,7 @@ impl<N: Nlp> State<'_, N> {
         }
         let shift = SHIFT * size;
         if !(size > 0.0 && size.is_finite() && self.system.factorise(1.0, shift)) {
-            self.system.factorise(0.0, FLAT);
+            self.system.factorise_any(0.0, FLAT, usize::MAX);
             return None;
         }
         let mut along: Vec<f64> = nearly_one(n).collect();

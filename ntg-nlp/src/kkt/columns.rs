@@ -151,7 +151,7 @@ mod tests {
         }
         let mut factor = Factor::new(&storage);
         let sum = Regularised { matrix: &matrix, convexification: &[], fraction: 0.0, shift: 0.0, variables: 11 };
-        assert_eq!(factor.factorise(&storage, &sum), Some(0));
+        assert_eq!(factor.factorise(&storage, &sum, usize::MAX), Some(0));
         let side = |i: usize, k: usize| (1.0 + i as f64 * (k + 1) as f64).cos();
         let mut together = vec![Columns::default(); BLOCK * storage.columns()];
         for (i, &padded) in storage.padded.iter().enumerate() {

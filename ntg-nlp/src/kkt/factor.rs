@@ -7,7 +7,8 @@
 //! Reference: G. H. Golub and C. F. Van Loan, *Matrix Computations*, sections 4.2 and 4.3; J. W. H. Liu, *SIAM Review* 34
 //! (1992), for columns that are subtracted together.
 
-use super::storage::{BLOCK, Run, Storage, TOGETHER};
+use super::panel::{Factors, subtract_square};
+use super::storage::{BLOCK, Storage, TOGETHER};
 use ntg_math::{Simd, Task, dispatch};
 use std::ops::Range;
 
@@ -17,6 +18,10 @@ const SINGULAR: f64 = 1e-14;
 /// bounds leave directions whose curvature is lost beside theirs. Such a pivot counts as positive and of this size,
 /// which changes the matrix by no more than its own rounding. A law: some fifty roundings.
 const NOISE: f64 = 1e-14;
+
+/// How many blocks of a panel are worked on at a time: 128 KiB of them. A fit to a band of 960 unknowns: with an eighth of it the
+/// factors take a sixth longer.
+const NEAR: usize = 1024;
 
 /// Numbers of as many unknowns as a block has.
 pub(super) type Chunk = [f64; BLOCK];
@@ -30,12 +35,10 @@ pub(super) struct Factor {
     pub(super) value: Vec<f64>,
     /// Reciprocal pivots, filled up.
     pub(super) inverse: Vec<Chunk>,
-    /// The columns of blocks of a group below their diagonals, times their pivots; each `longest` after the one before.
+    /// The columns of blocks of a group below their diagonals, times their pivots: row by row, from the first one of the group on.
     panel: Vec<Square>,
-    /// The length of the longest column below its diagonal.
-    longest: usize,
     /// A right-hand side, filled up.
-    side: Vec<Chunk>,
+    pub(super) side: Vec<Chunk>,
 }
 
 /// What is factorised: a matrix, plus a fraction of a convexifying term (none if that is empty), plus a shift of the
@@ -68,29 +71,6 @@ fn less(mut a: Chunk, factor: f64, b: Chunk) -> Chunk {
     a
 }
 
-/// `to -= block x`.
-#[inline(always)]
-fn subtract_product(to: &mut Chunk, block: &Square, x: &Chunk) {
-    // Everything is read before anything is written, so that the compiler makes vector instructions of the loop.
-    let (mut sum, block, x) = (*to, *block, *x);
-    for c in 0..BLOCK {
-        for r in 0..BLOCK {
-            sum[r] -= block[c][r] * x[c];
-        }
-    }
-    *to = sum;
-}
-
-/// `x = L^-1 x`, where `L` has ones on its diagonal.
-#[inline(always)]
-fn forward(lower: &Square, x: &mut Chunk) {
-    for c in 0..BLOCK {
-        for r in c + 1..BLOCK {
-            x[r] -= lower[c][r] * x[c];
-        }
-    }
-}
-
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a.abs() > b { a.abs() } else { b }
@@ -110,26 +90,27 @@ impl Factor {
         Self {
             value: vec![0.0; storage.len],
             inverse: vec![[0.0; BLOCK]; columns],
-            panel: vec![[[0.0; BLOCK]; BLOCK]; TOGETHER * longest],
-            longest,
+            panel: vec![[[0.0; BLOCK]; BLOCK]; TOGETHER * (longest + TOGETHER)],
             side: vec![[0.0; BLOCK]; columns],
         }
     }
 
-    /// Factorises a matrix; the number of negative pivots, or none where a pivot vanishes.
-    pub(super) fn factorise(&mut self, storage: &Storage, sum: &Regularised<'_>) -> Option<usize> {
+    /// Factorises a matrix; the number of negative pivots, or none where a pivot vanishes or more than `most` are negative: then
+    /// the factors are left unfinished.
+    pub(super) fn factorise(&mut self, storage: &Storage, sum: &Regularised<'_>, most: usize) -> Option<usize> {
         let mut negative = None;
-        dispatch(Factorise { factor: self, storage, sum, negative: &mut negative });
+        dispatch(Factorise { factor: self, storage, sum, most, negative: &mut negative });
         negative
     }
 
-    /// Replaces `b` by the solution of the system.
-    pub(super) fn solve(&mut self, storage: &Storage, b: &mut [f64]) {
-        dispatch(Solve { factor: self, storage, b });
-    }
-
     #[inline(always)]
-    fn factorise_here(&mut self, storage: &Storage, sum: &Regularised<'_>) -> Option<usize> {
+    fn factorise_here<S: Simd>(
+        &mut self,
+        simd: S,
+        storage: &Storage,
+        sum: &Regularised<'_>,
+        most: usize,
+    ) -> Option<usize> {
         self.value.copy_from_slice(sum.matrix);
         for (value, convexification) in self.value.iter_mut().zip(sum.convexification) {
             *value += sum.fraction * convexification;
@@ -143,8 +124,11 @@ impl Factor {
         for group in &storage.groups {
             for j in group.clone() {
                 negative += self.eliminate(storage, (j, group), sum)?;
+                if negative > most {
+                    return None;
+                }
             }
-            self.subtract_group(storage, group);
+            self.subtract_group(simd, storage, group);
         }
         Some(negative)
     }
@@ -164,8 +148,9 @@ impl Factor {
         let first = BLOCK * BLOCK * own.start;
         let noise = std::array::from_fn(|c| NOISE * sum.at(first + c * BLOCK + c));
         let (pivots, inverse, mut largest) = factors_of(diagonal, &noise);
-        let panel = &mut self.panel[(j - group.start) * self.longest..][..below.len()];
-        for (block, panel) in below.iter_mut().zip(&mut *panel) {
+        let (width, own_place) = (group.len(), j - group.start);
+        let panel = &mut self.panel[width * (own_place + 1) + own_place..];
+        for (block, panel) in below.iter_mut().zip(panel.iter_mut().step_by(width)) {
             let mut columns = *block;
             for c in 0..BLOCK {
                 for d in c + 1..BLOCK {
@@ -189,90 +174,54 @@ impl Factor {
         self.inverse[j] = inverse;
         for (k, factors) in below[..group.end - 1 - j].iter().enumerate() {
             // The rows of the next columns are the rest of those of this one.
-            for (to, panel) in tail[storage.column[j + 1 + k] - own.end..].iter_mut().zip(&panel[k..]) {
+            let blocks = tail[storage.column[j + 1 + k] - own.end..].iter_mut().take(below.len() - k);
+            for (to, panel) in blocks.zip(panel[width * k..].iter().step_by(width)) {
                 subtract_square(to, panel, factors);
             }
         }
         Some(pivots.iter().filter(|pivot| **pivot < 0.0).count())
     }
 
-    /// Subtracts the columns of a group from all later ones.
+    /// Subtracts the columns of a group from all later ones: of some rows at a time, whose panel stays in the fastest memory.
     #[inline(always)]
-    fn subtract_group(&mut self, storage: &Storage, group: &Range<usize>) {
-        let last = group.end - 1;
-        let (head, tail) = squares(&mut self.value).split_at_mut(storage.column[group.end]);
-        let mut targets = storage.targets(last).iter();
-        let (runs, mut first) = (storage.runs(last), 0);
+    fn subtract_group<S: Simd>(&mut self, simd: S, storage: &Storage, group: &Range<usize>) {
+        let (width, last, end) = (group.len(), group.end - 1, group.end);
+        let (head, tail) = squares(&mut self.value).split_at_mut(storage.column[end]);
+        // Where the factors of the rows below the group begin, of each column.
+        let mut factors = [0; TOGETHER];
+        for (g, at) in factors[..width].iter_mut().enumerate() {
+            *at = storage.column[group.start + g] + width - g;
+        }
+        let factors = &factors[..width];
+        let (runs, targets) = (storage.runs(last), storage.targets(last));
+        let panel = &self.panel[width * width..];
+        let (at_a_time, mut first) = (NEAR / width, 0);
         for (number, run) in runs.iter().enumerate() {
-            let end = first + run.len;
-            for k in first..end {
-                // Of each column of the group, the blocks below the group and the one that multiplies them.
-                let columns: [(&[Square], &Square); TOGETHER] = std::array::from_fn(|g| {
-                    let (g, inside) = (g.min(group.len() - 1), last - (group.start + g).min(last));
-                    (&self.panel[g * self.longest + inside..], &head[storage.column[group.start + g] + 1 + inside + k])
-                });
-                let columns = &columns[..group.len()];
-                // The rest of its own run begins at the diagonal of this column.
-                let at = storage.column[run.first + k - first] - storage.column[group.end];
-                subtract_columns(&mut tail[at..], k..end, columns);
-                let mut begin = end;
-                for (later, &at) in runs[number + 1..].iter().zip(&mut targets) {
-                    subtract_columns(&mut tail[at - storage.column[group.end]..], begin..begin + later.len, columns);
-                    begin += later.len;
+            let after = first + run.len;
+            let mut from = first;
+            while from < after {
+                let to = after.min(from + at_a_time);
+                let (mut k, mut target) = (0, 0);
+                for (earlier, columns) in runs[..number].iter().enumerate() {
+                    let others = runs.len() - 1 - earlier;
+                    for _ in 0..columns.len {
+                        let at = targets[target + number - earlier - 1] + from - first - storage.column[end];
+                        let factors = Factors { head, at: factors, row: k };
+                        factors.subtract(simd, &mut tail[at..], &panel[width * from..width * to]);
+                        target += others;
+                        k += 1;
+                    }
                 }
-            }
-            first = end;
-        }
-    }
-
-    #[inline(always)]
-    fn solve_here(&mut self, storage: &Storage, b: &mut [f64]) {
-        self.side.fill([0.0; BLOCK]);
-        for (value, &padded) in b.iter().zip(&storage.padded) {
-            self.side[padded / BLOCK][padded % BLOCK] = *value;
-        }
-        let blocks = self.value.as_chunks::<BLOCK>().0.as_chunks::<BLOCK>().0;
-        for j in 0..storage.columns() {
-            let (head, after) = self.side.split_at_mut(j + 1);
-            let (own, mut column) = (&mut head[j], &blocks[storage.blocks(j)]);
-            forward(&column[0], own);
-            column = &column[1..];
-            for run in storage.runs(j) {
-                let (here, rest) = column.split_at(run.len);
-                for (to, block) in after[run.first - j - 1..].iter_mut().zip(here) {
-                    subtract_product(to, block, own);
+                for k in first..to {
+                    // The rest of its own run begins at the diagonal of this column.
+                    let (row, own) = (from.max(k), storage.column[run.first + k - first] - storage.column[end]);
+                    let factors = Factors { head, at: factors, row: k };
+                    factors.subtract(simd, &mut tail[own + row - k..], &panel[width * row..width * to]);
                 }
-                column = rest;
+                from = to;
             }
+            first = after;
         }
-        for (y, inverse) in self.side.iter_mut().zip(&self.inverse) {
-            *y = std::array::from_fn(|lane| y[lane] * inverse[lane]);
-        }
-        for j in (0..storage.columns()).rev() {
-            let (head, after) = self.side.split_at_mut(j + 1);
-            backward(&blocks[storage.blocks(j)], &mut head[j], (storage.runs(j), j + 1, after));
-        }
-        for (value, &padded) in b.iter_mut().zip(&storage.padded) {
-            *value = self.side[padded / BLOCK][padded % BLOCK];
-        }
-    }
-}
-
-/// Subtracts some blocks of the columns of a group, each column times its factors, from blocks that follow one another.
-#[inline(always)]
-fn subtract_columns(to: &mut [Square], blocks: Range<usize>, columns: &[(&[Square], &Square)]) {
-    if let [(panel, factors)] = columns {
-        for (to, panel) in to.iter_mut().zip(&panel[blocks]) {
-            subtract_square(to, panel, factors);
-        }
-        return;
-    }
-    for (to, at) in to.iter_mut().zip(blocks) {
-        let mut sum = *to;
-        for (panel, factors) in columns {
-            subtract_square(&mut sum, &panel[at], factors);
-        }
-        *to = sum;
     }
 }
 
@@ -296,70 +245,19 @@ fn factors_of(diagonal: &mut Square, noise: &Chunk) -> (Chunk, Chunk, Chunk) {
     (pivots, inverse, largest)
 }
 
-/// `to -= panel factors^T`.
-#[inline(always)]
-fn subtract_square(to: &mut Square, panel: &Square, factors: &Square) {
-    let (mut sum, panel, factors) = (*to, *panel, *factors);
-    for c in 0..BLOCK {
-        for p in 0..BLOCK {
-            for r in 0..BLOCK {
-                sum[c][r] -= panel[p][r] * factors[p][c];
-            }
-        }
-    }
-    *to = sum;
-}
-
-/// `x = L^-T (x - sum of block^T y)` with the blocks of a column, the first of which is `L`; `y` are the unknowns of the
-/// column's runs, from the first of `after` on.
-#[inline(always)]
-fn backward(column: &[Square], x: &mut Chunk, (runs, first, after): (&[Run], usize, &[Chunk])) {
-    let mut sums = [[0.0; BLOCK]; BLOCK];
-    let mut below = &column[1..];
-    for run in runs {
-        let (here, rest) = below.split_at(run.len);
-        for (block, y) in here.iter().zip(&after[run.first - first..]) {
-            for c in 0..BLOCK {
-                for r in 0..BLOCK {
-                    sums[c][r] += block[c][r] * y[r];
-                }
-            }
-        }
-        below = rest;
-    }
-    for c in (0..BLOCK).rev() {
-        let sum = (sums[c][0] + sums[c][1]) + (sums[c][2] + sums[c][3]);
-        let inner: f64 = (c + 1..BLOCK).map(|r| column[0][c][r] * x[r]).sum();
-        x[c] -= sum + inner;
-    }
-}
-
 /// A factorisation, to be compiled for the widest instructions of the processor.
 struct Factorise<'a> {
     factor: &'a mut Factor,
     storage: &'a Storage,
     sum: &'a Regularised<'a>,
+    most: usize,
     negative: &'a mut Option<usize>,
 }
 
 impl Task for Factorise<'_> {
     #[inline(always)]
-    fn run<S: Simd>(self, _: S) {
-        *self.negative = self.factor.factorise_here(self.storage, self.sum);
-    }
-}
-
-/// A solution, likewise.
-struct Solve<'a> {
-    factor: &'a mut Factor,
-    storage: &'a Storage,
-    b: &'a mut [f64],
-}
-
-impl Task for Solve<'_> {
-    #[inline(always)]
-    fn run<S: Simd>(self, _: S) {
-        self.factor.solve_here(self.storage, self.b);
+    fn run<S: Simd>(self, simd: S) {
+        *self.negative = self.factor.factorise_here(simd, self.storage, self.sum, self.most);
     }
 }
 
@@ -445,7 +343,7 @@ mod tests {
             for (i, j, entry) in [(0, 0, 1e16), (1, 0, 1e16), (1, 1, 1e16 + d), (2, 2, 1.0)] {
                 value[storage.position(i, j)] = entry;
             }
-            Factor::new(&storage).factorise(&storage, &plain(&value))
+            Factor::new(&storage).factorise(&storage, &plain(&value), usize::MAX)
         };
         assert_eq!([-1e4, -2.0, 0.0, 2.0, 1e4].map(negative), [Some(1), Some(0), Some(0), Some(0), Some(0)]);
     }
@@ -454,7 +352,7 @@ mod tests {
     fn the_solution_solves_the_dense_system() {
         let (storage, value, dense) = example();
         let mut factor = Factor::new(&storage);
-        assert_eq!(factor.factorise(&storage, &plain(&value)), Some(1));
+        assert_eq!(factor.factorise(&storage, &plain(&value), usize::MAX), Some(1));
         let mut seed = 3;
         let x: Vec<f64> = (0..12).map(|_| noise(&mut seed)).collect();
         let mut b: Vec<f64> = dense.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
@@ -494,7 +392,11 @@ mod tests {
                 }
                 let mut factor = Factor::new(&storage);
                 let negative = dense.clone().symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
-                assert_eq!(factor.factorise(&storage, &plain(&value)), Some(negative), "band {band} reach {reach}");
+                assert_eq!(
+                    factor.factorise(&storage, &plain(&value), usize::MAX),
+                    Some(negative),
+                    "band {band} reach {reach}"
+                );
                 let x = nalgebra::DVector::from_fn(n, |_, _| noise(&mut seed));
                 let mut b: Vec<f64> = (&dense * &x).iter().copied().collect();
                 factor.solve(&storage, &mut b);
@@ -534,7 +436,7 @@ mod tests {
                 }
                 let negative = dense.clone().symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
                 let mut factor = Factor::new(&storage);
-                assert_eq!(factor.factorise(&storage, &plain(&value)), Some(negative), "{count}, {size}");
+                assert_eq!(factor.factorise(&storage, &plain(&value), usize::MAX), Some(negative), "{count}, {size}");
                 let x = nalgebra::DVector::from_fn(n, |_, _| noise(&mut seed));
                 let mut b: Vec<f64> = (&dense * &x).iter().copied().collect();
                 factor.solve(&storage, &mut b);
@@ -549,7 +451,7 @@ mod tests {
     fn a_shift_moves_variables_and_no_rows() {
         let (storage, value, dense) = example();
         let mut factor = Factor::new(&storage);
-        factor.factorise(&storage, &Regularised { shift: 2.5, ..plain(&value) });
+        factor.factorise(&storage, &Regularised { shift: 2.5, ..plain(&value) }, usize::MAX);
         let mut b: Vec<f64> = dense.iter().map(|row| row[11]).collect();
         // Column 11 of the shifted matrix is that of the matrix, since 11 is a row.
         factor.solve(&storage, &mut b);
@@ -566,11 +468,12 @@ mod tests {
         let whole: Vec<f64> =
             value.iter().zip(&convexification).map(|(value, convexification)| value + 0.25 * convexification).collect();
         let (mut at_once, mut in_parts) = (Factor::new(&storage), Factor::new(&storage));
-        assert_eq!(at_once.factorise(&storage, &plain(&whole)), Some(1));
+        assert_eq!(at_once.factorise(&storage, &plain(&whole), usize::MAX), Some(1));
         assert_eq!(
             in_parts.factorise(
                 &storage,
-                &Regularised { convexification: &convexification, fraction: 0.25, ..plain(&value) }
+                &Regularised { convexification: &convexification, fraction: 0.25, ..plain(&value) },
+                usize::MAX
             ),
             Some(1)
         );
@@ -589,6 +492,41 @@ mod tests {
             matrix[(j, j)] -= 40.0;
         }
         let negative = matrix.symmetric_eigenvalues().iter().filter(|e| **e < 0.0).count();
-        assert_eq!(factor.factorise(&storage, &plain(&value)), Some(negative));
+        assert_eq!(factor.factorise(&storage, &plain(&value), usize::MAX), Some(negative));
+    }
+
+    /// Panels that are worked on in several parts, and groups of more columns than are subtracted together.
+    #[test]
+    fn a_wide_band_is_solved() {
+        let (width, overlap, mut seed) = (420_u32, 150_u32, 17);
+        let cliques: Vec<Vec<u32>> =
+            (0..3).map(|k| (k * (width - overlap)..k * (width - overlap) + width).collect()).collect();
+        let n = (2 * (width - overlap) + width) as usize;
+        let storage = storage_of(n, &cliques);
+        assert!(storage.blocks(0).len() > NEAR / TOGETHER + TOGETHER);
+        let (mut value, x) = (vec![0.0; storage.len], (0..n).map(|_| noise(&mut seed)).collect::<Vec<f64>>());
+        storage.clear(&mut value);
+        let (mut b, mut known) = (vec![0.0; n], std::collections::HashSet::new());
+        for clique in &cliques {
+            for (&a, &b_) in clique.iter().flat_map(|a| clique.iter().map(move |b| (a, b))).filter(|(a, b)| b <= a) {
+                if !known.insert((a, b_)) {
+                    continue;
+                }
+                let (i, j) = (a as usize, b_ as usize);
+                let entry = noise(&mut seed) + if i == j { if i % 9 == 4 { -900.0 } else { 900.0 } } else { 0.0 };
+                value[storage.position(i, j)] = entry;
+                b[i] += entry * x[j];
+                if i != j {
+                    b[j] += entry * x[i];
+                }
+            }
+        }
+        let negative = (0..n).filter(|i| i % 9 == 4).count();
+        let mut factor = Factor::new(&storage);
+        assert_eq!(factor.factorise(&storage, &plain(&value), negative - 1), None, "one too many");
+        assert_eq!(factor.factorise(&storage, &plain(&value), negative), Some(negative));
+        factor.solve(&storage, &mut b);
+        let worst = b.iter().zip(&x).map(|(found, wanted)| (found - wanted).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-12, "{worst:e}");
     }
 }

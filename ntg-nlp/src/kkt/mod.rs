@@ -7,15 +7,18 @@
 //! [`system`] holds the scaled program, the matrix `A` and its factors. `supports` finds which slots depend on the same
 //! variables, `unknowns` which rows are not condensed, `elements` condenses the others into second derivatives element by
 //! element, `ordering` says in which order unknowns are eliminated, `storage` where the entries of that matrix and of its
-//! factors are stored, `factor` factorises it, `columns` solves for several right-hand sides at a time.
+//! factors are stored, `factor` factorises it with the products of `panel`, `substitution` solves for one right-hand side and
+//! `columns` for several at a time.
 
 mod columns;
 mod elements;
 mod factor;
 mod ordering;
 mod pack;
+mod panel;
 mod pattern;
 mod storage;
+mod substitution;
 mod supports;
 pub(crate) mod system;
 mod unknowns;

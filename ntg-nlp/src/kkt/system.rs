@@ -408,10 +408,16 @@ impl<W> System<W> {
     /// Factorises the matrix plus a fraction of the convexifying term and a shift of the variables' diagonal; whether
     /// its inertia is that of a minimum.
     pub(crate) fn factorise(&mut self, fraction: f64, shift: f64) -> bool {
+        let negative = self.unknowns.bordered.len();
+        self.factorise_any(fraction, shift, negative) == Some(negative)
+    }
+
+    /// As [`System::factorise`], whatever the inertia is, as long as not more than `most` pivots are negative; how many are.
+    pub(crate) fn factorise_any(&mut self, fraction: f64, shift: f64, most: usize) -> Option<usize> {
         let convexification = if fraction == 0.0 { &[][..] } else { &self.convexification };
         let sum =
             Regularised { matrix: &self.matrix, convexification, fraction, shift, variables: self.unknowns.variables };
-        self.factor.factorise(&self.storage, &sum) == Some(self.unknowns.bordered.len())
+        self.factor.factorise(&self.storage, &sum, most)
     }
 
     /// Replaces the right-hand side, by variable and by border row, by the solution.

@@ -29,6 +29,13 @@ const PARTS: i32 = 10;
 /// Sums of decades that differ by less are equal: rounding.
 const EQUAL: f64 = 1e-6;
 
+/// An objective that is the same over so many decades tends to a number. A choice.
+const STEADY: i32 = 6;
+
+/// It is near to that number within this part of it. A choice: a motion over such a duration hardly moves, as its guess does, and
+/// its duration is felt.
+const TENDS: f64 = 0.01;
+
 /// A duration that is a variable.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FreeDuration {
@@ -200,19 +207,34 @@ fn balanced(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32)
     Some(0.5 * (good().reduce(f64::min)? + good().reduce(f64::max)?))
 }
 
-/// Of those that balance the equations as `here` does, the one with the lowest objective, if that is not the last one looked at.
+/// Of those that balance the equations as `here` does, the one with the lowest objective, if the objective rises again beyond or
+/// the equations are no longer balanced there. Where it tends to a number instead, the first one at which it is near to that:
+/// beyond, a duration makes no difference that could be told from rounding.
 fn cheapest(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32) -> Option<f64> {
     let is_equal = |there: Trial| (there.decades - here.decades).abs() <= EQUAL;
-    let (mut best, mut least) = (0, here.objective);
+    let (mut best, mut least, mut ends) = (0, here.objective, false);
+    let mut before = least;
     for decade in FAR..=RANGE {
         let there = trial(way * decade)?;
-        if !is_equal(there) || there.objective >= least {
+        ends = !is_equal(there) || there.objective - least > EQUAL * (here.objective - least).abs();
+        if ends {
             break;
         }
-        (best, least) = (decade, there.objective);
+        if decade == RANGE - STEADY {
+            before = there.objective;
+        }
+        if there.objective < least {
+            (best, least) = (decade, there.objective);
+        }
     }
-    if best == 0 || best == RANGE {
+    if best == 0 {
         return None;
+    }
+    if !ends {
+        let tends = (before - least).abs() <= EQUAL * least.abs();
+        let is_near = |there: Trial| (there.objective - least).abs() <= TENDS * least.abs();
+        let mut tenths = (1..=RANGE * PARTS).map(|tenths| way.signum() * tenths);
+        return tenths.find(|tenths| tends && trial(*tenths).is_some_and(is_near)).map(f64::from);
     }
     let tenths = way * best - PARTS..=way * best + PARTS;
     let near = tenths.filter_map(|tenths| Some((tenths, trial(tenths)?)));
