@@ -1,8 +1,8 @@
 //! The `ntg` command: one file a verb, no mathematics. A library, so that other programs may offer the same command.
 //!
-//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, 3 a solution
-//! that is less than what was asked for (acceptable, not as exact as `--refine` asks, none between the points, or one of which
-//! it is not known whether it is optimal), 130 stopped by Ctrl-C.
+//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, or output
+//! that cannot be written, 3 a solution that is less than what was asked for (acceptable, not as exact as `--refine` asks, none
+//! between the points, or one of which it is not known whether it is optimal), 130 stopped by Ctrl-C.
 
 #[macro_use]
 mod tell;
