@@ -144,7 +144,7 @@ pub(crate) struct Solve {
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) set: Vec<String>,
     /// How many points of the solution to print.
-    #[arg(long, default_value_t = 101, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    #[arg(long, default_value_t = 101, value_parser = clap::value_parser!(u32).range(2..=1_000_000), allow_negative_numbers = true)]
     pub(crate) samples: u32,
     /// How to print.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -169,13 +169,13 @@ pub(crate) struct Solve {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) time_limit: Option<f64>,
     /// Give up after that many iterations.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) max_iterations: Option<usize>,
     #[command(flatten)]
     pub(crate) starts: Starts,
     /// Solve again on finer and finer meshes, until cost and constraints are exact to that relative
     /// error; with `--starts`, every minimum.
-    #[arg(long, value_name = "ERROR")]
+    #[arg(long, value_name = "ERROR", allow_negative_numbers = true)]
     pub(crate) refine: Option<f64>,
     /// Prove every constraint for all times; where one fails between the points, tighten it or hold it at more points
     /// and solve again, until all is proved.
@@ -243,10 +243,10 @@ pub(crate) enum Between {
 pub(crate) struct Starts {
     /// Solve from many starts (the guess, a coarse search over the plane, random routes, perturbed
     /// guesses) and find the local minima, the best first.
-    #[arg(long = "starts", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long = "starts", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     pub(crate) count: Option<u32>,
     /// The seed of the random starts: the same seed gives the same starts.
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "count")]
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "count", allow_negative_numbers = true)]
     pub(crate) seed: u64,
     /// Where starts come from.
     #[arg(long = "start-kind", value_enum, default_value_t = Kind::Mixed, requires = "count")]

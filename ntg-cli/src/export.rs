@@ -19,8 +19,9 @@ use ntg_structure::Unit;
 use serde_json::json;
 
 use crate::arguments::Format;
+use crate::guess::{self, Origin};
 use crate::runs::SAVED;
-use crate::{Exit, files, guess, setup};
+use crate::{Exit, files, setup};
 
 /// How many violations are listed.
 const LISTED: usize = 10;
@@ -73,7 +74,7 @@ pub(crate) struct CheckSolution {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// The largest relative violation, and error of stationarity and complementarity, of a solution.
-    #[arg(long, default_value_t = 1e-6)]
+    #[arg(long, default_value_t = 1e-6, allow_negative_numbers = true)]
     tolerance: f64,
 }
 
@@ -197,7 +198,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
     let read = arguments.problem.read()?;
     let problem = read.posed_at(&arguments.point)?;
     let mut nlp = Transcription::new(&problem).map_err(|error| read.said(error))?;
-    let Found { solution: found, is_interpolated, of_others } = read.measured(&arguments.point, &mut nlp)?;
+    let Found { solution: found, origin, of_others } = read.measured(&arguments.point, &mut nlp)?;
     nlp.hold_sides(&found.x);
     let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
     // The judge minimises.
@@ -211,7 +212,7 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         nlp: &nlp,
         read: &read,
         found: &found,
-        is_interpolated,
+        origin,
         of_others,
         judged: &judged,
         objective,
@@ -253,30 +254,26 @@ fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Found, Str
             true => format!("{error}, or the `.sol` of a solver"),
             false => error,
         };
-        let (guess, is_same, saved) = guess::read_point(path, &read.problem).map_err(or_solver)?;
+        let (guess, origin, saved) = guess::read_point(path, &read.problem).map_err(or_solver)?;
         let x = start(nlp, Some(&guess)).map_err(|error| read.said(error))?;
         let sign = if read.program.structure.maximize { -1.0 } else { 1.0 };
         let of_others = saved.as_ref().map_or(0, Vec::len);
         let multipliers =
             saved.filter(|saved| saved.len() == nlp.rows()).map(|saved| saved.iter().map(|y| sign * y).collect());
-        return Ok(Found {
-            solution: Solution { message: String::new(), x, multipliers },
-            is_interpolated: !is_same,
-            of_others,
-        });
+        return Ok(Found { solution: Solution { message: String::new(), x, multipliers }, origin, of_others });
     }
     let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
     let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
     let read = Solution::read(&text, &Order::of(&expressions));
-    read.map(|solution| Found { solution, is_interpolated: false, of_others: 0 })
+    read.map(|solution| Found { solution, origin: Origin::Unknowns, of_others: 0 })
         .map_err(|error| format!("`{}`: {error}", path.display()))
 }
 
 /// What a file has.
 struct Found {
     solution: Solution,
-    /// Whether it was saved on other splines.
-    is_interpolated: bool,
+    /// Where its splines come from.
+    origin: Origin,
     /// How many multipliers were saved with it.
     of_others: usize,
 }
@@ -286,8 +283,8 @@ struct Said<'a> {
     nlp: &'a Transcription<'a>,
     read: &'a Read,
     found: &'a Solution,
-    /// Whether the point was saved on other splines.
-    is_interpolated: bool,
+    /// Where the splines of the point come from.
+    origin: Origin,
     /// How many multipliers were saved with the point.
     of_others: usize,
     judged: &'a Judgement,
@@ -312,9 +309,12 @@ impl Said<'_> {
         let objective_unit = &self.read.program.structure.objective_unit.symbol;
         let mut lines = vec![];
         lines.extend(self.found.message.lines().map(|line| format!("solver:           {line}")));
-        if self.is_interpolated {
-            lines.push("point:            interpolated: it was saved by a problem with other splines".to_owned());
-        }
+        let interpolated = match self.origin {
+            Origin::Unknowns => None,
+            Origin::OtherSplines => Some("it was saved by a problem with other splines"),
+            Origin::SamplesAlone => Some("the file has samples alone, without `layout` and `unknowns`"),
+        };
+        lines.extend(interpolated.map(|why| format!("point:            interpolated: {why}")));
         lines.push(format!("objective:        {:.10e} {objective_unit}", self.objective).trim_end().to_owned());
         lines.push(format!("violation:        {:.3e} (relative)", self.judged.violation()));
         match &self.judged.optimality {

@@ -41,7 +41,7 @@ fn format(path: &Path, only_check: bool) -> Result<bool, ()> {
     if files::is_standard_input(path) {
         files::print_raw(&formatted);
     } else if !is_same {
-        replace(path, &formatted).map_err(|message| tell!("error: {message}"))?;
+        write::whole(path, true, formatted.as_bytes()).map_err(|message| tell!("error: {message}"))?;
         files::print(&format!("{}: formatted", path.display()));
     }
     Ok(true)
@@ -50,16 +50,4 @@ fn format(path: &Path, only_check: bool) -> Result<bool, ()> {
 /// What would change, as `diff -u` says it.
 fn difference(name: &str, old: &str, new: &str) -> String {
     TextDiff::from_lines(old, new).unified_diff().header(name, &format!("{name} (formatted)")).to_string()
-}
-
-/// Replaces a file, through a link if it is one, and keeps its permissions.
-fn replace(path: &Path, text: &str) -> Result<(), String> {
-    let failed = |error: std::io::Error| format!("cannot write `{}`: {error}", path.display());
-    let target = path.canonicalize().map_err(failed)?;
-    let permissions = target.metadata().map_err(failed)?.permissions();
-    if permissions.readonly() {
-        return Err(format!("cannot write `{}`: it is read-only", path.display()));
-    }
-    write::whole(&target, true, text.as_bytes())?;
-    std::fs::set_permissions(&target, permissions).map_err(failed)
 }

@@ -18,20 +18,41 @@ pub(crate) fn read(path: &Path, problem: &Interpreted) -> Result<Guess, String> 
     of(&saved(path)?, path, problem)
 }
 
-/// As [`read`], with whether the splines are the same, and the multipliers of the rows where they are; none in files from
-/// before they were saved.
-pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, bool, Option<Vec<f64>>), String> {
+/// Where the splines of a guess come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The same unknowns.
+    Unknowns,
+    /// The samples of other splines.
+    OtherSplines,
+    /// The samples of a file that says nothing of its splines.
+    SamplesAlone,
+}
+
+/// As [`read`], with where the splines come from, and the multipliers of the rows where they are the same; none in files
+/// from before they were saved.
+pub(crate) fn read_point(path: &Path, problem: &Interpreted) -> Result<(Guess, Origin, Option<Vec<f64>>), String> {
     let saved = saved(path)?;
-    let is_same = saved["layout"] == layout(&problem.structure());
+    let origin = match has_unknowns(&saved, &problem.structure()) {
+        true => Origin::Unknowns,
+        false if saved["layout"].is_null() || saved["unknowns"].is_null() => Origin::SamplesAlone,
+        false => Origin::OtherSplines,
+    };
+    let is_same = origin == Origin::Unknowns;
     let multipliers = numbers(&saved["row_multipliers"]).filter(|multipliers| is_same && !multipliers.is_empty());
-    Ok((of(&saved, path, problem)?, is_same, multipliers))
+    Ok((of(&saved, path, problem)?, origin, multipliers))
+}
+
+/// Whether a file has the unknowns of these splines.
+fn has_unknowns(saved: &Value, structure: &Structure) -> bool {
+    saved["layout"] == layout(structure) && saved["unknowns"].is_array()
 }
 
 /// A saved solution of a version that can be read, with an entry for each element of its arrays.
 fn saved(path: &Path) -> Result<Value, String> {
     let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
-    let mut saved: Value =
-        serde_json::from_str(&text).map_err(|e| format!("`{}` is not JSON: {e}; {SAVED}", path.display()))?;
+    let mut saved: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+        .map_err(|e| format!("`{}` is not JSON: {e}; {SAVED}", path.display()))?;
     if saved["format"] != FORMAT {
         return Err(format!("`{}` is no saved solution (its \"format\" is not \"{FORMAT}\"); {SAVED}", path.display()));
     }
@@ -49,7 +70,11 @@ fn saved(path: &Path) -> Result<Value, String> {
 /// The guess that a saved solution is. That of a problem without a common output is none.
 fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String> {
     let structure = problem.structure();
-    if saved["layout"] == layout(&structure) && saved["unknowns"].is_array() {
+    let damaged = |what: String| format!("`{}` is damaged: {what}", path.display());
+    if let Some(what) = wrong_factor(saved) {
+        return Err(damaged(what));
+    }
+    if has_unknowns(saved, &structure) {
         let Some(unknowns) = numbers(&saved["unknowns"]) else {
             return Err(format!("`{}`: not all of `unknowns` are finite numbers", path.display()));
         };
@@ -74,9 +99,9 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
     for (name, output) in saved_outputs() {
         let base = base(name);
         let base = base.as_str();
-        let samples = (numbers(&output["t"]), numbers(&output["value"]));
         let declared = structure.phases.iter().flat_map(|p| &p.outputs).find(|output| output.name == base);
-        if let ((Some(t), Some(value)), Some(declared)) = (samples, declared) {
+        if let Some(declared) = declared {
+            let (t, value) = samples(output).map_err(|what| damaged(format!("`{name}` {what}")))?;
             let scale = scale(output, &declared.unit);
             guess = guess.output(name, move |tau| scale * interpolate(&t, &value, tau));
         }
@@ -100,6 +125,31 @@ fn of(saved: &Value, path: &Path, problem: &Interpreted) -> Result<Guess, String
         }
     }
     Ok(guess)
+}
+
+/// The times and values of a saved output, or what is wrong with them.
+fn samples(output: &Value) -> Result<(Vec<f64>, Vec<f64>), String> {
+    let list =
+        |key: &str| numbers(&output[key]).ok_or_else(|| format!("has a `{key}` that is no list of finite numbers"));
+    let (t, value) = (list("t")?, list("value")?);
+    if t.len() != value.len() {
+        return Err(format!("has {} times in `t` and {} numbers in `value`", t.len(), value.len()));
+    }
+    if t.is_empty() {
+        return Err("has no samples".to_owned());
+    }
+    if let Some(pair) = t.windows(2).find(|pair| pair[1] < pair[0]) {
+        return Err(format!("has times that fall, from {} to {}", pair[0], pair[1]));
+    }
+    Ok((t, value))
+}
+
+/// The first factor of a unit that is none.
+fn wrong_factor(saved: &Value) -> Option<String> {
+    let entries = ["outputs", "variables"].iter().flat_map(|key| saved[*key].as_object().into_iter().flatten());
+    let all = entries.map(|(name, entry)| (name.as_str(), entry)).chain([("independent", &saved["independent"])]);
+    let mut wrong = all.filter_map(|(name, entry)| Some((name, entry["factor"].as_f64()?))).filter(|(_, f)| *f <= 0.0);
+    wrong.next().map(|(name, factor)| format!("the `factor` of `{name}` is {factor}, and not positive"))
 }
 
 /// The last name of a path, without indices.

@@ -1,8 +1,8 @@
 //! The `ntg` command: one file a verb, no mathematics. A library, so that other programs may offer the same command.
 //!
-//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, 3 a solution
-//! that is less than what was asked for (acceptable, not as exact as `--refine` asks, none between the points, or one of which
-//! it is not known whether it is optimal), 130 stopped by Ctrl-C.
+//! Exit status: 0 done (for `solve`: solved), 1 not solved (for `fmt --check`: not formatted), 2 bad spec or arguments, or output
+//! that cannot be written, 3 a solution that is less than what was asked for (acceptable, not as exact as `--refine` asks, none
+//! between the points, or one of which it is not known whether it is optimal), 130 stopped by Ctrl-C.
 
 #[macro_use]
 mod tell;
@@ -76,8 +76,11 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(parsed) => parsed,
         Err(said) => {
             // Help and version are no errors. A reader that has gone away is none either.
-            let _ = said.print();
-            return u8::try_from(said.exit_code()).unwrap_or(u8::MAX);
+            let shown = said.print();
+            if !said.use_stderr() {
+                files::noted(shown);
+            }
+            return ended(u8::try_from(said.exit_code()).unwrap_or(u8::MAX));
         }
     };
     let exit = match parsed.command {
@@ -99,7 +102,18 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Merge(arguments) => said(merge::run(&arguments)),
         Command::Summary(arguments) => said(summary::run(&arguments)),
     };
-    u8::try_from(exit.status()).unwrap_or(u8::MAX)
+    ended(u8::try_from(exit.status()).unwrap_or(u8::MAX))
+}
+
+/// The exit status, which is that of an error where not all that was printed could be written.
+fn ended(status: u8) -> u8 {
+    match files::printed() {
+        Ok(()) => status,
+        Err(message) => {
+            tell!("error: {message}");
+            u8::try_from(Exit::Bad.status()).unwrap_or(u8::MAX)
+        }
+    }
 }
 
 /// Says what went wrong; an empty message has been said already.

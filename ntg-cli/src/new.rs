@@ -28,6 +28,9 @@ pub(crate) fn run(arguments: &arguments::New) -> Exit {
 }
 
 fn start(name: &Path, spec: &str, force: bool) -> Result<PathBuf, String> {
+    // Commands would take a name that begins with a dash for an option.
+    let is_option = name.to_string_lossy().starts_with('-');
+    let name = &if is_option { Path::new(".").join(name) } else { name.to_owned() };
     let path = if name.extension().is_some_and(|e| e == "ntg") { name.to_owned() } else { with_extension(name) };
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
     let problem = camel_case(stem);

@@ -3,6 +3,8 @@
 //! Takes text in which settings stand between backticks, `max_iterations`; gives the same text with the options that set
 //! them, `--max-iterations`.
 
+use std::time::Duration;
+
 use ntg_runtime::multistart::MultiReport;
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::InvalidSetting;
@@ -44,6 +46,17 @@ pub(crate) fn all_in_options(mut found: MultiReport) -> MultiReport {
 pub(crate) fn invalid(error: &InvalidSetting) -> String {
     let option = OPTIONS.iter().find(|(setting, _)| *setting == error.field).map(|(_, option)| *option);
     option.map_or_else(|| error.to_string(), |option| format!("{option}: {}", error.message))
+}
+
+/// The limit that `--time-limit` sets.
+pub(crate) fn time_limit(seconds: f64) -> Result<Duration, String> {
+    let longest = Duration::MAX.as_secs_f64();
+    Duration::try_from_secs_f64(seconds).map_err(|_| match seconds >= longest {
+        true => {
+            format!("--time-limit {seconds:e}: at most {longest:.1e} seconds; without the option there is no limit")
+        }
+        false => format!("--time-limit {seconds}: a positive number of seconds"),
+    })
 }
 
 #[cfg(test)]

@@ -59,7 +59,8 @@ impl Inputs {
             }
         }
         let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
-        Run::read(&text).map_err(|message| format!("`{}` {message}; {SAVED}", path.display()))
+        Run::read(text.trim_start_matches('\u{feff}'))
+            .map_err(|message| format!("`{}` {message}; {SAVED}", path.display()))
     }
 
     fn solved(&self, path: &Path, output: &Path, interrupt: &Interrupt) -> Result<Vec<(String, Run)>, String> {

@@ -232,8 +232,7 @@ fn scale(text: &str) -> Result<(String, f64), String> {
 fn settings(arguments: &arguments::Solve) -> Result<Settings, String> {
     let mut settings = Settings::default();
     if let Some(seconds) = arguments.time_limit {
-        let limit = Duration::try_from_secs_f64(seconds);
-        settings.time_limit = Some(limit.map_err(|_| format!("--time-limit {seconds}: a positive number of seconds"))?);
+        settings.time_limit = Some(options::time_limit(seconds)?);
     }
     if let Some(most) = arguments.max_iterations {
         settings.max_iterations = most;

@@ -59,16 +59,16 @@ pub(crate) struct Arguments {
     shard: Option<Shard>,
     /// Rows that start from one solution, that of a neighbour; 1 starts every row from the guess of
     /// the spec. By default 4 to 32, more in larger studies.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     block: Option<u32>,
     /// Rows at a time; 0 for one on each core.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     jobs: usize,
     /// Give up a row after that many seconds.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     time_limit: Option<f64>,
     /// Give up a row after that many iterations.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     max_iterations: Option<usize>,
     /// Replace an existing table.
     #[arg(long)]
@@ -173,8 +173,7 @@ pub(crate) fn finished(results: &Results, output: &Path) -> Exit {
 fn settings(arguments: &Arguments) -> Result<Settings, String> {
     let mut settings = Settings::default();
     if let Some(seconds) = arguments.time_limit {
-        let limit = Duration::try_from_secs_f64(seconds);
-        settings.time_limit = Some(limit.map_err(|_| format!("--time-limit {seconds}: a positive number of seconds"))?);
+        settings.time_limit = Some(crate::options::time_limit(seconds)?);
     }
     if let Some(most) = arguments.max_iterations {
         settings.max_iterations = most;

@@ -74,7 +74,10 @@ impl Crate<'_> {
         for (place, text) in &files {
             let path = folder.join(place);
             let parent = path.parent().unwrap_or(folder);
-            std::fs::create_dir_all(parent).map_err(|error| format!("cannot make `{}`: {error}", parent.display()))?;
+            std::fs::create_dir_all(parent).map_err(|error| match crate::write::file_above(parent) {
+                Some(file) => format!("`{}` is a file, and no folder; give another name", file.display()),
+                None => format!("cannot make `{}`: {error}", parent.display()),
+            })?;
             crate::write::whole(&path, force, text.as_bytes())?;
         }
         Ok(files.len())

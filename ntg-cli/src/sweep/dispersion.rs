@@ -18,13 +18,13 @@ pub(super) struct Dispersed {
     #[arg(long, value_name = "NAME ~ DISTRIBUTION", requires = "samples", allow_hyphen_values = true)]
     disperse: Vec<String>,
     /// How many samples of the dispersed parameters; each is taken with every other parameter set.
-    #[arg(long, value_name = "N", requires = "disperse", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", requires = "disperse", value_parser = clap::value_parser!(u32).range(1..=10_000_000), allow_negative_numbers = true)]
     samples: Option<u32>,
     /// How samples are laid out.
     #[arg(long, value_enum, default_value_t = Kind::MonteCarlo, requires = "disperse")]
     design: Kind,
     /// The seed of the samples: the same seed gives the same samples on every machine.
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "disperse")]
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "disperse", allow_negative_numbers = true)]
     seed: u64,
 }
 

@@ -127,6 +127,12 @@ fn table(problem: &Interpreted, path: &Path) -> Result<Read, String> {
         return Err(files::unread(path, &error));
     }
     let table = ntg_sweep::read(path)?;
+    if table.names.is_empty() {
+        let shown = path.display();
+        return Err(format!(
+            "`{shown}` is empty; its first line names parameters, and every further one is a set of values"
+        ));
+    }
     let parameters = table.names.iter().map(|name| parameter(problem, name)).collect::<Result<Vec<_>, _>>();
     let parameters = parameters.map_err(|message| format!("`{}`: {message}", path.display()))?;
     let mut rows = vec![];

@@ -102,6 +102,18 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
     (&["solve", "mission.ntg", "--save", "run.json"], "give --force to replace it, or another name"),
     (&["solve", "mission.ntg", "--save", "nowhere/run.json"], "`nowhere` is no folder; make it first"),
     (&["solve", "mission.ntg", "--time-limit", "-1"], "a positive number of seconds"),
+    (&["solve", "mission.ntg", "--time-limit", "1e300"], "--time-limit 1e300: at most 1.8e19 seconds"),
+    (
+        &["sweep", "mission.ntg", "--set", "v_max=1:2:2", "-o", "o.csv", "--time-limit", "1e300"],
+        "at most 1.8e19 seconds",
+    ),
+    (&["solve", "mission.ntg", "--refine", "-1"], "the tolerance -1 is not between 1e-12 and 0.1"),
+    (&["solve", "mission.ntg", "--max-iterations", "-1"], "invalid value '-1' for '--max-iterations <N>'"),
+    (&["solve", "mission.ntg", "--starts", "-1"], "-1 is not in 1..=1000000"),
+    (
+        &["sweep", "mission.ntg", "--from", "none.csv", "-o", "o.csv"],
+        "`none.csv` is empty; its first line names parameters",
+    ),
     (&["solve", "mission.ntg", "--tolerance", "-1"], "between 1e-12 and 0.1"),
     (&["plot", "mission.ntg", "--show", "sped", "-o", "a.svg"], "there are: `x`, `y`, `speed`"),
     (&["plot", "mission.ntg", "-o", "a.pdf"], "plots are .svg or .png files"),
@@ -117,6 +129,7 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
 /// The spec of `ntg new`, as `mission.ntg`.
 fn written(folder: &Path) -> String {
     said(&ntg_in(folder, &["new", "mission"], b""), 0);
+    fs::write(folder.join("none.csv"), "").expect("writable");
     fs::write(folder.join("bad.csv"), "v_max\nfast\n").expect("writable");
     fs::read_to_string(folder.join("mission.ntg")).expect("readable")
 }

@@ -134,6 +134,7 @@ codes! {
     MissesJumps "E097" "a derivative that misses the jumps of what it is taken of";
     TooLarge "E098" "a problem too large to be solved";
     FewPoints "E099" "an equation between states on too few points";
+    LayoutChanges "E100" "a layout that would change what a spec says";
 
     GradientJumps "N001" "a gradient that may jump";
     DerivativeJumps "N002" "a derivative that jumps at the knots";

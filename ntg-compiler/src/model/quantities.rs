@@ -174,11 +174,19 @@ impl<'a> Elaborator<'a> {
                 if !param.default.is_tuple && values.len() == 1 && (0..=MAX_MEMBERS).contains(&size) {
                     values = vec![values[0]; size as usize];
                 } else if values.len() as i64 != size {
-                    let message = format!("`{name}` has {size} members, but its default has {}", values.len());
+                    let negative = axes.iter().flat_map(|(axes, _)| axes).find_map(Ends::negative);
+                    let members = match negative {
+                        Some(size) => format!("the size {size}"),
+                        None => format!("{size} members"),
+                    };
+                    let message = format!("`{name}` has {members}, but its default has {}", values.len());
                     let finding = Diagnostic::new(Code::WrongCount, param.default.span, message)
                         .label(param.default.span, format!("{} values", values.len()))
-                        .label(span, format!("{size} members"));
-                    self.report(finding.help("write one value for each member, or a single one for all"));
+                        .label(span, members);
+                    self.report(finding.help(match negative {
+                        Some(_) => "a size is a whole number, and not negative",
+                        None => "write one value for each member, or a single one for all",
+                    }));
                 }
             }
             _ => {}

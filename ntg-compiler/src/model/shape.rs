@@ -46,6 +46,11 @@ impl Ends {
         Some((extent + 1).max(0))
     }
 
+    /// A size below 0 that is written in their place.
+    pub(super) fn negative(&self) -> Option<i64> {
+        self.numbers().filter(|(first, last)| *first == 1 && *last < 0).map(|(_, last)| last)
+    }
+
     /// Both ends, where they are numbers.
     pub(super) fn numbers(&self) -> Option<(i64, i64)> {
         self.first.as_number().zip(self.last.as_number())

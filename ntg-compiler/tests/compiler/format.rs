@@ -294,6 +294,50 @@ problem P {  // opened
 }
 
 #[test]
+fn comments_between_the_lines_of_a_documentation_stay_comments() {
+    assert_layout(
+        "/* one */ /* two */ /// What it is.
+problem P {
+    /// a
+    /* b */ /* c */
+    /// d
+    const a = 1;
+    /* e */ /// f
+    /* g */ const b = 2;
+    trajectory { z <= 1; /// h
+        z >= 0;
+        /// i
+        /* j */ /* k */ /// l
+        soft: der(z) <= 1; }
+}
+",
+        "/* one */  /* two */
+/// What it is.
+problem P {
+    /// a
+    /* b */
+    /* c */
+    /// d
+    const a = 1;
+    /* e */
+    /// f
+    /* g */ const b = 2;
+    trajectory {
+        z <= 1;
+        /// h
+        z >= 0;
+        /// i
+        /* j */
+        /* k */
+        /// l
+        soft: der(z) <= 1;
+    }
+}
+",
+    );
+}
+
+#[test]
 fn long_lines_break_at_the_loosest_operators() {
     let a = "a_rather_long_name";
     let product = [a; 3].join("*");
@@ -386,6 +430,7 @@ fn gap() -> impl Strategy<Value = &'static str> {
         1 => Just("\n// above\n"),
         1 => Just(" /* b */ "),
         1 => Just("\n   /* two\n        lines */\n"),
+        1 => Just("\n/* one */ /* other */\n"),
     ]
 }
 

@@ -434,3 +434,29 @@ fn the_help_of_a_fork_names_the_last_member_of_a_family() {
     let single = of("p");
     assert!(single.contains("write `phase q after p`, or start another agent"), "{single}");
 }
+
+#[test]
+fn a_negative_size_is_told_as_it_is() {
+    let found = told(&format!("const n = -1;  param goal[n] = (1, 2, 3) [m];\n{MOVING}"));
+    assert!(found.contains("`goal` has the size -1, but its default has 3"), "{found}");
+    assert!(found.contains("= help: a size is a whole number, and not negative"), "{found}");
+}
+
+#[test]
+fn the_manual_says_which_code_a_habit_of_other_languages_has() {
+    use ntg_compiler::diagnostic::Code;
+    let entry = |code: Code| code.manual().to_owned();
+    for (text, code, written) in [
+        ("let a = if x <= 1 [m] and x >= 0 { 1 } else { 2 };", Code::Unexpected, "`if a <= 1 and b <= 1`"),
+        ("let a = if not x <= 1 [m] { 1 } else { 2 };", Code::Unexpected, "`if not a <= 1`"),
+        ("let a = 3(x + 1 [m]);", Code::Unexpected, "`3(x + 1)`"),
+        ("let y = 2;  let a = x(y + 1);", Code::NoFunction, "`x(y + 1)`"),
+        ("let a = der(x, 1.5);", Code::NotWhole, "orders"),
+        ("let a = der(x, 33);", Code::WrongOrder, "from 0 to 32"),
+    ] {
+        let found = told(&format!("{MOVING}\n{text}"));
+        assert!(found.contains(&format!("error[{}]", code.text())), "{text}:\n{found}");
+        assert!(entry(code).contains(written), "{text}: the entry of {} lacks {written}", code.text());
+    }
+    assert!(!entry(Code::WrongRelation).contains(" and "), "a relation with `and` has E001");
+}

@@ -128,6 +128,7 @@ const WITHOUT: &[(&str, &str)] = &[
     ("E090", "4 GiB of text are none either"),
     ("E091", "the smallest such spec has dozens of functions"),
     ("E092", "the smallest such spec has hundreds of levels"),
+    ("E100", "no spec is known that has it"),
 ];
 
 #[test]

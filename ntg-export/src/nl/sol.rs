@@ -8,7 +8,11 @@
 //! rows, multipliers given, variables, values given
 //! multipliers, values, one a line
 //! objno 0 CODE
+//! suffix KIND, how many, length of its name, length of its table, lines of its table
+//! the name, the table, a place and a value on each line
 //! ```
+//!
+//! The last two are left out or repeated as a solver likes, and read past.
 
 use super::Order;
 use std::fmt;
@@ -88,6 +92,7 @@ impl Solution {
             (0..std::mem::take(count)).map(|_| lines.number("a number")).collect()
         };
         let (multipliers, x) = (column(&mut given)?, column(&mut values)?);
+        lines.rest()?;
         let has_multipliers = multipliers.len() == rows && rows > 0;
         Ok(Self {
             message: message.join("\n").trim().to_owned(),
@@ -122,6 +127,39 @@ impl<'a> Lines<'a> {
         let line = self.lines.get(self.next).map(|(_, line)| *line);
         self.next += 1;
         line.ok_or(SolutionError::Line(self.next, expected))
+    }
+
+    /// Reads past what stands behind the values.
+    fn rest(&mut self) -> Result<(), SolutionError> {
+        const EXPECTED: &str = "`objno`, a suffix or the end";
+        while self.next < self.lines.len() {
+            let words: Vec<&str> = self.take(EXPECTED)?.split_whitespace().collect();
+            let is_number = |word: &&str| word.parse::<i64>().is_ok();
+            match words[..] {
+                [] => {}
+                ["objno", ref numbers @ ..] if matches!(numbers.len(), 1 | 2) && numbers.iter().all(is_number) => {}
+                ["suffix", _, values, _, _, table] => {
+                    let count =
+                        |word: &str| word.parse::<usize>().map_err(|_| SolutionError::Line(self.next, EXPECTED));
+                    let (values, table) = (count(values)?, count(table)?);
+                    for _ in 0..=table {
+                        self.take("the name of a suffix and its table")?;
+                    }
+                    (0..values).try_for_each(|_| self.place_and_value())?;
+                }
+                _ => return Err(SolutionError::Line(self.next, EXPECTED)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads past one value of a suffix.
+    fn place_and_value(&mut self) -> Result<(), SolutionError> {
+        const EXPECTED: &str = "a place and a value of a suffix";
+        let mut words = self.take(EXPECTED)?.split_whitespace();
+        let place = words.next().is_some_and(|word| word.parse::<usize>().is_ok());
+        let value = words.next().is_some_and(|word| word.parse::<f64>().is_ok());
+        if place && value && words.next().is_none() { Ok(()) } else { Err(SolutionError::Line(self.next, EXPECTED)) }
     }
 
     fn number<T: std::str::FromStr>(&mut self, expected: &'static str) -> Result<T, SolutionError> {

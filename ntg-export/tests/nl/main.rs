@@ -8,7 +8,7 @@ use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
 use ntg_export::Expressions;
 use ntg_export::judge::{Point, judge};
-use ntg_export::nl::{Files, Order, Solution, write};
+use ntg_export::nl::{Files, Order, Solution, SolutionError, write};
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::start;
 use ntg_runtime::nlp::Nlp;
@@ -173,4 +173,19 @@ fn a_solution_is_read_back_in_order_and_judged() {
     let is_reach = |of| matches!(of, Bounded::Row(row) if nlp.row_name(row).starts_with("`reach`"));
     assert!(judged.missed.iter().any(|missed| is_reach(missed.of)), "{judged:?}");
     assert!(Solution::read("found\n\nOptions\n0\n1\n1\n1\n1\n", &order).is_err());
+    // Behind the values stand the number of the objective and suffixes, as IPOPT writes them, and nothing else.
+    let text = own.text(&order);
+    let suffixes = "suffix 4 2 14 0 0\nipopt_zL_out\n0 0.5\n3 -1e-9\nsuffix 4 1 5 7 1\nname\n1 a b\n0 1\n\n";
+    assert_eq!(Solution::read(&format!("{text}{suffixes}"), &order), Ok(own));
+    let lines = text.lines().count();
+    for (behind, line, expected) in [
+        ("rubbish\n", 1, "`objno`, a suffix or the end"),
+        ("objno 0 0 rubbish\n", 1, "`objno`, a suffix or the end"),
+        ("suffix 4 many 14 0 0\n", 1, "`objno`, a suffix or the end"),
+        ("suffix 4 1 14 0 0\nname\nrubbish\n", 3, "a place and a value of a suffix"),
+        ("suffix 4 1 14 0 0\nname\n", 3, "a place and a value of a suffix"),
+    ] {
+        let refused = Solution::read(&format!("{text}{behind}"), &order);
+        assert_eq!(refused, Err(SolutionError::Line(lines + line, expected)), "{behind}");
+    }
 }

@@ -162,7 +162,7 @@ impl Report {
     pub(crate) fn advised(mut self) -> Self {
         if self.resolution() == Some(Resolution::Unresolved) && self.advice.is_empty() {
             "Use more points or intervals, let the mesh be refined (`refine`, `between`), or look for another minimum \
-             (`starts`): what was found solves the equations at the points only, it is not a solution of the problem."
+             (`starts`): what was found solves the problem at the points only, and not between them."
                 .clone_into(&mut self.advice);
             if let Some((output, decades)) = self.many_decades() {
                 self.advice += &format!(

@@ -115,11 +115,10 @@ impl Writer<'_> {
     fn above(&mut self, range: &Range<usize>, indent: usize, blank: &mut bool) -> usize {
         let mut at = range.start;
         while let Some(piece) = self.pieces.within(at, range) {
-            let alone = self.pieces.within(at + 1, range).is_some_and(|next| next.breaks > 0);
             match piece.kind {
                 Kind::Doc => self.lines.push(Line::new(*blank, indent, piece.text.as_str())),
                 Kind::LineComment => _ = self.own_comment(at, indent, *blank, None),
-                Kind::BlockComment if alone => _ = self.own_comment(at, indent, *blank, None),
+                Kind::BlockComment if !leads(self.pieces, at, range) => _ = self.own_comment(at, indent, *blank, None),
                 _ => break,
             }
             *blank = false;

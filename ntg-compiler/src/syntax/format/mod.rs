@@ -15,6 +15,7 @@
 
 mod align;
 mod block;
+mod law;
 mod layout;
 mod pieces;
 mod statement;
@@ -37,7 +38,8 @@ const INDENT: usize = 4;
 /// The line breaks are those of the first line of the text (`\n` or `\r\n`), a byte order mark is dropped.
 ///
 /// # Errors
-/// What is wrong with the text as text: a spec that does not parse has no layout.
+/// What is wrong with the text as text: a spec that does not parse has no layout. And E100, should the layout have other
+/// tokens or comments than the text.
 pub fn format(source: &Source) -> Result<String, Diagnostics> {
     let kind = file_kind(source);
     match kind {
@@ -59,6 +61,7 @@ pub fn format(source: &Source) -> Result<String, Diagnostics> {
     let mut lines: Vec<Line> = vec![];
     block::Writer { pieces: &pieces, lines: &mut lines }.file();
     align::align(&mut lines);
-    let text: String = lines.iter().map(Line::text).collect();
-    Ok(if crlf { text.replace('\n', "\r\n") } else { text })
+    let laid: String = lines.iter().map(Line::text).collect();
+    law::kept(&text, &laid)?;
+    Ok(if crlf { laid.replace('\n', "\r\n") } else { laid })
 }

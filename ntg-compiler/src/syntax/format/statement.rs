@@ -168,6 +168,10 @@ impl Stream<'_> {
                 _ if self.pieces.is_conditional(at) => self.conditional(at),
                 Kind::Open => self.brackets(at),
                 Kind::LineComment | Kind::BlockComment => self.comment(at),
+                Kind::Doc => {
+                    self.text(&piece.text.clone());
+                    self.ops.push(Op::Newline);
+                }
                 _ => self.text(&piece.text.clone()),
             }
             before = Some(at);
