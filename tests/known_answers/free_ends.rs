@@ -48,10 +48,10 @@ fn growth_is_stopped_where_it_is_slower_than_the_discount() {
         dynamics { der(x) == RATE * x * (1 - x / SIZE); }
         initial { x == 0.01 * SIZE; }
     }";
-    for discount in [0.8, 0.1] {
+    for discount in [0.8_f64, 0.1] {
         let text = text.replace("DISCOUNT", &discount.to_string());
         let end = 1.0 - discount;
-        let time: f64 = (end * 0.99 / (0.01 * discount) as f64).ln();
+        let time: f64 = (end * 0.99 / (0.01 * discount)).ln();
         for (upper, rate, size) in cases().filter(|(upper, ..)| !upper.is_empty()) {
             close(solved(&text, upper, rate, size).objective / size, end * (-discount * time).exp(), 1e-4);
         }
