@@ -212,3 +212,32 @@ fn where_a_norm_is_integrated_and_no_end_is_found_the_other_form_is_told() {
     close(report.objective, 4.0, 1e-4);
     assert!(!report.to_string().contains("input of its own"), "{report}");
 }
+
+/// The norm of a variable, and of an output at one time, is as far from its tip as what it is the norm of, in any unit: `root(2)`
+/// sizes, by linear equations.
+#[test]
+fn norms_of_what_is_no_function_of_time_have_their_own_size() {
+    for size in [1e-9, 1e-3, 1.0, 1e3, 1e5, 1e7, 1e10] {
+        for (velocity, objective, still) in [
+            ("variable v[2];", "norm(v)", ""),
+            ("state v[2];", "norm(initial(v))", "der(v) == 0;"),
+            ("state v[2];", "norm(initial(v)) / 2 + norm(final(v)) / 2", "der(v) == 0;"),
+        ] {
+            let report = Shipped::text(&format!(
+                "problem Push {{
+                    duration T = 1;
+                    state r[2];
+                    {velocity}
+                    collocation gauss(points = 3, intervals = 4);
+                    minimize {objective};
+                    dynamics {{ der(r) == v;  {still} }}
+                    initial {{ r == 0; }}
+                    final {{ r == ({size:e}, {size:e}); }}
+                }}"
+            ))
+            .solve();
+            assert!(report.is_solved() && report.iterations < 40, "{report}");
+            close(report.objective / size, 2.0_f64.sqrt(), 1e-6);
+        }
+    }
+}

@@ -12,9 +12,11 @@ use std::ops::Range;
 const BESIDE: f64 = 0.5;
 /// The power of `c` in a cone, from three values. A law: two, but for rounding.
 const POWER: Range<f64> = 1.9..2.1;
+/// The first of two `c`, in sizes: the square of a smaller one is rounding beside that of a large distance. A choice.
+const PROBES: [f64; 3] = [1.0, 1e6, 1e12];
 
 impl Transcription<'_> {
-    /// The sizes at which some helpers, each with the coefficients of its output, meet their cones beside a point; none for
+    /// The sizes at which some helpers, each with the coefficients of its output or itself alone, meet their cones beside a point; none for
     /// what no cone holds.
     pub(super) fn helper_sizes(&self, helpers: &[Vec<u32>], guess: &[f64], scale: &[f64]) -> Vec<Option<f64>> {
         let mut is_helper = vec![false; guess.len()];
@@ -28,14 +30,16 @@ impl Transcription<'_> {
             let x: Vec<f64> = guess.iter().enumerate().map(moved).collect();
             self.values(&x, &mut work, &mut at).ok().map(|()| at.rows.clone())
         };
-        let (Some(none), Some(one), Some(two)) = (rows_at(0.0), rows_at(1.0), rows_at(2.0)) else {
-            return vec![None; helpers.len()];
-        };
+        let Some(none) = rows_at(0.0) else { return vec![None; helpers.len()] };
+        let probes: Vec<(f64, Vec<f64>, Vec<f64>)> =
+            PROBES.iter().filter_map(|probe| Some((*probe, rows_at(*probe)?, rows_at(2.0 * probe)?))).collect();
         // How many sizes a helper is where it meets a cone.
         let met = |row: usize| {
-            let (first, second) = (one[row] - none[row], two[row] - none[row]);
-            let multiple = (-none[row] / first).sqrt();
-            (POWER.contains(&(second / first).log2()) && multiple.is_normal()).then_some(multiple)
+            probes.iter().find_map(|(probe, one, two)| {
+                let (first, second) = (one[row] - none[row], two[row] - none[row]);
+                let multiple = probe * (-none[row] / first).sqrt();
+                (POWER.contains(&(second / first).log2()) && multiple.is_normal()).then_some(multiple)
+            })
         };
         let mut largest = vec![0.0_f64; guess.len()];
         for block in self.blocks() {

@@ -146,7 +146,13 @@ impl Transcription<'_> {
             let own = phase.outputs.iter().filter(move |own| is_helper(own.output));
             own.flat_map(|own| own.coefficients.iter().copied())
         });
+        of_phases.chain(self.declared_helpers())
+    }
+
+    /// Helpers that are no outputs: of what is no function of time, as `norm(initial(v))`.
+    pub(crate) fn declared_helpers(&self) -> impl Iterator<Item = u32> {
+        let (structure, layout) = (&self.model.structure, &self.model.layout);
         let declared = structure.variables.iter().zip(&layout.variable_first).filter(|(own, _)| own.is_helper());
-        of_phases.chain(declared.flat_map(|(own, first)| *first..*first + narrow(family_members(own.family).len())))
+        declared.flat_map(|(own, first)| *first..*first + narrow(family_members(own.family).len()))
     }
 }

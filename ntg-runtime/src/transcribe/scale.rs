@@ -219,7 +219,8 @@ impl Transcription<'_> {
             }
         }
         let is_helper = |quantity: &&Quantity| is_unit(quantity) && ntg_structure::is_helper(quantity.name);
-        let helpers = outputs.iter().filter(is_helper).map(|own| own.coefficients.clone()).collect::<Vec<_>>();
+        let mut helpers = outputs.iter().filter(is_helper).map(|own| own.coefficients.clone()).collect::<Vec<_>>();
+        helpers.extend(self.declared_helpers().filter(|v| guess[*v as usize] == 0.0).map(|v| vec![v]));
         if !helpers.is_empty() {
             let sizes = self.helper_sizes(&helpers, &guess, scale);
             let found = helpers.iter().zip(sizes).filter_map(|(own, size)| Some((own, size?)));
@@ -228,14 +229,23 @@ impl Transcription<'_> {
         doubtful
     }
 
-    /// Gives helpers that nobody has guessed, which are one unit everywhere, their size: at the tip of a cone, where one unit
-    /// is next to nothing, it tells no direction. Afterwards their size by the guess is the same.
+    /// Gives helpers that nobody has guessed, which are one unit everywhere or declared and 0, their size: at the tip of a cone,
+    /// where one unit is next to nothing, it tells no direction. Afterwards their size by the guess is the same.
     pub(crate) fn guess_helpers(&self, x: &mut [f64]) {
         let helpers: BTreeSet<u32> = self.helpers().collect();
         for (own, unit) in self.groups() {
             if own.iter().all(|v| x[*v as usize] == unit && helpers.contains(v)) {
                 own.iter().for_each(|v| x[*v as usize] = self.limits.scale[*v as usize]);
             }
+        }
+        let declared: Vec<Vec<u32>> =
+            self.declared_helpers().filter(|v| x[*v as usize] == 0.0).map(|v| vec![v]).collect();
+        if declared.is_empty() {
+            return;
+        }
+        let of_cones = self.helper_sizes(&declared, x, &self.limits.scale);
+        for (own, _) in declared.iter().zip(of_cones).filter(|(_, size)| size.is_some()) {
+            own.iter().for_each(|v| x[*v as usize] = self.limits.scale[*v as usize]);
         }
     }
 
