@@ -173,7 +173,7 @@ fn compiled(arguments: &arguments::Solve, limit: Option<Duration>) -> Result<fil
     /// More than specs need that are nested as deeply as they may be; what is not touched costs nothing.
     const STACK: usize = 256 << 20;
     let Some(limit) = limit else { return files::compile(&arguments.spec, &arguments.set).ok_or(Exit::Bad) };
-    let (done, waiting) = mpsc::channel();
+    let (began, (done, waiting)) = (Instant::now(), mpsc::channel());
     let (spec, set) = (arguments.spec.clone(), arguments.set.clone());
     // The compiler has no clock: where it is late its thread is left behind, and ends with the program.
     let compiler = thread::Builder::new().stack_size(STACK);
@@ -185,7 +185,8 @@ fn compiled(arguments: &arguments::Solve, limit: Option<Duration>) -> Result<fil
             return Err(Exit::Bad);
         }
     };
-    if let Err(RecvTimeoutError::Timeout) = found {
+    // What comes late may be there before the wait for it begins.
+    if matches!(found, Err(RecvTimeoutError::Timeout)) || began.elapsed() > limit {
         let spec = arguments.spec.display();
         tell!("{spec}: the time limit was reached before the spec was compiled; allow more time (`--time-limit`)");
         return Err(Exit::NotSolved);
