@@ -182,7 +182,7 @@ impl Factor {
         Some(pivots.iter().filter(|pivot| **pivot < 0.0).count())
     }
 
-    /// Subtracts the columns of a group from all later ones: of some rows at a time, whose panel stays in the fastest memory.
+    /// Subtracts the columns of a group from all later ones: of some rows at a time, whose panel stays in the cache.
     #[inline(always)]
     fn subtract_group<S: Simd>(&mut self, simd: S, storage: &Storage, group: &Range<usize>) {
         let (width, last, end) = (group.len(), group.end - 1, group.end);

@@ -11,6 +11,7 @@ pub(super) struct Factors<'a> {
     pub(super) head: &'a [Square],
     /// Where those of the first row below the group are stored.
     pub(super) at: &'a [usize],
+    /// The row, counted from that one.
     pub(super) row: usize,
 }
 

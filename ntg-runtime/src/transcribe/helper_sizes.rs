@@ -16,8 +16,8 @@ const POWER: Range<f64> = 1.9..2.1;
 const PROBES: [f64; 3] = [1.0, 1e6, 1e12];
 
 impl Transcription<'_> {
-    /// The sizes at which some helpers, each with the coefficients of its output or itself alone, meet their cones beside a point; none for
-    /// what no cone holds.
+    /// The sizes at which some helpers, each with the coefficients of its output or itself alone, meet their cones beside a
+    /// point; none for what no cone holds.
     pub(super) fn helper_sizes(&self, helpers: &[Vec<u32>], guess: &[f64], scale: &[f64]) -> Vec<Option<f64>> {
         let mut is_helper = vec![false; guess.len()];
         helpers.iter().flatten().for_each(|v| is_helper[*v as usize] = true);
