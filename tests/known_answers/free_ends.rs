@@ -38,6 +38,7 @@ fn what_cools_is_waited_for_as_long_as_it_is_worth() {
 }
 
 /// Growth `a x (1 - x)`, discounted at `0.8 a`, is stopped where `1 - x` is 0.8, and one at `0.1 a` where it is 0.1.
+/// Without an upper bound it may run off to where nothing is left of it, which is told: those are left out.
 #[test]
 fn growth_is_stopped_where_it_is_slower_than_the_discount() {
     let text = "problem Forest {

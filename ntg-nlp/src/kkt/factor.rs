@@ -19,8 +19,8 @@ const SINGULAR: f64 = 1e-14;
 /// which changes the matrix by no more than its own rounding. A law: some fifty roundings.
 const NOISE: f64 = 1e-14;
 
-/// How many blocks of a panel are worked on at a time: 128 KiB of them. A fit to a band of 960 unknowns: with an eighth of it the
-/// factors take a sixth longer.
+/// How many blocks of a panel are worked on at a time: 128 KiB of them. A fit to the same band as `TOGETHER`: with an eighth of it
+/// the factors took a sixth longer.
 const NEAR: usize = 1024;
 
 /// Numbers of as many unknowns as a block has.
