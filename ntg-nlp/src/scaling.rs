@@ -178,7 +178,10 @@ impl Slopes {
             // A power of 20 is 1e17 times as steep beside the start, which says nothing of a solution.
             if LEAST_AT_START * beside.variation > self.variation {
                 let most = self.variation + bent_variation((blocks, at), start, limits);
-                beside.variation = beside.variation.min(most / LEAST_AT_START);
+                // A product of three is flat to second order where all are 0.
+                if most > 0.0 {
+                    beside.variation = beside.variation.min(most / LEAST_AT_START);
+                }
             }
             beside
         });
@@ -418,12 +421,21 @@ fn bent_variation((blocks, at): (&[Block], &Evaluation), start: &[f64], limits: 
 }
 
 /// A point beside a start, by half a size of each variable along three quarters of a wave over all variables: smooth
-/// where the variables are in order of time, so that derivatives by time are typical too.
+/// where the variables are in order of time, so that derivatives by time are typical too. What would leave its bounds goes half
+/// of the way: at the bound itself a function may be singular, as derivatives by time are of a duration that is next to nothing.
 pub fn beside(start: &[f64], limits: &Limits, sizes: &[f64], out: &mut [f64]) {
     let n = start.len() as f64;
     for (j, out) in out.iter_mut().enumerate() {
         let wave = (std::f64::consts::TAU * 1.5 * j as f64 / n + 1.0).sin();
-        *out = (start[j] + 0.5 * sizes[j] * wave).max(limits.lower[j]).min(limits.upper[j]);
+        let (lower, upper) = (limits.lower[j], limits.upper[j]);
+        let there = start[j] + 0.5 * sizes[j] * wave;
+        *out = if there < lower {
+            (0.5 * (start[j] + lower)).max(lower)
+        } else if there > upper {
+            (0.5 * (start[j] + upper)).min(upper)
+        } else {
+            there
+        };
     }
 }
 

@@ -106,3 +106,24 @@ fn far_optima_are_found() {
         assert!(report.is_solved() && (report.objective / optimum - 1.0).abs() < 1e-7, "{report}");
     }
 }
+
+/// A box of given surface: a cube is the largest one. At 0 the volume is flat to second order.
+#[test]
+fn a_product_within_bounds_is_bounded_in_any_unit() {
+    for unit in ["nm", "mm", "m", "km", "Mm"] {
+        let text = format!(
+            "problem Box {{
+                duration T = 1 [s];
+                output idle: spline(order = 2, intervals = 1);
+                initial {{ idle == 0; }}
+                final {{ idle == 1; }}
+                variable a, b, c [{unit}];
+                temporal {{ 2 * (a * b + b * c + a * c) <= 10 [{unit}^2];  a >= 0;  b >= 0;  c >= 0; }}
+                maximize volume [{unit}^3]: a * b * c;
+            }}"
+        );
+        let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
+        assert_eq!(report.status, Status::Solved, "{text}\n{report}");
+        assert!((report.objective / (10.0_f64 / 6.0).powf(1.5) - 1.0).abs() < 1e-6, "{report}");
+    }
+}
