@@ -7,7 +7,8 @@
 use super::slots::AffineMap;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A coefficient smaller than this part of the equation's largest is rounding.
+/// A coefficient smaller than this part of the numbers that it comes from is rounding. Those of other variables say nothing of it:
+/// they have other units.
 const NEGLIGIBLE: f64 = 1e-11;
 /// A residual larger than this part of the numbers it comes from is a contradiction.
 const CONTRADICTION: f64 = 1e-8;
@@ -15,8 +16,15 @@ const CONTRADICTION: f64 = 1e-8;
 /// `sum of terms + constant`, and the size of the numbers that went into the constant.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Combination {
-    terms: BTreeMap<u32, f64>,
+    terms: BTreeMap<u32, Coefficient>,
     pub(crate) constant: f64,
+    size: f64,
+}
+
+/// A coefficient, and the size of the numbers that went into it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Coefficient {
+    value: f64,
     size: f64,
 }
 
@@ -44,30 +52,55 @@ impl Combination {
 
     /// Adds `c x[variable]`.
     pub(crate) fn add(&mut self, variable: u32, c: f64) {
-        *self.terms.entry(variable).or_insert(0.0) += c;
+        self.add_coefficient(variable, Coefficient { value: c, size: c.abs() });
+    }
+
+    fn add_coefficient(&mut self, variable: u32, by: Coefficient) {
+        let own = self.terms.entry(variable).or_default();
+        *own = Coefficient { value: own.value + by.value, size: own.size + by.size };
     }
 
     /// Adds `times` another combination.
     pub(crate) fn add_scaled(&mut self, times: f64, other: &Self) {
-        other.terms.iter().for_each(|(variable, c)| self.add(*variable, times * c));
+        for (variable, Coefficient { value, size }) in &other.terms {
+            self.add_coefficient(*variable, Coefficient { value: times * value, size: times.abs() * size });
+        }
         self.constant += times * other.constant;
         self.size += times.abs() * other.size;
     }
 
     /// The least and the greatest value for variables within their bounds.
     pub(crate) fn range(&self, bounds: &[(f64, f64)]) -> (f64, f64) {
-        self.terms.iter().fold((self.constant, self.constant), |(least, most), (variable, c)| {
-            let (lower, upper) = bounds[*variable as usize];
-            let (a, b) = if *c < 0.0 { (upper, lower) } else { (lower, upper) };
+        self.parts(bounds).fold((self.constant, self.constant), |(least, most), (_, c, part)| {
             // A variable that has cancelled out may be unbounded.
-            if *c == 0.0 { (least, most) } else { (least + c * a, most + c * b) }
+            if c == 0.0 { (least, most) } else { (least + part.0, most + part.1) }
         })
     }
 
+    /// Each variable, its coefficient, and the least and the greatest value of their product for the variable within its bounds.
+    fn parts<'a>(&'a self, bounds: &'a [(f64, f64)]) -> impl Iterator<Item = (u32, f64, (f64, f64))> + 'a {
+        self.terms.iter().map(|(variable, Coefficient { value: c, .. })| {
+            let (lower, upper) = bounds[*variable as usize];
+            let (a, b) = if *c < 0.0 { (upper, lower) } else { (lower, upper) };
+            (*variable, *c, (c * a, c * b))
+        })
+    }
+
+    /// How large a variable may be at most, where the combination stays within `within` and the others within their bounds. None
+    /// where that does not limit it.
+    pub(crate) fn greatest(&self, variable: u32, within: (f64, f64), bounds: &[(f64, f64)]) -> Option<f64> {
+        let own = self.terms.get(&variable)?.value;
+        let others = self.parts(bounds).filter(|(other, c, _)| *other != variable && *c != 0.0);
+        let (least, most) =
+            others.fold((self.constant, self.constant), |(least, most), (.., part)| (least + part.0, most + part.1));
+        let greatest = if own > 0.0 { (within.1 - least) / own } else { (within.0 - most) / own };
+        greatest.is_finite().then_some(greatest)
+    }
+
     fn largest(&self) -> Option<(u32, f64)> {
-        let larger = |best: Option<(u32, f64)>, (v, c): (&u32, &f64)| match best {
-            Some((_, held)) if held.abs() >= c.abs() => best,
-            _ => Some((*v, *c)),
+        let larger = |best: Option<(u32, f64)>, (v, c): (&u32, &Coefficient)| match best {
+            Some((_, held)) if held.abs() >= c.value.abs() => best,
+            _ => Some((*v, c.value)),
         };
         self.terms.iter().fold(None, larger)
     }
@@ -112,7 +145,6 @@ impl LinearSystem {
 
     fn reduce(&self, row: &Combination) -> Combination {
         let mut row = row.clone();
-        let size = row.largest().map_or(0.0, |(_, c)| c.abs());
         let numbers = |row: &Combination| -> BTreeSet<usize> {
             row.terms.keys().filter_map(|variable| self.equation_of.get(variable).copied()).collect()
         };
@@ -121,13 +153,13 @@ impl LinearSystem {
         while let Some(number) = due.pop_first() {
             let (pivot, equation) = &self.equations[number];
             if let Some(c) = row.terms.remove(pivot) {
-                let times = -c / equation.terms[pivot];
+                let times = -c.value / equation.terms[pivot].value;
                 row.add_scaled(times, equation);
                 row.terms.remove(pivot);
                 due.extend(numbers(equation).range(number + 1..));
             }
         }
-        row.terms.retain(|_, c| c.abs() > NEGLIGIBLE * size);
+        row.terms.retain(|_, c| c.value.abs() > NEGLIGIBLE * c.size);
         row
     }
 }
@@ -157,6 +189,27 @@ mod tests {
         assert!(system.add(&row(&[(0, 0.3), (3, 2.1)], -0.9)).is_ok());
         let residual = system.add(&row(&[(0, 0.1), (3, 0.7)], -0.4)).expect_err("the constants differ");
         assert!((residual + 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn coefficients_of_other_units_are_no_rounding_of_each_other() {
+        let mut system = LinearSystem::default();
+        system.add(&row(&[(0, 1.0), (2, 3e12)], -9e6)).expect("the first equation contradicts nothing");
+        system.add(&row(&[(1, 1.0), (2, 3e12)], -12e6)).expect("x[0] and x[1] are free");
+        assert!(system.known(&row(&[(2, 1.0)], 0.0)).is_none());
+        let apart = system.known(&row(&[(1, 1.0), (0, -1.0)], 0.0)).expect("both equations have the same x[2]");
+        assert!((apart.constant - 3e6).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_variable_is_at_most_what_the_others_leave() {
+        let row = row(&[(0, 2.0), (1, -1.0)], 1.0);
+        let bounds = [(0.0, f64::INFINITY), (0.0, 5.0)];
+        assert_eq!(row.greatest(0, (f64::NEG_INFINITY, 4.0), &bounds), Some(4.0));
+        assert_eq!(row.greatest(0, (0.0, f64::INFINITY), &bounds), None);
+        assert_eq!(row.greatest(1, (-7.0, f64::INFINITY), &bounds), None);
+        assert_eq!(row.greatest(1, (-7.0, 4.0), &[(0.0, 1.0), bounds[1]]), Some(10.0));
+        assert_eq!(row.greatest(2, (0.0, 0.0), &bounds), None);
     }
 
     #[test]
