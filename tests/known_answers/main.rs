@@ -32,6 +32,7 @@ mod integrals;
 mod invariants;
 mod jumped;
 mod least_bodies;
+mod least_durations;
 mod least_of_zero;
 mod limits;
 mod missile;

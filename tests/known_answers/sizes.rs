@@ -566,3 +566,37 @@ fn a_distance_that_is_minimised_has_its_own_size() {
         assert!(report.iterations <= 60, "{metre} {second}\n{report}");
     }
 }
+
+/// A cantilever under its own weight: `q L^4 / (8 E I)` at its end, and as an energy `q^2 L^5 / (40 E I)`.
+#[test]
+fn what_only_the_objective_decides_has_the_size_of_its_minimum() {
+    for (unit, metres) in [("m", 1.0), ("mm", 1e-3), ("nm", 1e-9), ("Mm", 1e6)] {
+        for states in [false, true] {
+            let (declared, dynamics, bend) = match states {
+                false => ("output w [m]: spline(order = 5, intervals = 2, smoothness = 3);", "", "der(w, 2)"),
+                true => (
+                    "state w [m], slope [1];  input bend [1/m];",
+                    "dynamics { der(w) == slope;  der(slope) == bend; }",
+                    "bend",
+                ),
+            };
+            let slope = if states { "slope" } else { "der(w)" };
+            let report = Shipped::text(&format!(
+                "problem Beam {{
+                    domain s [{unit}];
+                    duration L = 0.42 [{unit}];
+                    {declared}
+                    collocation gauss(points = 4, intervals = 2);
+                    minimize integral(3.07 [N*m^2] / 2 * {bend}^2) - integral(0.0144 [N/m] * w);
+                    {dynamics}
+                    initial {{ w == 0;  {slope} == 0; }}
+                }}"
+            ))
+            .solve();
+            let length: f64 = 0.42 * metres;
+            close(report.objective, -(0.0144_f64.powi(2) * length.powi(5) / (40.0 * 3.07)), 1e-6);
+            let end = report.solution.output("w").expect("an output").at(length);
+            close(end, 0.0144 * length.powi(4) / (8.0 * 3.07), 1e-6);
+        }
+    }
+}

@@ -185,15 +185,13 @@ impl Report {
 
 /// Every duration that ends at the least length that the transcription allows it, where its own bound is below that.
 pub(super) fn shortest(nlp: &Transcription, x: &[f64]) -> Vec<(String, Place)> {
-    /// A duration up to this many times the least one ends there: the method stays a hair inside of bounds. A choice.
-    const NEAR: f64 = 1.01;
     let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
     let ends = nlp.durations.iter().filter_map(|duration| {
         let variable = duration.variable as usize;
-        let (value, least) = (*x.get(variable)?, nlp.limits.lower[variable]);
+        let least = nlp.limits.lower[variable];
         let phase = layout.phases.iter().position(|phase| phase.duration == Time::Free(duration.variable))?;
         let is_by_bound = duration.reach == nlp.limits.upper[variable];
-        (duration.is_guarded && value <= NEAR * least).then_some((phase, least, is_by_bound))
+        duration.is_least(&nlp.limits, x).then_some((phase, least, is_by_bound))
     });
     let told = ends.map(|(phase, least, is_by_bound)| {
         let declared = &structure.phases[layout.phases[phase].phase];

@@ -118,6 +118,7 @@ impl Session {
                 (outcome, is_guess_better) = self.no_worse_than_guess(&mut nlp, guess, outcome, &mut budget)?;
             }
             if is_last {
+                outcome = self.leave_least_durations(&mut nlp, (&first, outcome), &mut budget)?;
                 outcome = self.leave_tips(&mut nlp, outcome, &mut budget);
                 outcome = self.leave_plateaus(&mut nlp, outcome, &mut budget);
             }

@@ -13,7 +13,7 @@ use super::frame::Frame;
 use super::implied;
 use super::linear::{Combination, LinearSystem};
 use super::names;
-use super::rows::{Pair, RowKind, constraint_words};
+use super::rows::{self, Pair, RowKind, constraint_words};
 use super::slots::AffineMap;
 use ntg_nlp::{Block, BlockValues, Target};
 use ntg_structure::{Degree, Domain};
@@ -29,6 +29,8 @@ pub(crate) struct Decided {
     /// on a bound: they say nothing, a cone at its apex has no gradient to say it with, and an equation would depend on those that
     /// fix its inputs.
     pub(crate) met: Vec<usize>,
+    /// The durations without an upper bound of their own that others limit, and how long each may be at most.
+    pub(crate) longest: Vec<(u32, f64)>,
 }
 
 /// Collects what boundary conditions decide, and fixes variables of which rows at the ends leave a single value.
@@ -50,9 +52,13 @@ fn decided_within(frame: &Frame, elements: &Elements, bounds: &[Pair]) -> Result
         }
     }
     let mut combinations = combinations(frame, elements);
+    // The least length that the transcription gives a duration contradicts nothing.
+    let mut declared = bounds.to_vec();
+    let guarded: Vec<u32> = rows::guarded_durations(frame, bounds).collect();
+    guarded.iter().for_each(|duration| declared[*duration as usize].0 = 0.0);
     for (row, combination) in combinations.iter().enumerate() {
         let Some(combination) = combination.as_ref() else { continue };
-        let ((least, most), rounding) = (combination.range(bounds), combination.tolerance());
+        let ((least, most), rounding) = (combination.range(&declared), combination.tolerance());
         if least > elements.upper[row] {
             check(frame, elements, (row, least), rounding, Why::Bounds)?;
         }
@@ -60,6 +66,7 @@ fn decided_within(frame: &Frame, elements: &Elements, bounds: &[Pair]) -> Result
             check(frame, elements, (row, most), rounding, Why::Bounds)?;
         }
     }
+    let longest = longest(elements, &combinations, &guarded, &mut declared);
     for (row, combination) in combinations.iter_mut().enumerate() {
         let Some(combination) = combination else { continue };
         let bound = elements.lower[row];
@@ -80,7 +87,37 @@ fn decided_within(frame: &Frame, elements: &Elements, bounds: &[Pair]) -> Result
     }
     let met = known_rows(frame, elements, &system)?;
     known_rows(frame, &implied::at_ends(frame)?, &system)?;
-    Ok(Decided { system, met })
+    Ok(Decided { system, met, longest })
+}
+
+/// How long durations may be at most of which only others tell it, as a phase within a mission that ends in time. `bounds` are
+/// those declared; afterwards these durations have upper ones.
+fn longest(
+    elements: &Elements,
+    combinations: &[Option<Combination>],
+    durations: &[u32],
+    bounds: &mut [Pair],
+) -> Vec<(u32, f64)> {
+    let open: Vec<u32> =
+        durations.iter().copied().filter(|duration| bounds[*duration as usize].1.is_infinite()).collect();
+    // One tells of the next, as along a chain of phases.
+    for _ in 0..open.len() {
+        let mut is_told = false;
+        for (row, combination) in combinations.iter().enumerate() {
+            let Some(combination) = combination else { continue };
+            for duration in &open {
+                let greatest = combination.greatest(*duration, (elements.lower[row], elements.upper[row]), bounds);
+                let upper = &mut bounds[*duration as usize].1;
+                if let Some(greatest) = greatest.filter(|greatest| greatest > &0.0 && greatest < upper) {
+                    (*upper, is_told) = (greatest, true);
+                }
+            }
+        }
+        if !is_told {
+            break;
+        }
+    }
+    open.into_iter().map(|duration| (duration, bounds[duration as usize].1)).filter(|told| told.1.is_finite()).collect()
 }
 
 /// For every row its linear combination, if it is linear and stands at a single point.

@@ -3,7 +3,7 @@
 
 use super::Transcription;
 use super::sizes::{Balance, slot_group};
-use ntg_nlp::{Nlp, Target};
+use ntg_nlp::{Evaluation, Nlp, Target};
 use std::collections::BTreeMap;
 
 impl Transcription<'_> {
@@ -57,9 +57,38 @@ impl Transcription<'_> {
         found
     }
 
+    /// Sizes of what no constraint decides: those with which the objective, to second order, is least (docs/maths.md, equation
+    /// 5.8d).
+    pub(super) fn size_by_minimum(&self, guess: &[f64], at: &Evaluation, balance: &mut Balance) {
+        let Some((mut group, mut sizes)) = balance.decided_by(0) else { return };
+        let slopes = self.objective_slopes(at, balance);
+        let none = vec![0.0; self.elements.rows.len()];
+        let curvatures = self.second_derivatives(guess, (1.0, &none), balance, |sum, more| sum + more);
+        loop {
+            let relative: BTreeMap<usize, f64> = sizes.iter().copied().collect();
+            let sized = |group: &usize| relative.get(group).copied().unwrap_or(0.0);
+            let slope: f64 = slopes.iter().map(|(group, slope)| slope * sized(group)).sum();
+            let curvature: f64 = curvatures.iter().map(|((l, m), k)| k * sized(l) * sized(m)).sum();
+            let least = slope / (2.0 * curvature);
+            if least.is_normal() {
+                balance.take(sizes.into_iter().map(|(group, size)| (group, least * size)).collect());
+            }
+            match balance.decided_by(group + 1) {
+                Some(next) => (group, sizes) = next,
+                None => return,
+            }
+        }
+    }
+
     /// The size of the objective at a guess: the sum of its terms' slopes times known sizes.
-    pub(super) fn objective_size(&self, at: &ntg_nlp::Evaluation, balance: &Balance) -> f64 {
-        let mut sum = 0.0;
+    pub(super) fn objective_size(&self, at: &Evaluation, balance: &Balance) -> f64 {
+        let slopes = self.objective_slopes(at, balance);
+        slopes.into_iter().map(|(group, slope)| slope * balance.size_of(group).unwrap_or(0.0)).sum()
+    }
+
+    /// The sum of the slopes of the objective's terms by slots of each group.
+    fn objective_slopes(&self, at: &Evaluation, balance: &Balance) -> BTreeMap<usize, f64> {
+        let mut slopes = BTreeMap::new();
         for (block, values) in self.elements.blocks.iter().zip(&at.blocks) {
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 for e in 0..block.elements {
@@ -68,11 +97,12 @@ impl Transcription<'_> {
                         continue;
                     }
                     let slope = (block.weight[at] * values.jacobian[entry * block.elements + e]).abs();
-                    let size = slot_group(block, e, slot, balance).and_then(|group| balance.size_of(group));
-                    sum += slope * size.unwrap_or(0.0);
+                    if let Some(group) = slot_group(block, e, slot, balance) {
+                        *slopes.entry(group).or_insert(0.0) += slope;
+                    }
                 }
             }
         }
-        sum
+        slopes
     }
 }

@@ -6,7 +6,7 @@
 use super::layout::Time;
 use super::rows::shortest_duration;
 use super::{Transcription, defaults};
-use ntg_nlp::Nlp;
+use ntg_nlp::{Limits, Nlp};
 
 /// A duration from bounds counts unless another one, so many decades away, balances the equations better. A fit: of 141 shipped,
 /// gallery and other specs with free durations none is further off.
@@ -17,9 +17,6 @@ const FAR: i32 = 2;
 const TOLD_GUESS: f64 = 2.0;
 const TOLD_RANGE: f64 = 20.0;
 
-/// By so many decades in sum the equations have to be balanced better there, and worse beyond. A choice: two factors of ten.
-const BETTER: f64 = 2.0;
-
 /// So many decades from the guess by bounds are looked at. A choice: from an age of the world to a vibration of a molecule.
 const RANGE: i32 = 24;
 
@@ -29,12 +26,27 @@ const PARTS: i32 = 10;
 /// Sums of decades that differ by less are equal: rounding.
 const EQUAL: f64 = 1e-6;
 
-/// An objective that is the same over so many decades tends to a number. A choice.
+/// What is the same over so many decades tends to a number. A choice.
 const STEADY: i32 = 6;
 
 /// It is near to that number within this part of it. A choice: a motion over such a duration hardly moves, as its guess does, and
 /// its duration is felt.
 const TENDS: f64 = 0.01;
+
+/// How equations tell a duration.
+#[derive(Clone, Copy)]
+struct Rule {
+    /// By so many decades in sum they have to be balanced better there, and worse beyond.
+    better: f64,
+    /// Within so many decades they are balanced as well.
+    even: f64,
+    /// Whether a rate balances what it is proportional to, `x' = -k x`: without, each output counts once in each equation.
+    by_rates: bool,
+}
+
+/// Choices: two factors of ten, beside rounding; where that tells nothing one, beside a quarter of a term.
+const STRICT: Rule = Rule { better: 2.0, even: EQUAL, by_rates: false };
+const LOOSE: Rule = Rule { better: 1.0, even: 0.1, by_rates: true };
 
 /// A duration that is a variable.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +60,16 @@ pub(crate) struct FreeDuration {
     pub(crate) is_guarded: bool,
 }
 
+impl FreeDuration {
+    /// Whether it ends at the least length that the transcription gives it.
+    pub(crate) fn is_least(&self, limits: &Limits, x: &[f64]) -> bool {
+        /// Up to this many times the least length it does: the method stays a hair inside of bounds. A choice.
+        const NEAR: f64 = 1.01;
+        let variable = self.variable as usize;
+        self.is_guarded && x.get(variable).is_some_and(|value| *value <= NEAR * limits.lower[variable])
+    }
+}
+
 /// What is seen with given durations.
 #[derive(Clone, Copy)]
 pub(super) struct Trial {
@@ -58,8 +80,12 @@ pub(super) struct Trial {
 }
 
 impl Transcription<'_> {
-    /// Guesses free durations, and lets those be short whose upper bound is far from what balances the equations.
-    pub(super) fn find_durations(&mut self) {
+    /// Guesses free durations, and lets those be short whose upper bound is far from what balances the equations. `longest` has
+    /// those that others limit, and how long they may be.
+    pub(super) fn find_durations(&mut self, longest: &[(u32, f64)]) {
+        for (variable, upper) in longest {
+            self.limits.lower[*variable as usize] = shortest_duration(*upper);
+        }
         let limits = &self.limits;
         let free = self.model.layout.phases.iter().filter_map(|phase| match phase.duration {
             Time::Free(variable) => Some(variable),
@@ -67,7 +93,9 @@ impl Transcription<'_> {
         });
         let mut durations: Vec<FreeDuration> = vec![];
         for variable in free {
-            let (lower, upper) = (limits.lower[variable as usize], limits.upper[variable as usize]);
+            let told = longest.iter().find(|told| told.0 == variable);
+            let upper = told.map_or(limits.upper[variable as usize], |told| told.1);
+            let lower = limits.lower[variable as usize];
             // The smallest duration of all is a guard, not a bound that anyone wrote.
             let is_guarded = lower == shortest_duration(upper);
             let guess = defaults::duration(if is_guarded { 0.0 } else { lower }, upper);
@@ -120,35 +148,44 @@ impl Transcription<'_> {
         }
         let (mut work, mut at) = self.workspace();
         let groups = self.output_groups();
-        let mut trial = |tenths: i32| {
+        let mut trial = |rule: Rule, tenths: i32| {
             let typical = first * 10f64.powf(f64::from(tenths) / f64::from(PARTS));
             self.durations.iter().for_each(|d| x[d.variable as usize] = self.duration_near(d, typical));
-            self.imbalance(&x, &groups, (&mut work, &mut at))
+            self.imbalance((&x, &groups), rule.by_rates, (&mut work, &mut at))
         };
         let is_open = self.durations.iter().any(|duration| duration.reach.is_infinite());
-        let tenths = match is_open {
-            true => shortest(&mut trial).or_else(|| search(&mut trial, &[-PARTS, PARTS])),
-            false => search(&mut trial, &[-PARTS]),
+        let mut by = |rule: Rule, find: Find| find(&mut |tenths| trial(rule, tenths), rule);
+        let both_ways: Find = |trial, rule| search((trial, rule), &[-PARTS, PARTS]);
+        let downwards: Find = |trial, rule| search((trial, rule), &[-PARTS]);
+        let ways = match is_open {
+            true => vec![(LOOSE, shortest as Find), (STRICT, both_ways), (LOOSE, both_ways)],
+            false => vec![(STRICT, downwards), (LOOSE, downwards)],
         };
+        let tenths = ways.into_iter().find_map(|(rule, find)| by(rule, find));
         tenths.map(|tenths| first * 10f64.powf(tenths / f64::from(PARTS)))
     }
 }
 
+/// What is seen with a duration so many parts of a decade from the guess by bounds.
+type Trials<'a> = &'a mut dyn FnMut(i32) -> Option<Trial>;
+/// A way to find a duration by a rule.
+type Find = fn(Trials<'_>, Rule) -> Option<f64>;
+
 /// Where equations tell how short a duration may be and nothing how long, as limits of speed do: the shortest of those that balance
 /// them best, in parts of a decade.
-fn shortest(trial: &mut impl FnMut(i32) -> Option<Trial>) -> Option<f64> {
+fn shortest(trial: Trials<'_>, rule: Rule) -> Option<f64> {
     let here = trial(0)?.decades;
     let (mut best, mut least) = (0, here);
     // Upwards as long as that is better, else downwards as long as it is as good.
     while best < RANGE * PARTS {
         let there = trial(best + PARTS)?.decades;
-        if there >= least - EQUAL {
+        if there >= least - rule.even {
             break;
         }
         (best, least) = (best + PARTS, there);
     }
-    let is_good = |there: Trial| (there.decades - least).abs() <= EQUAL;
-    if !is_good(trial(RANGE * PARTS)?) {
+    let is_good = |there: Trial| (there.decades - least).abs() <= rule.even;
+    if !is_good(trial(best + STEADY * PARTS)?) {
         return None;
     }
     let before = loop {
@@ -170,12 +207,12 @@ fn shortest(trial: &mut impl FnMut(i32) -> Option<Trial>) -> Option<f64> {
 /// The best duration in parts of a decade, if it is far from 0: by bounds. `ways` are downwards and, where no bound tells
 /// anything, upwards. The sum of decades is convex where all terms are powers of the duration, so that a look a little away
 /// tells whether there is anything better.
-fn search(trial: &mut impl FnMut(i32) -> Option<Trial>, ways: &[i32]) -> Option<f64> {
+fn search((trial, rule): (Trials<'_>, Rule), ways: &[i32]) -> Option<f64> {
     let here = trial(0)?;
     let mut found = |way: i32| {
         let near = trial(way * FAR)?;
         match near.decades - here.decades {
-            better if better < -EQUAL => balanced(trial, here, way),
+            better if better < -EQUAL => balanced((trial, rule), here, way),
             worse if worse > EQUAL => None,
             _ => (near.objective < here.objective).then(|| cheapest(trial, here, way))?,
         }
@@ -184,11 +221,11 @@ fn search(trial: &mut impl FnMut(i32) -> Option<Trial>, ways: &[i32]) -> Option<
 }
 
 /// The middle of all that balance the equations best, if that is by much and not beyond.
-fn balanced(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32) -> Option<f64> {
+fn balanced((trial, rule): (Trials<'_>, Rule), here: Trial, way: i32) -> Option<f64> {
     let (mut best, mut least) = (0, here.decades);
     for decade in FAR..=RANGE {
         let there = trial(way * decade)?.decades;
-        if there > least + BETTER {
+        if there > least + rule.better {
             break;
         }
         if there < least - EQUAL {
@@ -197,7 +234,7 @@ fn balanced(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32)
             return None;
         }
     }
-    if best == 0 || least > here.decades - BETTER {
+    if best == 0 || least > here.decades - rule.better {
         return None;
     }
     let tenths = way * best - PARTS..=way * best + PARTS;
@@ -210,7 +247,7 @@ fn balanced(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32)
 /// Of those that balance the equations as `here` does, the one with the lowest objective, if the objective rises again beyond or
 /// the equations are no longer balanced there. Where it tends to a number instead, the first one at which it is near to that:
 /// beyond, a duration makes no difference that could be told from rounding.
-fn cheapest(trial: &mut impl FnMut(i32) -> Option<Trial>, here: Trial, way: i32) -> Option<f64> {
+fn cheapest(trial: Trials<'_>, here: Trial, way: i32) -> Option<f64> {
     let is_equal = |there: Trial| (there.decades - here.decades).abs() <= EQUAL;
     let (mut best, mut least, mut ends) = (0, here.objective, false);
     let mut before = least;

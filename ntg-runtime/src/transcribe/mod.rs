@@ -147,14 +147,14 @@ impl<'p> Transcription<'p> {
         let frame = model.frame(problem);
         let mut bounds = rows::variable_bounds(&frame)?;
         let elements = elements::elements(&frame)?;
-        let Decided { system: linear, met } = contradictions::decided(&frame, &elements, &mut bounds)?;
+        let Decided { system: linear, met, longest } = contradictions::decided(&frame, &elements, &mut bounds)?;
         let mut limits = limits(&model.structure, &elements, (&bounds, &met));
         limits.angles = angles(&model.structure, &model.layout);
         limits.definitions = elements.definitions(&model.layout, &limits);
         let (model, origin, has_named_size, durations) = (Arc::new(model), vec![], vec![], vec![]);
         let mut transcription = Self { problem, model, elements, limits, origin, has_named_size, linear, durations };
         transcription.limits.alike = transcription.alike();
-        transcription.find_durations();
+        transcription.find_durations(&longest);
         transcription.limits.shrinking = transcription.shrinking();
         Ok(transcription)
     }
@@ -197,7 +197,7 @@ impl<'p> Transcription<'p> {
         self.limits = Limits { alike, angles, ..limits(&model.structure, &self.elements, (&bounds, &decided.met)) };
         self.limits.definitions = self.elements.definitions(&self.model.layout, &self.limits);
         self.model = Arc::new(model);
-        self.find_durations();
+        self.find_durations(&decided.longest);
         self.limits.shrinking = self.shrinking();
         Ok(Change::Data)
     }

@@ -5,6 +5,7 @@
 
 use super::error::SetupError;
 use super::frame::Frame;
+use super::layout::Time;
 use super::names;
 use super::points::Point;
 use super::times::phase_words;
@@ -154,6 +155,18 @@ fn least_duration(lower: f64, upper: f64) -> f64 {
 /// The least duration beneath an upper bound, SI.
 pub(crate) fn shortest_duration(upper: f64) -> f64 {
     SHORTEST * below(upper)
+}
+
+/// The durations without a lower bound above 0, whose least length is the transcription's.
+pub(crate) fn guarded_durations<'a>(frame: &'a Frame, bounds: &'a [Pair]) -> impl Iterator<Item = u32> + 'a {
+    let free = frame.layout.phases.iter().filter_map(|phase| match phase.duration {
+        Time::Free(variable) => Some(variable),
+        Time::Fixed(_) => None,
+    });
+    free.filter(|variable| {
+        let (lower, upper) = bounds[*variable as usize];
+        lower == shortest_duration(upper)
+    })
 }
 
 /// What the least duration is a part of: the upper bound, a second where there is none.

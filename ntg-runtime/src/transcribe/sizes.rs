@@ -56,6 +56,8 @@ pub(super) struct Balance {
     constraints: Vec<Vec<(usize, f64)>>,
     /// For each constraint the groups in it, with slopes.
     groups: Vec<Vec<(usize, f64)>>,
+    /// As `groups`, each slot of a group by itself: a rate, and what it is proportional to.
+    terms: Vec<Vec<(usize, f64)>>,
     /// For each constraint its largest finite bound; 0 where there is none.
     bound: Vec<f64>,
     /// For each constraint its largest value at the guess by absolute value.
@@ -71,7 +73,7 @@ pub(super) struct Balance {
 }
 
 /// Groups with the sizes that were found for them.
-type Sizes = Vec<(usize, f64)>;
+pub(super) type Sizes = Vec<(usize, f64)>;
 
 /// The group of a slot of an element: that of its first variable.
 pub(super) fn slot_group(block: &Block, e: usize, slot: usize, balance: &Balance) -> Option<usize> {
@@ -100,6 +102,7 @@ impl Transcription<'_> {
         balance.forget_rounding();
         let known = balance.size.clone();
         self.find_sizes((x, scale), &at, &mut balance);
+        self.size_by_minimum(x, &at, &mut balance);
         balance.forget_far_bounds(&known);
         for ((scale, unit), &group) in scale.iter_mut().zip(units).zip(&balance.group) {
             match balance.size[group] {
@@ -113,11 +116,12 @@ impl Transcription<'_> {
 
     /// By how many decades the terms of equations differ in size, in sum: of each the largest from the next, and of each
     /// inequality the largest from the bound that it exceeds; with the objective of a motion of the sizes that balance them.
-    /// Durations are no terms: they stand in those of derivatives. None where something is not finite.
+    /// Durations are no terms: they stand in those of derivatives. Where it is `by_rates`, a rate is a term beside what it is
+    /// proportional to. None where something is not finite.
     pub(super) fn imbalance(
         &self,
-        x: &[f64],
-        groups: &[Vec<u32>],
+        (x, groups): (&[f64], &[Vec<u32>]),
+        by_rates: bool,
         (workspace, at): (&mut Workspace, &mut Evaluation),
     ) -> Option<Trial> {
         self.derivatives(x, 1.0, &vec![0.0; self.elements.rows.len()], workspace, at).ok()?;
@@ -128,7 +132,7 @@ impl Transcription<'_> {
         balance.forget_rounding();
         balance.propagate(&[Balance::balanced]);
         let mut decades: Vec<f64> =
-            (0..balance.groups.len()).map(|constraint| balance.decades(constraint, &durations)).collect();
+            (0..balance.groups.len()).map(|constraint| balance.decades(constraint, &durations, by_rates)).collect();
         // From the guess there and back again, by the size of each output.
         let mut motion = x.to_vec();
         for variables in groups {
@@ -222,7 +226,10 @@ impl Transcription<'_> {
             Some(guessed) => guessed < SMALL_GUESS * unit[*group],
             None => balance.least_own_size(*group).is_some_and(|bound| bound < trial.nothing[*group]),
         };
-        let doubtful: Vec<usize> = (0..unit.len()).filter(is_small).collect();
+        // What equations tell of a duration is no rounding, however short it is.
+        let told = self.durations.iter().filter(|duration| x[duration.variable as usize] == duration.guess);
+        let told: Vec<usize> = told.map(|duration| balance.group[duration.variable as usize]).collect();
+        let doubtful: Vec<usize> = (0..unit.len()).filter(|group| is_small(group) && !told.contains(group)).collect();
         if doubtful.is_empty() {
             return;
         }
@@ -334,7 +341,7 @@ impl Transcription<'_> {
                 balance.bound[constraint] = balance.bound[constraint].max(bound);
             }
         }
-        let mut slopes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let mut slopes: BTreeMap<(usize, usize, usize), f64> = BTreeMap::new();
         let mut add = |key, slope: f64| {
             let largest = slopes.entry(key).or_insert(0.0);
             *largest = largest.max(slope);
@@ -346,13 +353,13 @@ impl Transcription<'_> {
                 .collect();
             for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                 // Elements of one block mostly have the same constraint and group.
-                let mut run: Option<((usize, usize), f64)> = None;
+                let mut run: Option<((usize, usize, usize), f64)> = None;
                 for (e, group) in group_of[slot].iter().enumerate() {
                     let Target::Row(target) = block.target[row * block.elements + e] else { continue };
                     let Some(group) = *group else { continue };
                     let weight = block.weight[row * block.elements + e];
                     let slope = (weight * values.jacobian[entry * block.elements + e]).abs();
-                    let key = (constraint_of[target as usize], group);
+                    let key = (constraint_of[target as usize], group, slot);
                     run = match run {
                         Some((same, largest)) if same == key => Some((key, largest.max(slope))),
                         other => {
@@ -367,9 +374,20 @@ impl Transcription<'_> {
         balance.constraint_of = constraint_of;
         balance.groups = vec![vec![]; relations.count()];
         balance.constraints = vec![vec![]; balance.size.len()];
-        for ((constraint, group), slope) in slopes.into_iter().filter(|(_, slope)| *slope > 0.0) {
-            balance.groups[constraint].push((group, slope));
-            balance.constraints[group].push((constraint, slope));
+        balance.terms = vec![vec![]; relations.count()];
+        for ((constraint, group, _), slope) in slopes.into_iter().filter(|(_, slope)| *slope > 0.0) {
+            balance.terms[constraint].push((group, slope));
+            // Those of one group follow one another.
+            match balance.groups[constraint].last_mut().zip(balance.constraints[group].last_mut()) {
+                Some((last, own)) if last.0 == group => {
+                    let largest = last.1.max(slope);
+                    (last.1, own.1) = (largest, largest);
+                }
+                _ => {
+                    balance.groups[constraint].push((group, slope));
+                    balance.constraints[group].push((constraint, slope));
+                }
+            }
         }
     }
 }
@@ -451,6 +469,22 @@ impl Balance {
         Self { size, group: self.group.clone(), ..Self::default() }
     }
 
+    /// The first group without a size from `first` on, if there is one, and all that its size decides, with theirs where its own is 1.
+    pub(super) fn decided_by(&self, first: usize) -> Option<(usize, Sizes)> {
+        let is_open = |group: &usize| self.size[*group].is_none() && !self.is_integral[*group];
+        let group = (first..self.size.len()).find(is_open)?;
+        let mut trial = self.clone();
+        trial.size[group] = Some(1.0);
+        trial.propagate(&[Self::balanced]);
+        let decided = (0..self.size.len()).filter(is_open).filter_map(|group| Some((group, trial.size[group]?)));
+        Some((group, decided.collect()))
+    }
+
+    /// Gives groups their sizes.
+    pub(super) fn take(&mut self, sizes: Sizes) {
+        sizes.into_iter().for_each(|(group, size)| self.size[group] = Some(size));
+    }
+
     /// The size of a group, if it is known.
     pub(super) fn size_of(&self, group: usize) -> Option<f64> {
         self.size[group]
@@ -474,11 +508,12 @@ impl Balance {
 
     /// By how many decades the largest term of a constraint, beside those of groups that are none, differs from the next one, or
     /// from the bound of an inequality that it exceeds; 0 where a term is not known.
-    fn decades(&self, constraint: usize, no_terms: &[usize]) -> f64 {
+    fn decades(&self, constraint: usize, no_terms: &[usize], by_rates: bool) -> f64 {
         /// A value so many times as large as all terms together is that of a constant in the formula.
         const CONSTANT: f64 = 3.0;
-        let others = || self.groups[constraint].iter().filter(|(group, _)| !no_terms.contains(group));
-        let terms: Option<Vec<f64>> = others().map(|&(group, slope)| Some(self.size[group]? * slope)).collect();
+        let terms = if by_rates { &self.terms } else { &self.groups };
+        let others = terms[constraint].iter().filter(|(group, _)| !no_terms.contains(group));
+        let terms: Option<Vec<f64>> = others.map(|&(group, slope)| Some(self.size[group]? * slope)).collect();
         let Some(mut terms) = terms else { return 0.0 };
         let bound = self.bound[constraint];
         if !self.is_inequality[constraint] {
