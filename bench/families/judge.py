@@ -60,7 +60,9 @@ def answer(case, family, ntg, path, limit):
     status, document, said, seconds = end(ntg, path, limit)
     objective = document.get("objective")
     unit = document.get("objective_unit") or "SI"
-    near = objective is not None and abs(objective - case.optimum) <= case.tolerance * max(abs(case.optimum), case.scale)
+    # A family may have computed its answer with numpy, whose numbers json does not write.
+    optimum, tolerance = float(case.optimum), float(case.tolerance)
+    near = objective is not None and bool(abs(objective - optimum) <= tolerance * max(abs(optimum), case.scale))
     return {
         "family": family,
         "name": case.name,
@@ -68,8 +70,8 @@ def answer(case, family, ntg, path, limit):
         "exit": status,
         "objective": objective,
         "unit": unit,
-        "optimum": None if case.infeasible else case.optimum,
-        "tolerance": case.tolerance,
+        "optimum": None if case.infeasible else optimum,
+        "tolerance": tolerance,
         "near": near and not case.infeasible,
         "iterations": document.get("iterations", 0),
         "seconds": round(seconds, 3),

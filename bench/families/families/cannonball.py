@@ -53,7 +53,13 @@ def cases(rng, count):
             names = f"let vx {speed} = der(x);", f"let vy {speed} = der(y);"
             equations = "{ der(x, 2) == 0;  der(y, 2) == -g; }"
             if form == "flat":
-                statements += [*names, f"output x {across}, y {across}: spline(order = {rng.choice((3, 4))}, intervals = 1);", f"trajectory {equations}", "collocation gauss(points = 1);" if rng.random() < 0.3 else "collocation gauss(points = 3, equalities = 1);"]
+                order = rng.choice((3, 4))
+                statements += [
+                    *names,
+                    f"output x {across}, y {across}: spline(order = {order}, intervals = 1);",
+                    f"trajectory {equations}",
+                    f"collocation gauss(points = 3, equalities = {order - 2});",
+                ]
             else:
                 statements += [*names, f"state x {across}, y {across};", f"dynamics {equations}", grid.statement]
         distance = sizes.write("length", far, digits=1)
