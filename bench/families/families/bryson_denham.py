@@ -49,7 +49,7 @@ def cases(rng, count):
             tolerance = 1e-6
         else:
             # The way to the ceiling takes 3 l of the time, and ends inside an interval.
-            tolerance = grid.switches(1, factor=0.5 / min(1, 3 * room) ** 2)
+            tolerance = grid.switches(1, factor=0.05 / min(1, 3 * room) ** 2)
         yield Case(
             name=f"bryson_denham_{k}",
             text=problem(rng, "TurnRound", "A cart turns round below a ceiling with the least energy.", statements),

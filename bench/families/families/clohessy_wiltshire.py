@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from case import Case, Sizes, guess, mesh, number, problem
+from case import Case, Mesh, Sizes, guess, mesh, number, problem
 from linear import least_energy
 
 
@@ -29,6 +29,8 @@ def cases(rng, count):
         B = np.vstack([np.zeros((n, n)), np.eye(n)])
         energy = least_energy(A, B, T.si, [q.si for q in place + moves], [0] * (2 * n))
         grid = mesh(rng)
+        # At most a radian an interval.
+        grid = Mesh(max(grid.intervals, math.ceil(rate * T.si)), grid.points)
         vector = lambda quantities: "(" + ", ".join(number(q.number) for q in quantities) + f") {quantities[0].unit}".rstrip()
         pull = ["3 * w^2 * r[1] + 2 * w * v[2]", "-2 * w * v[1]", "-w^2 * r[3]"][:n]
         statements = [
@@ -48,6 +50,6 @@ def cases(rng, count):
             name=f"clohessy_wiltshire_{k}",
             text=problem(rng, "Rendezvous", "A chaser comes to rest at a station on a circular orbit.", statements),
             optimum=energy,
-            tolerance=1e-6 + span ** (2 * grid.points),
+            tolerance=1e-6 + (span / 2) ** (2 * grid.points),
             why="Gramian",
         )

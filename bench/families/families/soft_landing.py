@@ -88,6 +88,6 @@ def cases(rng, count):
             name=f"soft_landing_{k}",
             text=problem(rng, "Landing", "A lander sets down softly with the least fuel.", statements),
             optimum=optimum,
-            tolerance=grid.switches(1, factor=2),
+            tolerance=grid.switches(1, factor=0.5),
             why="coast, then full thrust",
         )
