@@ -13,7 +13,7 @@ from case import Case, Sizes, guess, mesh, problem
 def catenoid(d, y0, y1, near):
     """The area between rings of radii y0 and y1 at a distance d, from parameters near the solution."""
     miss = lambda z: (z[0] * math.cosh(z[1]) - y0, z[0] * math.cosh(z[1] + d / z[0]) - y1)
-    a, u = fsolve(miss, near, xtol=1e-14)
+    a, u = fsolve(miss, near, xtol=1e-13)
     v = u + d / a
     return math.pi * a**2 * ((v + math.sinh(2 * v) / 2) - (u + math.sinh(2 * u) / 2))
 
