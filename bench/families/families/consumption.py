@@ -5,7 +5,7 @@ Answer: consumption grows at the rate (r - rho) / s (Euler's equation); its star
 
 import math
 
-from case import Case, Sizes, block, guess, mesh, number, problem
+from case import Case, Sizes, guess, mesh, number, problem
 
 
 def integral(rate, T):
@@ -20,7 +20,7 @@ def cases(rng, count):
         r, rho = round(rng.uniform(0.005, 0.1), 4), round(rng.uniform(0.005, 0.1), 4)
         s = rng.choice((1.0, 0.5, 2.0, 3.0))
         wealth = float(f"{10 ** rng.uniform(-1, 6):.2g}")
-        left = float(f"{wealth * rng.choice((0, rng.uniform(0, 1.5))):.2g}")
+        left = float(f"{wealth * rng.choice((0, rng.uniform(0, 0.8) * math.exp(r * T))):.2g}")
         growth = (r - rho) / s
         begin = (wealth - left * math.exp(-r * T)) / integral(growth - r, T)
         if s == 1:
@@ -30,26 +30,23 @@ def cases(rng, count):
         else:
             utility = begin ** (1 - s) / (1 - s) * integral(growth * (1 - s) - rho, T)
         grid = mesh(rng, 5, 40)
-        year, rate = ("", "") if sizes.pure else ("[year]", "[1/year]")
-        # A year is no unit of the language: years are days here, so that numbers are the same.
-        year, rate = year.replace("year", "day"), rate.replace("year", "day")
+        day, rate = sizes.mark("day"), sizes.mark("1/day")
         flow = "c" if sizes.pure else "c / 1 [1/day]"
         value = f"log({flow})" if s == 1 else (f"({flow})^{1 - s:g} / {1 - s:g}" if 1 - s > 0 else f"({flow})^({1 - s:g}) / ({1 - s:g})")
-        clock = "t" if sizes.pure else "t"
         statements = [
-            f"duration T = {number(T)} {year}".rstrip() + ";",
+            f"duration T = {number(T)} {day}".rstrip() + ";",
             f"param r = {r!r} {rate}".rstrip() + ";",
             f"param rho = {rho!r} {rate}".rstrip() + ";",
-            "state k;" if sizes.pure else "domain t [day];",
-            "input c;" if sizes.pure else "state k [1];",
+            "state k;" if sizes.pure else "state k [1];",
+            "input c;" if sizes.pure else "input c in 0 [1/day] ..;",
             grid.statement,
             "dynamics { der(k) == r * k - c; }",
-            f"maximize {'' if sizes.pure else 'utility [day]: '}integral(exp(-rho * {clock}) * {value});",
+            f"maximize {'' if sizes.pure else 'utility [day]: '}integral(exp(-rho * t) * {value});",
             f"initial {{ k == {number(wealth)}; }}",
             f"final {{ k {rng.choice(('==', '>='))} {number(left)}; }}",
         ]
         if not sizes.pure:
-            statements.insert(0, "input c in 0 [1/day] ..;")
+            statements.append("domain t [day];")
         about = float(f"{wealth / T:.1g}")
         line = [f"c = {number(about)} {rate}".rstrip(), f"k = {number(wealth)} * (1 - tau)"]
         statements += guess(rng, line, [f"c = {number(10 * about)} {rate}".rstrip()])

@@ -33,7 +33,7 @@ def cases(rng, count):
         shown = sizes.unit("time", T)
         unit = {kind: sizes.unit(kind, si) for kind, si in (("length", d.si), ("speed", fast), ("acceleration", push.si))}
         form = rng.choice(("states", "states", "second order", "flat"))
-        first = [f"x == 0", "v == 0" if v0.si == 0 else f"v == {v0}"]
+        first = ["x == 0", "v == 0" if v0.si == 0 else f"v == {v0}"]
         last = [f"x == {d}", "v == 0"]
         limits = [f"v <= {limit}"] if limit else []
         statements = [

@@ -46,7 +46,7 @@ def cases(rng, count):
                 f"output x {length}: spline(order = {rng.choice((2 * n, 2 * n + 1))}, intervals = {rng.choice((1, 2, 5))});",
                 f"let u = der(x, {n});",
             ]
-        statements += [f"minimize integral(u^2);"]
+        statements.append("minimize integral(u^2);")
         statements += guess(rng, [f"x = {begin[0]} + ({end[0]} - {begin[0]}) * tau"], [f"x = {Quantity(1e3, length)}"])
         yield Case(
             name=f"least_energy_{k}",

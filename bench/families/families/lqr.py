@@ -52,7 +52,7 @@ def cases(rng, count):
                 f"param q[{n}] = {vector(q)};",
                 f"state x[{n}];",
                 f"input u[1 .. {m}];",
-                f"dynamics {{ der(x) == A * x + B * u; }}",
+                "dynamics { der(x) == A * x + B * u; }",
                 f"initial {{ x == {vector(begin)}; }}",
                 f"minimize integral(dot(x, diagonal(q) * x) + {' + '.join(f'{number(one)} * u[{j + 1}]^2' for j, one in enumerate(r))});",
             ]

@@ -94,7 +94,7 @@ def too_heavy(rng, sizes):
         "dynamics { der(v) == F / m;  der(m) == -F / exhaust; }",
         f"initial {{ v == 0;  m == {mass}; }}",
         f"final {{ v == {wanted}; }}",
-        f"minimize integral(F);",
+        "minimize integral(F);",
     ], [f"v = {wanted} * tau", f"m = {mass}"]
 
 

@@ -67,7 +67,7 @@ def cases(rng, count):
                     f"phase boost {{ duration in {sizes.bounds('time', burn)};  let thrust = {thrust}; }}",
                     f"phase coast after boost {{ duration in {sizes.bounds('time', T - burn)};  let thrust = 0{' [N]' if not sizes.pure else ''}; }}",
                 ]
-                line, poor = line[:-1], poor
+                line = line[:-1]
             tolerance = 1e-5 if phased else grid.switches(1, factor=2)
             begin = ["h == 0", "v == 0", f"m == {mass}"]
             if goal == "height":

@@ -135,7 +135,7 @@ def cases(rng, count):
         statements += guess(
             rng,
             [via, about],
-            [rng.choice((f"(x, y) through (0, 0), ({number(far)}, 0){mark}", f"x = 0")), about],
+            [rng.choice((f"(x, y) through (0, 0), ({number(far)}, 0){mark}", "x = 0")), about],
         )
         yield Case(
             name=f"round_circles_{k}",

@@ -32,29 +32,27 @@ def cases(rng, count):
             continue
         grid = mesh(rng)
         shown = sizes.unit("area", area)
-        along = rng.random() < 0.6
+        goal = f"minimize {'area ' + str(shown) + ': ' if shown.symbol else ''}"
         statements = [
-            f"minimize {'area ' + str(shown) + ': ' if shown.symbol else ''}2 * pi * integral(y * {rng.choice(('sqrt(1 + der(y)^2)', 'hypot(1, der(y))'))});",
+            f"domain x {unit};",
+            f"duration D = {d};",
             f"initial {{ y == {y0}; }}",
             f"final {{ y == {y1}; }}",
         ]
-        if along:
+        if rng.random() < 0.6:
             order = rng.choice((4, 5, 6))
             statements += [
-                f"domain x {unit};",
-                f"duration D = {d};",
+                f"{goal}2 * pi * integral(y * {rng.choice(('sqrt(1 + der(y)^2)', 'hypot(1, der(y))'))});",
                 f"output y {unit}: spline(order = {order}, intervals = {grid.intervals});",
             ]
             tolerance = 1e-6 + (0.5 / grid.intervals) ** (2 * order - 2)
         else:
-            statements = statements[1:] + [
-                f"domain x {unit};",
-                f"duration D = {d};",
+            statements += [
                 f"state y {unit};",
                 f"input slope {sizes.mark('1')};",
                 grid.statement,
                 "dynamics { der(y) == slope; }",
-                f"minimize {'area ' + str(shown) + ': ' if shown.symbol else ''}integral(2 * pi * y * sqrt(1 + slope^2));",
+                f"{goal}integral(2 * pi * y * sqrt(1 + slope^2));",
             ]
             tolerance = 1e-6 + (1 / grid.intervals) ** (2 * grid.points)
         statements += guess(rng, [f"y = {y0} + ({y1} - {y0}) * tau"], [f"y = {sizes.write('length', 5 * y0.si, unit, 2)}"])

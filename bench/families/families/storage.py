@@ -6,7 +6,7 @@ Answer: the linear program itself, by scipy's linprog (HiGHS).
 import numpy as np
 from scipy.optimize import linprog
 
-from case import Case, Sizes, guess, number, problem
+from case import Case, guess, number, problem
 
 
 def battery(prices, hours, power, room, first, efficiency):
@@ -48,7 +48,6 @@ def reservoir(prices, inflow, hours, most, room, first):
 
 def cases(rng, count):
     for k in range(count):
-        sizes = Sizes(rng)
         n = rng.choice((6, 12, 24, 48))
         period = rng.choice((1, 1, 0.5, 2))
         prices = np.array([round(rng.uniform(20, 120), 1) if rng.random() < 0.9 else round(rng.uniform(-20, 20), 1) for _ in range(n)])

@@ -72,8 +72,7 @@ def cases(rng, count):
                     f"dynamics {{ der({name}, {n}) == u; }}",
                     f"minimize integral({'norm(u)^2' if dimension > 1 else 'u^2'});",
                 ]
-        if rng.random() < 0.5:
-            statements += guess(rng, [f"{name} = {point(places[0])} * (1 - tau)"], [f"{name} = {point(100 * places[0])}"])
+        statements += guess(rng, [f"{name} = {point(places[0])} * (1 - tau)"], [f"{name} = {point(100 * places[0])}"])
         yield Case(
             name=f"waypoints_{k}",
             text=problem(rng, "Waypoints", f"Through way-points with the least derivative of order {n}.", statements),

@@ -9,7 +9,7 @@ import math
 import numpy as np
 from scipy.optimize import fsolve
 
-from case import DEGREE, Case, Sizes, block, guess, mesh, problem
+from case import DEGREE, Case, Sizes, guess, mesh, problem
 from families.pursuit import first_root
 
 
@@ -63,7 +63,7 @@ def cases(rng, count):
             start_y = sizes.write("length", d.si * rng.uniform(-1, 1), d.unit, 3)
             last = sizes.write("length", start_y.si + y.si, d.unit, 5)
             T = d.si / V.si * through_shear(x.si / d.si, start_y.si / d.si, last.si / d.si, 1, shear * d.si / V.si)
-            drift = [f" + shear * y", ""]
+            drift = [" + shear * y", ""]
             statements.append(f"param shear = {shear!r} {sizes.mark('1/s')};")
             start = f"y == {start_y}"
             # Headings turn by less than half a turn.
