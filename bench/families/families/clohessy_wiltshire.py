@@ -23,11 +23,13 @@ def cases(rng, count):
         moves = [sizes.write("speed", far.si * rate * rng.choice((0, rng.uniform(-5, 5))), speed, 3) for _ in range(n)]
         A = np.zeros((2 * n, 2 * n))
         A[:n, n:] = np.eye(n)
-        A[n, 0], A[n, n + 1], A[n + 1, n] = 3 * rate**2, 2 * rate, -2 * rate
+        # In times of 1 / rate.
+        A[n, 0], A[n, n + 1], A[n + 1, n] = 3, 2, -2
         if n == 3:
-            A[5, 2] = -rate**2
+            A[5, 2] = -1
         B = np.vstack([np.zeros((n, n)), np.eye(n)])
-        energy = least_energy(A, B, T.si, [q.si for q in place + moves], [0] * (2 * n))
+        begin = [q.si for q in place] + [q.si / rate for q in moves]
+        energy = least_energy(A, B, T.si * rate, begin, [0] * (2 * n)) * rate**3
         grid = mesh(rng)
         # At most a radian an interval.
         grid = Mesh(max(grid.intervals, math.ceil(rate * T.si)), grid.points)

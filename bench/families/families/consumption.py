@@ -38,7 +38,7 @@ def cases(rng, count):
             f"param r = {r!r} {rate}".rstrip() + ";",
             f"param rho = {rho!r} {rate}".rstrip() + ";",
             "state k;" if sizes.pure else "state k [1];",
-            "input c;" if sizes.pure else "input c in 0 [1/day] ..;",
+            "input c in 0 ..;" if sizes.pure else "input c in 0 [1/day] ..;",
             grid.statement,
             "dynamics { der(k) == r * k - c; }",
             f"maximize {'' if sizes.pure else 'utility [day]: '}integral(exp(-rho * t) * {value});",

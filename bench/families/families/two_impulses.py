@@ -27,7 +27,9 @@ def cases(rng, count):
         r2 = float(f"{r1 * 10 ** (rng.choice((-1, 1, 1)) * rng.uniform(0.05, 0.9)):.4g}")
         change, T = hohmann(r1, r2, mu)
         grid = mesh(rng, 10, 80)
-        grid = Mesh(grid.intervals, max(grid.points, 3))
+        # Half a radian at the inner radius an interval, at most.
+        around = T * math.sqrt(mu / min(r1, r2) ** 3)
+        grid = Mesh(max(grid.intervals, math.ceil(2 * around)), max(grid.points, 3))
         km, kms = sizes.mark("km"), sizes.mark("km/s")
         unit = sizes.unit("time", T)
         bounds = rng.choice((f"{0.2 * T / unit.si:.3g} .. {5 * T / unit.si:.3g}", f"{0.01 * T / unit.si:.3g} .. {100 * T / unit.si:.3g}"))
@@ -56,7 +58,6 @@ def cases(rng, count):
             name=f"two_impulses_{k}",
             text=problem(rng, "Transfer", "Two impulses lead from one circular orbit to another.", statements),
             optimum=change,
-            # The mean motion at the inner radius tells how much happens in an interval.
-            tolerance=1e-6 + (T * math.sqrt(mu / min(r1, r2) ** 3) / grid.intervals / 2) ** (2 * grid.points),
+            tolerance=1e-6 + (around / grid.intervals / 2) ** (2 * grid.points),
             why="Hohmann",
         )
