@@ -70,19 +70,15 @@ def line(one):
 
 def compare(answers, path):
     """What has changed since an earlier run, of the cases that both have."""
-    before = {one["name"]: one for one in json.loads(path.read_text())}
-    both = [one for one in answers if one["name"] in before]
-    print(f"\nagainst {path}: {len(both)} cases in both")
-    for one in both:
-        old = before[one["name"]]
-        if old["optimum"] != one["optimum"]:
-            print(f"  {one['name']}: another case by the same name")
-        elif old["class"] != one["class"]:
-            print(f"  {one['name']}: {old['class']} -> {one['class']}; {one['said'][:120]}")
-    total = lambda kept: sum(one["iterations"] for one in kept)
-    print(f"  iterations {total(before[one['name']] for one in both)} -> {total(both)}")
-    fine = [one for one in both if one["class"] == before[one["name"]]["class"] == "right"]
-    print(f"  of the {len(fine)} right in both {total(before[one['name']] for one in fine)} -> {total(fine)}")
+    before = {(one["name"], one["spec"]): one for one in json.loads(path.read_text())}
+    both = [(before[one["name"], one["spec"]], one) for one in answers if (one["name"], one["spec"]) in before]
+    print(f"\nagainst {path}: {len(both)} of {len(answers)} cases are in both")
+    for old, new in both:
+        if old["class"] != new["class"]:
+            print(f"  {new['name']}: {old['class']} -> {new['class']}; {new['said'][:120]}")
+    total = lambda pairs: " -> ".join(str(sum(pair[k]["iterations"] for pair in pairs)) for k in (0, 1))
+    right = [pair for pair in both if pair[0]["class"] == pair[1]["class"] == "right"]
+    print(f"  iterations {total(both)}; of the {len(right)} right in both {total(right)}")
 
 
 def main():
