@@ -151,6 +151,11 @@ class Mesh:
         """What a cost may be off by, relative, where `count` switches fall inside intervals."""
         return 1e-6 + factor * count / self.intervals**2
 
+    def ramps(self, count, share, factor=0.5):
+        """The same of a least time, where speed rises and falls within a share of it: a switch loses way as an
+        interval's square over the ramp's length, and at most half an interval."""
+        return 1e-6 + count * min(factor * max(1, 0.5 / share) / self.intervals**2, 0.5 / self.intervals)
+
 
 def mesh(rng, low=5, high=80):
     """Intervals evenly on a logarithmic scale, and 2 to 5 points in each: states of order 3 to 6."""

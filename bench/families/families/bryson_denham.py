@@ -4,7 +4,9 @@ Answer: with l in units of v T, the integral of u^2 / 2 in units of v^2 / T is 2
 1/6 <= l <= 1/4, and 4 / (9 l) below (Bryson and Ho, section 3.11).
 """
 
-from case import Case, Sizes, block, guess, log_uniform, mesh, problem
+import math
+
+from case import Case, Mesh, Sizes, block, guess, log_uniform, mesh, problem
 
 
 def energy(room):
@@ -22,6 +24,8 @@ def cases(rng, count):
         ceiling = sizes.write("length", room * v.si * T.si, digits=4)
         room = ceiling.si / (v.si * T.si)
         grid = mesh(rng)
+        # Three intervals at least on the way to the ceiling.
+        grid = Mesh(max(grid.intervals, math.ceil(1 / room)), grid.points)
         form = rng.choice(("states", "flat"))
         limit = rng.choice((f"x <= {ceiling}", f"{ceiling} - x >= 0"))
         statements = [
@@ -49,7 +53,7 @@ def cases(rng, count):
             tolerance = 1e-6
         else:
             # The way to the ceiling takes 3 l of the time, and ends inside an interval.
-            tolerance = grid.switches(1, factor=0.05 / min(1, 3 * room) ** 2)
+            tolerance = grid.switches(1, factor=0.2 / min(1, 3 * room) ** 2)
         yield Case(
             name=f"bryson_denham_{k}",
             text=problem(rng, "TurnRound", "A cart turns round below a ceiling with the least energy.", statements),

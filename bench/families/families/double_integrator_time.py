@@ -9,12 +9,12 @@ from case import Case, Sizes, block, guess, mesh, problem
 
 
 def least_time(d, v0, push, brake, limit):
-    """From (0, v0) to rest at d, where v0 can be braked before d; and the number of switches."""
+    """From (0, v0) to rest at d, where v0 can be braked before d; the number of switches and the highest speed too."""
     peak = math.sqrt((d + v0**2 / (2 * push)) / (1 / (2 * push) + 1 / (2 * brake)))
     if limit is None or peak <= limit:
-        return (peak - v0) / push + peak / brake, 1
+        return (peak - v0) / push + peak / brake, 1, peak
     cruise = d - (limit**2 - v0**2) / (2 * push) - limit**2 / (2 * brake)
-    return (limit - v0) / push + limit / brake + cruise / limit, 2
+    return (limit - v0) / push + limit / brake + cruise / limit, 2, limit
 
 
 def cases(rng, count):
@@ -28,7 +28,7 @@ def cases(rng, count):
         limit = None
         if rng.random() < 0.5:
             limit = sizes.write("speed", max(rng.uniform(0.1, 1.2) * fast, 1.1 * v0.si))
-        T, switches = least_time(d.si, v0.si, push.si, brake.si, limit and limit.si)
+        T, switches, top = least_time(d.si, v0.si, push.si, brake.si, limit and limit.si)
         grid = mesh(rng)
         shown = sizes.unit("time", T)
         unit = {kind: sizes.unit(kind, si) for kind, si in (("length", d.si), ("speed", fast), ("acceleration", push.si))}
@@ -76,7 +76,6 @@ def cases(rng, count):
             name=f"double_integrator_time_{k}",
             text=problem(rng, "Cart", "A cart goes to a place and stops there, as fast as it can.", statements),
             optimum=T / shown.si,
-            # A side that is much the stronger is used within few intervals.
-            tolerance=grid.switches(switches, factor=0.5 * max(brake.si / push.si, push.si / brake.si) ** 0.5),
+            tolerance=grid.ramps(switches, min((top - v0.si) / push.si, top / brake.si) / T),
             why="full push, cruise, full brake",
         )

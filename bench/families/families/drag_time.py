@@ -62,6 +62,6 @@ def cases(rng, count):
             text=problem(rng, "Sledge", "A sledge in oil goes from rest to rest, as fast as it can.", statements),
             optimum=T / shown.si,
             # Where friction is quick, an interval of the switch costs the more.
-            tolerance=grid.switches(1, factor=0.5 * max(1, c / mass.si * T / 4)),
+            tolerance=grid.switches(1, factor=max(1, c / mass.si * T / 4)),
             why="root of the switching equation",
         )

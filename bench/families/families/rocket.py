@@ -68,7 +68,7 @@ def cases(rng, count):
                     f"phase coast after boost {{ duration in {sizes.bounds('time', T - burn)};  let thrust = 0{' [N]' if not sizes.pure else ''}; }}",
                 ]
                 line = line[:-1]
-            tolerance = 1e-5 if phased else grid.switches(1, factor=2)
+            tolerance = 1e-6 + 0.05 * (1 / grid.intervals) ** (2 * grid.points) if phased else grid.switches(1, factor=2)
             begin = ["h == 0", "v == 0", f"m == {mass}"]
             if goal == "height":
                 statements += [

@@ -40,6 +40,8 @@ def cases(rng, count):
         smooth = rng.random() < 0.5
         quick = float(f"{torque / (trapezoid(angle.si, rate.si, acceleration) * rng.uniform(0.05, 0.5)):.3g}")
         T = seven_segments(angle.si, rate.si, acceleration, quick / inertia) if smooth else trapezoid(angle.si, rate.si, acceleration)
+        # The shortest time in which torque or rate come to their limits.
+        ramp = min(acceleration * inertia / quick if smooth else T, rate.si / acceleration, T / 2)
         grid = mesh(rng)
         shown = sizes.unit("time", T)
         along = sizes.unit("angle", angle.si)
@@ -79,6 +81,6 @@ def cases(rng, count):
             name=f"slew_{k}",
             text=problem(rng, "Slew", "A spacecraft turns about one axis, from rest to rest, as fast as it can.", statements),
             optimum=T / shown.si,
-            tolerance=grid.switches(6 if smooth else 2),
+            tolerance=grid.ramps(6 if smooth else 2, ramp / T),
             why="seven segments" if smooth else "trapezoid",
         )
