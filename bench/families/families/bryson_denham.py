@@ -6,7 +6,10 @@ Answer: with l in units of v T, the integral of u^2 / 2 in units of v^2 / T is 2
 
 import math
 
-from case import Case, Mesh, Sizes, block, guess, log_uniform, mesh, problem
+from case import Case
+from meshes import Mesh, mesh
+from sizes import Sizes
+from spell import block, guess, log_uniform, problem
 
 
 def energy(room):

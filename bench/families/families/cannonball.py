@@ -6,7 +6,11 @@ splines, so every mesh is exact.
 
 import math
 
-from case import DEGREE, Case, Sizes, block, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, problem
+from units import DEGREE
 
 
 def cases(rng, count):

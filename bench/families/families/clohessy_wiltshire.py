@@ -7,15 +7,18 @@ import math
 
 import numpy as np
 
-from case import Case, Mesh, Sizes, guess, mesh, number, problem
+from case import Case
 from linear import least_energy
+from meshes import Mesh, mesh
+from sizes import Sizes, vector
+from spell import guess, problem, rounded
 
 
 def cases(rng, count):
     for k in range(count):
         n = rng.choice((2, 3))
         sizes = Sizes(rng, pure=rng.random() < 0.3)
-        rate = 1.0 if sizes.pure else float(f"{10 ** rng.uniform(-4.5, -2.9):.3g}")
+        rate = 1.0 if sizes.pure else rounded(10 ** rng.uniform(-4.5, -2.9), 3)
         T = sizes.write("time", 2 * math.pi / rate * 10 ** rng.uniform(-1.3, 0.6), digits=3)
         far = sizes.unit("length", 10 ** rng.uniform(0, 5))
         speed = sizes.unit("speed", far.si * rate)
@@ -33,7 +36,6 @@ def cases(rng, count):
         grid = mesh(rng)
         # At most a radian an interval.
         grid = Mesh(max(grid.intervals, math.ceil(rate * T.si)), grid.points)
-        vector = lambda quantities: "(" + ", ".join(number(q.number) for q in quantities) + f") {quantities[0].unit}".rstrip()
         pull = ["3 * w^2 * r[1] + 2 * w * v[2]", "-2 * w * v[1]", "-w^2 * r[3]"][:n]
         statements = [
             f"param w = {rate!r} {sizes.mark('rad/s')};",

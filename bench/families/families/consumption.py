@@ -5,7 +5,10 @@ Answer: consumption grows at the rate (r - rho) / s (Euler's equation); its star
 
 import math
 
-from case import Case, Sizes, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import guess, number, problem, rounded
 
 
 def integral(rate, T):
@@ -19,8 +22,8 @@ def cases(rng, count):
         T = float(rng.choice((5, 20, 60)))
         r, rho = round(rng.uniform(0.005, 0.1), 4), round(rng.uniform(0.005, 0.1), 4)
         s = rng.choice((1.0, 0.5, 2.0, 3.0))
-        wealth = float(f"{10 ** rng.uniform(-1, 6):.2g}")
-        left = float(f"{wealth * rng.choice((0, rng.uniform(0, 0.8) * math.exp(r * T))):.2g}")
+        wealth = rounded(10 ** rng.uniform(-1, 6), 2)
+        left = rounded(wealth * rng.choice((0, rng.uniform(0, 0.8) * math.exp(r * T))), 2)
         growth = (r - rho) / s
         begin = (wealth - left * math.exp(-r * T)) / integral(growth - r, T)
         if s == 1:
@@ -47,7 +50,7 @@ def cases(rng, count):
         ]
         if not sizes.pure:
             statements.append("domain t [day];")
-        about = float(f"{wealth / T:.1g}")
+        about = rounded(wealth / T, 1)
         line = [f"c = {number(about)} {rate}".rstrip(), f"k = {number(wealth)} * (1 - tau)"]
         statements += guess(rng, line, [f"c = {number(10 * about)} {rate}".rstrip()])
         yield Case(

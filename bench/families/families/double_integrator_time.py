@@ -5,7 +5,10 @@ Answer: full push, cruise at the limit if it is reached, full brake (Bryson and 
 
 import math
 
-from case import Case, Sizes, block, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, problem
 
 
 def least_time(d, v0, push, brake, limit):

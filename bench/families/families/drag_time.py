@@ -7,7 +7,10 @@ import math
 
 from scipy.optimize import brentq
 
-from case import Case, Sizes, block, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, problem, rounded
 
 
 def least_time(d, push, brake, c):
@@ -34,7 +37,7 @@ def cases(rng, count):
         brake = sizes.write("force", push.si * rng.uniform(0.3, 3), digits=3)
         # How many times friction's time constant goes into the way without friction.
         much = 10 ** rng.uniform(-2, 1)
-        c = float(f"{much * mass.si / math.sqrt(2 * d.si * mass.si / push.si):.3g}")
+        c = rounded(much * mass.si / math.sqrt(2 * d.si * mass.si / push.si), 3)
         T = least_time(d.si, push.si / mass.si, brake.si / mass.si, c / mass.si)
         grid = mesh(rng)
         shown = sizes.unit("time", T)

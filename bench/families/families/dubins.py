@@ -6,7 +6,11 @@ heading is given as the turns of that word add up, or but for whole turns.
 
 import math
 
-from case import DEGREE, Case, Sizes, block, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, number, problem
+from units import DEGREE
 
 FULL = 2 * math.pi
 

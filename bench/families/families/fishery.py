@@ -8,7 +8,10 @@ import math
 
 from scipy.integrate import solve_ivp
 
-from case import Case, Sizes, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import guess, number, problem, rounded
 
 
 def catch(g, x0, last, most, T):
@@ -45,16 +48,16 @@ def cases(rng, count):
         total, stay = catch(g, x0, last, most, T)
         if stay < 0.1 * T or abs(x0 - 0.5) < 0.05 or abs(last - 0.5) < 0.05:
             continue
-        scale = 1.0 if sizes.pure else float(f"{10 ** rng.uniform(0, 5):.2g}")
+        scale = 1.0 if sizes.pure else rounded(10 ** rng.uniform(0, 5), 2)
         tonnes, rate, flow, time = ("", "", "", "") if sizes.pure else (" [t]", " [1/day]", " [t/day]", " [day]")
         grid = mesh(rng, 10, 80)
-        size = lambda value: f"{number(float(f'{value * scale:.6g}'))}{tonnes}"
+        size = lambda value: f"{number(rounded(value * scale, 6))}{tonnes}"
         statements = [
             f"param g = {g!r}{rate};",
             f"param K = {size(1)};",
             f"duration T = {number(T)}{time};",
             f"state x{tonnes};",
-            f"input h in 0 .. {number(float(f'{most * scale:.6g}'))}{flow};",
+            f"input h in 0 .. {number(rounded(most * scale, 6))}{flow};",
             grid.statement,
             rng.choice(("dynamics { der(x) == g * x * (1 - x / K) - h; }", "dynamics { der(x) + h == g * (x - x^2 / K); }")),
             f"initial {{ x == {size(x0)}; }}",

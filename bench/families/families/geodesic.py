@@ -5,7 +5,11 @@ Answer: the great circle; a straight line on the surface that is rolled out.
 
 import math
 
-from case import DEGREE, Case, Sizes, block, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, number, problem
+from units import DEGREE
 
 
 def cases(rng, count):

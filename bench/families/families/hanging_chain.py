@@ -8,7 +8,10 @@ import math
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from case import Case, Sizes, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import guess, problem, rounded
 
 
 def energy(d, y0, y1, length):
@@ -32,7 +35,7 @@ def cases(rng, count):
         straight = math.hypot(d.si, y1.si - y0.si)
         length = sizes.write("length", straight * rng.uniform(1.05, 2.5), d.unit, 4)
         moment, z = energy(d.si, y0.si, y1.si, length.si)
-        weight = float(f"{10 ** rng.uniform(-1, 3):.2g}")
+        weight = rounded(10 ** rng.uniform(-1, 3), 2)
         grid = mesh(rng, 8, 60)
         order = rng.choice((4, 5, 6))
         form = rng.choice(("flat", "states"))

@@ -6,7 +6,10 @@ that and the rise.
 
 import math
 
-from case import Case, Sizes, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import guess, number, problem, rounded
 
 
 def cases(rng, count):
@@ -16,8 +19,8 @@ def cases(rng, count):
         way = sizes.write("length", 10 ** rng.uniform(3, 5.3), digits=3)
         time = sizes.write("time", way.si / rng.uniform(8, 40), digits=3)
         speed = way.si / time.si
-        c0 = float(f"{10 ** rng.uniform(-2.5, -1):.2g}")
-        c2 = float(f"{10 ** rng.uniform(-5, -3.5):.2g}")
+        c0 = rounded(10 ** rng.uniform(-2.5, -1), 2)
+        c2 = rounded(10 ** rng.uniform(-5, -3.5), 2)
         grade, mean = round(rng.uniform(0.001, 0.02), 4), round(rng.uniform(-0.003, 0.003), 4)
         work = way.si * (c0 + c2 * speed**2 + 9.81 * mean)
         grid = mesh(rng, max(8, 6 * waves), 80)

@@ -6,7 +6,10 @@ where the velocity is to be matched too, 6 p^2 / T^3 + 6 p v / T^2 + 2 v^2 / T. 
 
 import numpy as np
 
-from case import Case, Sizes, block, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes, vector
+from spell import block, guess, number, problem, rounded
 
 
 def effort(T, place, velocity, matched):
@@ -26,8 +29,8 @@ def cases(rng, count):
         far = length.si * 10 ** rng.uniform(0, 1.5)
         speed = sizes.unit("speed", far / 10 ** rng.uniform(0, 2))
         fast = speed.si * 10 ** rng.uniform(0, 1)
-        vector = lambda size, unit, digits: [sizes.write("", rng.uniform(-1, 1) * size, unit, digits) for _ in range(n)]
-        target, moves, own = vector(far, length, 4), vector(0.4 * fast, speed, 3), vector(fast, speed, 3)
+        drawn = lambda size, unit, digits: [sizes.write("", rng.uniform(-1, 1) * size, unit, digits) for _ in range(n)]
+        target, moves, own = drawn(far, length, 4), drawn(0.4 * fast, speed, 3), drawn(fast, speed, 3)
         place = [q.si for q in target]
         velocity = [q.si - p.si for q, p in zip(moves, own)]
         matched = rng.random() < 0.4
@@ -38,7 +41,7 @@ def cases(rng, count):
         price = 0.0
         if free:
             # So that time costs about as much as the effort.
-            price = float(f"{effort(T.si, place, velocity, matched) / T.si:.2g}")
+            price = rounded(effort(T.si, place, velocity, matched) / T.si, 2)
             low, high = T.si / 10, T.si * 10
             times = np.geomspace(low, high, 200001)
             costs = price * times + effort(times, place, velocity, matched)
@@ -46,17 +49,16 @@ def cases(rng, count):
             T_text = f"duration T in {number(low / T.unit.si)} .. {number(high / T.unit.si)} {T.unit}".rstrip() + ";"
         else:
             best = effort(T.si, place, velocity, matched)
-        numbers = lambda vector: "(" + ", ".join(number(q.number) for q in vector) + f") {vector[0].unit}".rstrip()
         grid = mesh(rng, 2, 30)
         statements = [
             T_text,
-            f"param place[{n}] = {numbers(target)};",
-            f"param moves[{n}] = {numbers(moves)};",
+            f"param place[{n}] = {vector(target)};",
+            f"param moves[{n}] = {vector(moves)};",
             f"state r[{n}] {length}, v[{n}] {speed};",
             f"input a[{n}] {sizes.mark('m/s^2')};",
             grid.statement,
             "dynamics { der(r) == v;  der(v) == a; }",
-            f"initial {{ r == 0;  v == {numbers(own)}; }}",
+            f"initial {{ r == 0;  v == {vector(own)}; }}",
             block("final", ["r == place + moves * t"] + (["v == moves"] if matched else [])),
         ]
         cost = rng.choice(("norm(a)^2", "dot(a, a)", "sum(i in 1 .. %d, a[i]^2)" % n))

@@ -3,8 +3,12 @@
 Answer: by the Gramian; the state is a polynomial, so every mesh is exact.
 """
 
-from case import Case, Quantity, Sizes, Unit, block, guess, mesh, problem
+from case import Case
 from linear import integrators, least_energy
+from meshes import mesh
+from sizes import Quantity, Sizes
+from spell import block, guess, problem, rounded
+from units import Unit
 
 
 def cases(rng, count):
@@ -18,7 +22,7 @@ def cases(rng, count):
         powers = [length] + [
             Unit(f"{length.symbol}/{second}" + (f"^{j}" if j > 1 else "") if second else "", length.si) for j in range(1, n)
         ]
-        draw = lambda j: Quantity(float(f"{rng.uniform(-1, 1) * size / T.si**j / powers[j].si:.3g}"), powers[j])
+        draw = lambda j: Quantity(rounded(rng.uniform(-1, 1) * size / T.si**j / powers[j].si, 3), powers[j])
         begin = [draw(j) if rng.random() < 0.6 else Quantity(0, powers[j]) for j in range(n)]
         end = [draw(j) if j == 0 or rng.random() < 0.5 else Quantity(0, powers[j]) for j in range(n)]
         A, B = integrators(n)

@@ -6,7 +6,9 @@ Answer: x' P(0) x with the solution P of the Riccati equation, by the exponentia
 import numpy as np
 from scipy.linalg import expm
 
-from case import Case, Mesh, block, guess, mesh, number, problem
+from case import Case
+from meshes import Mesh, mesh
+from spell import block, guess, number, numbers, problem
 
 
 def riccati(A, B, Q, R, last, T):
@@ -21,10 +23,6 @@ def riccati(A, B, Q, R, last, T):
         pair = step @ np.vstack([np.eye(n), P])
         P = pair[n:] @ np.linalg.inv(pair[:n])
     return P, fastest
-
-
-def matrix(values):
-    return "(" + ", ".join("(" + ", ".join(number(one) for one in row) + ("," if len(row) == 1 else "") + ")" for row in values) + ")"
 
 
 def cases(rng, count):
@@ -42,18 +40,17 @@ def cases(rng, count):
         grid = mesh(rng)
         # Half a time constant an interval, so that the mesh can follow.
         grid = Mesh(max(grid.intervals, int(np.ceil(2 * fastest * T))), grid.points)
-        vector = lambda values: "(" + ", ".join(number(one) for one in values) + ("," if len(values) == 1 else "") + ")"
         form = rng.choice(("matrices", "written out"))
         statements = [f"duration T = {number(T)};", grid.statement]
         if form == "matrices":
             statements += [
-                f"param A[{n}, {n}] = {matrix(A)};",
-                f"param B[{n}, {m}] = {matrix(B)};",
-                f"param q[{n}] = {vector(q)};",
+                f"param A[{n}, {n}] = {numbers(A)};",
+                f"param B[{n}, {m}] = {numbers(B)};",
+                f"param q[{n}] = {numbers(q)};",
                 f"state x[{n}];",
                 f"input u[1 .. {m}];",
                 "dynamics { der(x) == A * x + B * u; }",
-                f"initial {{ x == {vector(begin)}; }}",
+                f"initial {{ x == {numbers(begin)}; }}",
                 f"minimize integral(dot(x, diagonal(q) * x) + {' + '.join(f'{number(one)} * u[{j + 1}]^2' for j, one in enumerate(r))});",
             ]
             if last[0]:

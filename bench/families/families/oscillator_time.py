@@ -6,7 +6,10 @@ and the last time, is optimal (Bushaw 1952; Athans and Falb, section 7.7); so on
 
 import math
 
-from case import Case, Quantity, Sizes, block, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Quantity, Sizes
+from spell import block, guess, problem, rounded
 
 
 def backward(last, halves, first):
@@ -26,7 +29,7 @@ def cases(rng, count):
         sizes = Sizes(rng, pure=rng.random() < 0.3)
         mass = sizes.draw("mass", 1e-3, 1e5)
         rate = 10 ** rng.uniform(-2, 3)
-        stiffness = float(f"{mass.si * rate**2:.3g}")
+        stiffness = rounded(mass.si * rate**2, 3)
         rate = math.sqrt(stiffness / mass.si)
         push = sizes.draw("force", 1e-3 * stiffness, 10 * stiffness)
         halves = rng.choice((0, 0, 1, 2, 4))
@@ -35,8 +38,8 @@ def cases(rng, count):
         size = push.si / stiffness
         length, speed = sizes.unit("length", size), sizes.unit("speed", size * rate)
         # To so many digits that their rounding is not seen.
-        place = Quantity(float(f"{x * size / length.si:.10g}"), length)
-        moves = Quantity(float(f"{v * size * rate / speed.si:.10g}"), speed)
+        place = Quantity(rounded(x * size / length.si, 10), length)
+        moves = Quantity(rounded(v * size * rate / speed.si, 10), speed)
         T = (last + halves * math.pi + first) / rate
         grid = mesh(rng, 5 * (1 + halves), 80)
         shown = sizes.unit("time", T)

@@ -5,7 +5,10 @@ Answer: none. Each target is beyond the closed form of what can be reached by 2 
 
 import math
 
-from case import Case, Sizes, block, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, number, problem, rounded
 
 
 def too_far(rng, sizes):
@@ -64,7 +67,7 @@ def too_dear(rng, sizes):
     T = sizes.draw("time", 1e-1, 1e4)
     d = sizes.draw("length", 1e-2, 1e5)
     least = 12 * d.si**2 / T.si**3
-    budget = float(f"{least / beyond(rng):.5g}")
+    budget = rounded(least / beyond(rng), 5)
     return [
         f"duration T = {T};",
         f"state x {d.unit}, v {sizes.unit('speed', d.si / T.si)};",

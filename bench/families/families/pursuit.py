@@ -5,7 +5,11 @@ Answer: the first time at which the target is in reach: |d + w T| = V T, or |d +
 
 import numpy as np
 
-from case import DEGREE, Case, Sizes, block, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes, vector
+from spell import block, guess, problem
+from units import DEGREE
 
 
 def first_root(coefficients):
@@ -23,12 +27,11 @@ def cases(rng, count):
         where = rng.uniform(-180, 180)
         place = [sizes.write("length", d.si * f(where * DEGREE), d.unit, 4) for f in (np.cos, np.sin)]
         P, W = np.array([q.si for q in place]), np.array([q.si for q in target])
-        pair = lambda vector: "(" + ", ".join(number(q.number) for q in vector) + f") {vector[0].unit}".rstrip()
         grid = mesh(rng, 3, 60)
         form = rng.choice(("velocity", "heading", "acceleration"))
         statements = [
-            f"param place[2] = {pair(place)};",
-            f"param target[2] = {pair(target)};",
+            f"param place[2] = {vector(place)};",
+            f"param target[2] = {vector(target)};",
             grid.statement,
         ]
         if form == "acceleration":
@@ -41,7 +44,7 @@ def cases(rng, count):
                 f"input a[2] {push.unit};",
                 "dynamics { der(r) == v;  der(v) == a; }",
                 f"trajectory {{ norm(a) <= {push}; }}",
-                f"initial {{ r == 0;  v == {pair(own)}; }}",
+                f"initial {{ r == 0;  v == {vector(own)}; }}",
             ]
         else:
             own = sizes.write("speed", np.hypot(*W) * rng.uniform(1.05, 3), digits=3)

@@ -8,7 +8,10 @@ import math
 
 from scipy.optimize import brentq
 
-from case import Case, Sizes, block, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, problem
 
 
 def apogee(fuel, mass, thrust, exhaust, g):

@@ -6,7 +6,10 @@ Answer: tangents and arcs; the shortest path in the graph of all tangents that c
 import heapq
 import math
 
-from case import Case, Sizes, block, guess, mesh, number, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, number, numbers, problem, rounded
 
 
 def tangent_points(p, circle):
@@ -94,18 +97,18 @@ def cases(rng, count):
         sizes = Sizes(rng, pure=rng.random() < 0.3)
         unit = sizes.unit("length", 10 ** rng.uniform(-2, 6))
         # Numbers in the unit: from (0, 0) to (10, 0), times a size.
-        much = float(f"{10 ** rng.uniform(-1, 1):.1g}")
+        much = rounded(10 ** rng.uniform(-1, 1), 1)
         circles = [(rng.uniform(2.5, 7.5), rng.uniform(-1.5, 1.5), rng.uniform(0.5, 2.4))]
         if rng.random() < 0.5:
             circles = [(rng.uniform(2, 3.5), rng.uniform(-1.2, 1.2), rng.uniform(0.5, 1.7)), (rng.uniform(6.5, 8), rng.uniform(-1.2, 1.2), rng.uniform(0.5, 1.7))]
-        circles = [tuple(float(f"{one * much:.3g}") for one in circle) for circle in circles]
+        circles = [tuple(rounded(one * much, 3) for one in circle) for circle in circles]
         far = 10 * much
         length, path = shortest((0.0, 0.0), (far, 0.0), circles)
         speed = sizes.write("speed", unit.si * much / 10 ** rng.uniform(-2, 3), digits=2)
         T = length * unit.si / speed.si
         shown = sizes.unit("time", T)
         grid = mesh(rng, 10, 80)
-        here = lambda point: "(" + ", ".join(number(float(f"{one:.3g}")) for one in point) + ")"
+        here = lambda point: numbers(rounded(one, 3) for one in point)
         mark = f" {unit}".rstrip()
         keep_out = []
         for a, b, r in circles:

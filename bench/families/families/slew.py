@@ -6,7 +6,11 @@ Answer: the trapezoid, or the curve of seven segments (Biagiotti and Melchiorri,
 
 import math
 
-from case import DEGREE, Case, Sizes, block, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, problem, rounded
+from units import DEGREE
 
 
 def trapezoid(angle, rate, acceleration):
@@ -32,13 +36,13 @@ def cases(rng, count):
     for k in range(count):
         sizes = Sizes(rng)
         angle = sizes.write("angle", rng.uniform(1, 180) * DEGREE, digits=3)
-        inertia = float(f"{10 ** rng.uniform(-2, 4):.2g}")
+        inertia = rounded(10 ** rng.uniform(-2, 4), 2)
         acceleration = 10 ** rng.uniform(-5, 1)
-        torque = float(f"{inertia * acceleration:.3g}")
+        torque = rounded(inertia * acceleration, 3)
         acceleration = torque / inertia
         rate = sizes.write("turn rate", math.sqrt(angle.si * acceleration) * rng.uniform(0.2, 2), digits=3)
         smooth = rng.random() < 0.5
-        quick = float(f"{torque / (trapezoid(angle.si, rate.si, acceleration) * rng.uniform(0.05, 0.5)):.3g}")
+        quick = rounded(torque / (trapezoid(angle.si, rate.si, acceleration) * rng.uniform(0.05, 0.5)), 3)
         T = seven_segments(angle.si, rate.si, acceleration, quick / inertia) if smooth else trapezoid(angle.si, rate.si, acceleration)
         # The shortest time in which torque or rate come to their limits.
         ramp = min(acceleration * inertia / quick if smooth else T, rate.si / acceleration, T / 2)

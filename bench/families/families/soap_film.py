@@ -7,7 +7,10 @@ import math
 
 from scipy.optimize import fsolve
 
-from case import Case, Sizes, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import guess, problem
 
 
 def catenoid(d, y0, y1, near):

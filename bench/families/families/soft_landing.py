@@ -7,7 +7,10 @@ import math
 
 from scipy.optimize import brentq
 
-from case import Case, Sizes, block, guess, mesh, problem
+from case import Case
+from meshes import mesh
+from sizes import Sizes
+from spell import block, guess, problem
 
 
 def light(h0, v0, g, a):

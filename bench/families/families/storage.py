@@ -6,7 +6,8 @@ Answer: the linear program itself, by scipy's linprog (HiGHS).
 import numpy as np
 from scipy.optimize import linprog
 
-from case import Case, guess, number, problem
+from case import Case
+from spell import guess, number, numbers, problem
 
 
 def battery(prices, hours, power, room, first, efficiency):
@@ -51,7 +52,6 @@ def cases(rng, count):
         n = rng.choice((6, 12, 24, 48))
         period = rng.choice((1, 1, 0.5, 2))
         prices = np.array([round(rng.uniform(20, 120), 1) if rng.random() < 0.9 else round(rng.uniform(-20, 20), 1) for _ in range(n)])
-        listed = ", ".join(number(float(one)) for one in prices)
         kind = rng.choice(("battery", "reservoir"))
         phases = rng.random() < 0.5
         points = rng.choice((1, 2, 3))
@@ -64,7 +64,7 @@ def cases(rng, count):
             # Prices in 1/MWh, powers in kW.
             optimum = battery(prices / 1000, period, power, room, first, efficiency)
             statements += [
-                f"param price[n] = ({listed}) [1/MWh];",
+                f"param price[n] = {numbers(prices)} [1/MWh];",
                 f"state E in 0 .. {number(room)} [kWh];",
                 f"input charge in 0 .. {number(power)} [kW]: held;",
                 f"input discharge in 0 .. {number(power)} [kW]: held;",
@@ -84,8 +84,8 @@ def cases(rng, count):
             # Prices in 1/m^3, flows in m^3/s, volumes in 1000 m^3.
             optimum = reservoir(prices, inflow, 3600 * period, most, room * 1000, first * 1000)
             statements += [
-                f"param price[n] = ({listed}) [1/m^3];",
-                f"param inflow[n] = ({', '.join(number(float(one)) for one in inflow)}) [m^3/s];",
+                f"param price[n] = {numbers(prices)} [1/m^3];",
+                f"param inflow[n] = {numbers(inflow)} [m^3/s];",
                 f"state V in 0 .. {number(room * 1000)} [m^3];",
                 f"input turbine in 0 .. {number(most)} [m^3/s]: held;",
                 "input spill in 0 [m^3/s] ..: held;",
@@ -101,7 +101,7 @@ def cases(rng, count):
         if phases:
             statements += [
                 f"collocation gauss(points = {points}, intervals = 1);",
-                f"phase hour[i in 1 .. n] {{ duration = period;  " + "  ".join(f"let {own[one]} = {one}[i];" for one in needs) + " }",
+                "phase hour[i in 1 .. n] { duration = period;  " + "  ".join(f"let {own[one]} = {one}[i];" for one in needs) + " }",
             ]
         else:
             statements += [

@@ -5,7 +5,10 @@ Answer: Hohmann's transfer, the best of two impulses where the radii differ by l
 
 import math
 
-from case import Case, Mesh, Sizes, guess, mesh, problem
+from case import Case
+from meshes import Mesh, mesh
+from sizes import Sizes
+from spell import guess, problem, rounded
 
 BODIES = {"Earth": (398600.4, 6700), "Mars": (42828.4, 3700), "Moon": (4902.8, 1850), "Sun": (1.32712e11, 1.5e8)}
 
@@ -23,8 +26,8 @@ def cases(rng, count):
         body = rng.choice(list(BODIES))
         mu, r1 = (1.0, 1.0) if sizes.pure else BODIES[body]
         if not sizes.pure:
-            r1 = float(f"{r1 * rng.uniform(1, 3):.3g}")
-        r2 = float(f"{r1 * 10 ** (rng.choice((-1, 1, 1)) * rng.uniform(0.05, 0.9)):.4g}")
+            r1 = rounded(r1 * rng.uniform(1, 3), 3)
+        r2 = rounded(r1 * 10 ** (rng.choice((-1, 1, 1)) * rng.uniform(0.05, 0.9)), 4)
         change, T = hohmann(r1, r2, mu)
         grid = mesh(rng, 10, 80)
         # Half a radian at the inner radius an interval, at most.

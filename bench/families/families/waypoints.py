@@ -6,7 +6,9 @@ Answer: the spline of degree 3, 5 or 7 through them that is clamped at the ends,
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from case import Case, Sizes, block, guess, number, problem
+from case import Case
+from sizes import Sizes
+from spell import block, guess, number, numbers, problem
 
 
 def least(times, places, n):
@@ -35,7 +37,7 @@ def cases(rng, count):
         length = sizes.unit("length", 10 ** rng.uniform(-2, 4))
         places = np.array([[round(rng.uniform(-20, 20), 1) for _ in range(dimension)] for _ in range(inner + 2)])
         optimum = least(times * unit.si, places * length.si, n)
-        point = lambda row: ("(" + ", ".join(number(float(one)) for one in row) + ")" if dimension > 1 else number(float(row[0]))) + f" {length}".rstrip()
+        point = lambda row: f"{numbers(row) if dimension > 1 else number(row[0])} {length}".rstrip()
         clock = lambda value: f"{number(float(value))} {unit}".rstrip()
         name = "r" if dimension > 1 else "x"
         declared = f"{name}[{dimension}]" if dimension > 1 else name

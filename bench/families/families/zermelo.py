@@ -9,8 +9,12 @@ import math
 import numpy as np
 from scipy.optimize import fsolve
 
-from case import DEGREE, Case, Sizes, guess, mesh, problem
+from case import Case
 from families.pursuit import first_root
+from meshes import mesh
+from sizes import Sizes
+from spell import guess, problem, rounded
+from units import DEGREE
 
 
 def extremal(heading, T, V, shear, y0):
@@ -59,7 +63,7 @@ def cases(rng, count):
             start, tolerance, chord, first = "y == 0", 1e-6, 0.0, 0.0
             last = y
         else:
-            shear = float(f"{V.si / d.si * rng.uniform(0.2, 2) * rng.choice((-1, 1)):.3g}")
+            shear = rounded(V.si / d.si * rng.uniform(0.2, 2) * rng.choice((-1, 1)), 3)
             start_y = sizes.write("length", d.si * rng.uniform(-1, 1), d.unit, 3)
             last = sizes.write("length", start_y.si + y.si, d.unit, 5)
             T = d.si / V.si * through_shear(x.si / d.si, start_y.si / d.si, last.si / d.si, 1, shear * d.si / V.si)
