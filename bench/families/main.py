@@ -31,6 +31,14 @@ def families(only):
         yield name, module
 
 
+def described(only):
+    """A line for each family: its name and the first paragraph of its module."""
+    modules = list(families(only))
+    width = max(len(name) for name, _ in modules)
+    for name, module in modules:
+        print(name.ljust(width), " ".join(module.__doc__.split("\n\n")[0].split()))
+
+
 def drawn(options):
     """Every case with its family. A family's cases depend on the seed and its name alone."""
     for name, module in families(options.only):
@@ -91,7 +99,11 @@ def main():
     parser.add_argument("--time-limit", type=float, default=20, help="seconds a solve")
     parser.add_argument("--out", type=Path, help="keeps specs and answers.json there")
     parser.add_argument("--against", type=Path, help="answers.json of an earlier run, to compare with")
+    parser.add_argument("--list", action="store_true", help="says what the families are, and solves nothing")
     options = parser.parse_args()
+    if options.list:
+        described(options.only)
+        return
     ntg = binary(options.ntg)
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.out or Path(scratch)
