@@ -19,6 +19,7 @@ use ntg_structure::Unit;
 use serde_json::json;
 
 use crate::arguments::Format;
+use crate::arguments::numbers::number;
 use crate::guess::{self, Origin};
 use crate::runs::SAVED;
 use crate::{Exit, files, setup};
@@ -74,7 +75,7 @@ pub(crate) struct CheckSolution {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// The largest relative violation, and error of stationarity and complementarity, of a solution.
-    #[arg(long, default_value_t = 1e-6, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1e-6, value_parser = number)]
     tolerance: f64,
 }
 

@@ -40,8 +40,6 @@ mod write;
 
 use std::ffi::OsString;
 
-use clap::Parser;
-
 use arguments::{Command, Ntg};
 
 /// How a verb ended, as an exit status.
@@ -72,7 +70,7 @@ impl Exit {
 
 /// Runs the command with the words of a command line, its own name first; gives its exit status.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let parsed = match Ntg::try_parse_from(words) {
+    let parsed = match Ntg::of(words) {
         Ok(parsed) => parsed,
         Err(said) => {
             // Help and version are no errors. A reader that has gone away is none either.

@@ -108,8 +108,10 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
         "at most 1.8e19 seconds",
     ),
     (&["solve", "mission.ntg", "--refine", "-1"], "the tolerance -1 is not between 1e-12 and 0.1"),
-    (&["solve", "mission.ntg", "--max-iterations", "-1"], "invalid value '-1' for '--max-iterations <N>'"),
-    (&["solve", "mission.ntg", "--starts", "-1"], "-1 is not in 1..=1000000"),
+    (&["solve", "mission.ntg", "--max-iterations", "-1"], "for '--max-iterations <N>': a whole number from 1 on"),
+    (&["solve", "mission.ntg", "--starts", "-1"], "for '--starts <N>': a whole number from 1 to 1000000"),
+    (&["solve", "mission.ntg", "--starts", "2", "--seed", "x"], "for '--seed <N>': a whole number from 0 on"),
+    (&["solve", "mission.ntg", "--time-limit", "1m"], "for '--time-limit <SECONDS>': a number, such as"),
     (
         &["sweep", "mission.ntg", "--from", "none.csv", "-o", "o.csv"],
         "`none.csv` is empty; its first line names parameters",
