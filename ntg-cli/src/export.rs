@@ -21,6 +21,7 @@ use serde_json::json;
 use crate::arguments::Format;
 use crate::arguments::numbers::number;
 use crate::guess::{self, Origin};
+use crate::printer::Printer;
 use crate::runs::SAVED;
 use crate::{Exit, files, setup};
 
@@ -165,7 +166,7 @@ impl Read {
 }
 
 /// Writes the three files.
-pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
+pub(crate) fn export(arguments: &Export, printer: &Printer) -> Result<Exit, String> {
     let Kind::Nl = arguments.format;
     let paths = ["nl", "row", "col"].map(|extension| match extension {
         "nl" => arguments.output.clone(),
@@ -186,12 +187,12 @@ pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
         crate::write::whole(path, arguments.force, text.as_bytes())?;
     }
     let [nl, row, col] = paths.each_ref().map(|path| path.display());
-    files::print(&format!("{nl}: {} variables, {} rows; names in {col} and {row}", nlp.variables(), nlp.rows()));
+    printer.line(&format!("{nl}: {} variables, {} rows; names in {col} and {row}", nlp.variables(), nlp.rows()));
     Ok(Exit::Done)
 }
 
 /// Judges a point.
-pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
+pub(crate) fn check(arguments: &CheckSolution, printer: &Printer) -> Result<Exit, String> {
     let tolerance = arguments.tolerance;
     if !(tolerance.is_finite() && tolerance > 0.0) {
         return Err(format!("--tolerance {tolerance}: a positive number"));
@@ -222,8 +223,8 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         tolerance,
     };
     match arguments.format {
-        Format::Text => files::print(&said.text()),
-        Format::Json => files::print(&format!("{:#}", said.json())),
+        Format::Text => printer.line(&said.text()),
+        Format::Json => printer.line(&format!("{:#}", said.json())),
     }
     Ok(match (said.is_solution, &judged.optimality) {
         (true, Some(_)) => Exit::Done,

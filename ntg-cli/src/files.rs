@@ -4,7 +4,6 @@ use std::cell::RefCell;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
-use std::sync::OnceLock;
 
 use ntg_compiler::Compiled;
 use ntg_compiler::diagnostic::{Code, Diagnostic};
@@ -195,35 +194,6 @@ pub(crate) fn compile(path: &Path, set: &[String]) -> Option<Spec> {
             None
         }
     }
-}
-
-/// The first thing that went wrong with standard output.
-static UNPRINTED: OnceLock<String> = OnceLock::new();
-
-/// Prints a line to standard output. A reader that has gone away, as `head` does, is no error; anything else is one, which
-/// [`printed`] tells at the end.
-pub(crate) fn print(text: &str) {
-    noted(writeln!(std::io::stdout(), "{text}"));
-}
-
-/// Prints text as it is.
-pub(crate) fn print_raw(text: &str) {
-    noted(std::io::stdout().write_all(text.as_bytes()));
-}
-
-/// Keeps what went wrong with standard output.
-pub(crate) fn noted(written: std::io::Result<()>) {
-    if let Err(error) = written
-        && error.kind() != std::io::ErrorKind::BrokenPipe
-    {
-        UNPRINTED.get_or_init(|| format!("cannot write to standard output: {error}"));
-    }
-}
-
-/// Whether all that was printed has gone where it was to go.
-pub(crate) fn printed() -> Result<(), String> {
-    noted(std::io::stdout().flush());
-    UNPRINTED.get().map_or(Ok(()), |message| Err(message.clone()))
 }
 
 /// Shows findings on standard error; in colour where that is a terminal and the user's environment wants it.
