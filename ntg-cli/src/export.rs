@@ -264,7 +264,7 @@ fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Found, Str
             saved.filter(|saved| saved.len() == nlp.rows()).map(|saved| saved.iter().map(|y| sign * y).collect());
         return Ok(Found { solution: Solution { message: String::new(), x, multipliers }, origin, of_others });
     }
-    let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
+    let text = crate::reading::text(path).map_err(|error| files::unread_of(path, "sol", &error))?;
     let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
     let read = Solution::read(&text, &Order::of(&expressions));
     read.map(|solution| Found { solution, origin: Origin::Unknowns, of_others: 0 })

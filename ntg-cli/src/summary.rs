@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Exit, String> {
     if let Err(error) = reading::checked(&arguments.table) {
-        return Err(files::unread(&arguments.table, &error));
+        return Err(files::unread_of(&arguments.table, "csv", &error));
     }
     let table = ntg_sweep::read(&arguments.table)?;
     let summary = Summary::of(&table).map_err(|message| format!("`{}`: {message}", arguments.table.display()))?;
