@@ -6,7 +6,6 @@ mod shell;
 
 use std::fs::{self, OpenOptions, Permissions};
 use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
-use std::path::Path;
 use std::process::Command;
 
 use shell::{ntg, said};

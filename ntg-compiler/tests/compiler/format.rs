@@ -118,11 +118,11 @@ fn blanks_and_line_breaks_are_those_of_the_language() {
 fn no_blank_follows_a_parenthesis_that_opens() {
     assert_layout(
         "problem P {
-    let a = 3 * (b - ( if t < 1 { 0 } else { c })) + sum(i in 1 .. 2, ( if i == 1 { 0 } else { d[i] }));
+    let a = 3 * (b - ( if t <= 1 { 0 } else { c })) + sum(i in 1 .. 2, ( if i == 1 { 0 } else { d[i] }));
 }
 ",
         "problem P {
-    let a = 3 * (b - (if t < 1 { 0 } else { c })) + sum(i in 1 .. 2, (if i == 1 { 0 } else { d[i] }));
+    let a = 3 * (b - (if t <= 1 { 0 } else { c })) + sum(i in 1 .. 2, (if i == 1 { 0 } else { d[i] }));
 }
 ",
     );
