@@ -243,22 +243,27 @@ const OF_COSTS: i32 = 9;
 
 /// Both ends, rounded outward to so many decimals.
 fn range((low, high): (f64, f64), decimals: i32, unit: &str) -> String {
-    format!("in {} .. {} {unit}", rounded(low, decimals, f64::floor), rounded(high, decimals, f64::ceil))
+    format!("in {} .. {} {unit}", rounded(low, decimals, -1.0), rounded(high, decimals, 1.0))
 }
 
-/// A number rounded to so many decimals; of a very large one behind its first digit, with an exponent.
-fn rounded(value: f64, decimals: i32, round: fn(f64) -> f64) -> String {
+/// A number rounded downward (-1) or upward (1) to so many decimals; a very large one behind its first digit, with an exponent.
+fn rounded(value: f64, decimals: i32, outward: f64) -> String {
     /// Where decimals without an exponent are longer than anyone reads, and no longer digits of the number.
     const LONG: f64 = 1e10;
     let places = decimals as usize;
     if !value.is_finite() {
         return value.to_string();
     }
-    let is_long = value.abs() >= LONG;
-    let scale = 10_f64.powi(if is_long { decimals - value.abs().log10().floor() as i32 } else { decimals });
+    if value.abs() >= LONG {
+        let nearest = format!("{value:.places$e}");
+        let is_inward = nearest.parse().is_ok_and(|nearest: f64| (nearest - value) * outward < 0.0);
+        let last = 10_f64.powi(value.abs().log10().floor() as i32 - decimals);
+        return if is_inward { format!("{:.places$e}", value + outward * last) } else { nearest };
+    }
+    let scale = 10_f64.powi(decimals);
     // The last rounding may be wrong by one unit of the last place, far below a decimal that is shown.
-    let shown = round(value * scale) / scale + 0.0;
-    if is_long { format!("{shown:.places$e}") } else { format!("{shown:.places$}") }
+    let shown = outward * (outward * value * scale).ceil() / scale + 0.0;
+    format!("{shown:.places$}")
 }
 
 /// Letters of a name that a line shows.
