@@ -1,7 +1,7 @@
 //! What the documents show is what the compiler takes.
 //!
 //! Every block of docs/language.md, docs/tutorial.md and docs/coming-from.md that is marked `ntg` compiles; one marked `ntg,error=E020` is
-//! refused with that code. The README's spec is a file under specs/, word for word.
+//! refused with that code. All that `ntg fmt` takes have its layout. The README's spec is a file under specs/, word for word.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use ntg_compiler::compile;
 use ntg_compiler::diagnostic::Code;
 use ntg_compiler::model::Loader;
 use ntg_compiler::source::Source;
+use ntg_compiler::syntax;
 
 /// The files that specs of the manual name.
 struct ManualFiles;
@@ -89,6 +90,25 @@ fn every_spec_of_the_manual_compiles_or_fails_as_it_says() {
             }
         }
     }
+}
+
+#[test]
+fn every_spec_of_the_documents_has_the_layout_of_the_formatter() {
+    let mut count = 0;
+    for entry in fs::read_dir(root().join("docs")).expect("the documents") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_none_or(|extension| extension != "md") {
+            continue;
+        }
+        let page = path.display().to_string();
+        for block in blocks(&fs::read_to_string(&path).expect("a page")) {
+            // What is shown for an error of syntax has no layout.
+            let Ok(formatted) = syntax::format(&Source::new(page.as_str(), block.text.as_str())) else { continue };
+            assert_eq!(block.text, formatted, "{page}: `ntg fmt` lays this out otherwise");
+            count += 1;
+        }
+    }
+    assert!(count > 40, "only {count} specs were found");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use ntg_runtime::digits::decimals;
 use ntg_structure::{Independent, Structure, Unit};
 
 use crate::certify::{Certificate, Finding, Verdict};
@@ -192,7 +193,7 @@ impl Proof {
             Verdict::Refuted(least, most) => {
                 let at = self.witness.map_or(String::new(), |(t, value)| {
                     let Independent { name, unit } = &self.independent;
-                    format!(", value {value:.6} at {name} = {t:.4} {}", unit.symbol).trim_end().to_owned()
+                    format!(", value {} at {name} = {t:.4} {}", decimals(value, 6), unit.symbol).trim_end().to_owned()
                 });
                 format!("REFUTED: missed by {least:.3e} to {most:.3e}{unit}{at}")
             }
@@ -242,11 +243,41 @@ const OF_COSTS: i32 = 9;
 
 /// Both ends, rounded outward to so many decimals.
 fn range((low, high): (f64, f64), decimals: i32, unit: &str) -> String {
+    format!("in {} .. {} {unit}", rounded(low, decimals, -1.0), rounded(high, decimals, 1.0))
+}
+
+/// A number rounded downward (-1) or upward (1) to so many decimals; a very large one behind its first digit, with an exponent.
+fn rounded(value: f64, decimals: i32, outward: f64) -> String {
+    /// Where decimals without an exponent are longer than anyone reads, and no longer digits of the number.
+    const LONG: f64 = 1e10;
+    let places = decimals as usize;
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    if value.abs() >= LONG {
+        let nearest = format!("{value:.places$e}");
+        let is_inward = nearest.parse().is_ok_and(|nearest: f64| (nearest - value) * outward < 0.0);
+        let last = 10_f64.powi(value.abs().log10().floor() as i32 - decimals);
+        return if is_inward { format!("{:.places$e}", value + outward * last) } else { nearest };
+    }
     let scale = 10_f64.powi(decimals);
     // The last rounding may be wrong by one unit of the last place, far below a decimal that is shown.
-    let (low, high) = ((low * scale).floor() / scale + 0.0, (high * scale).ceil() / scale + 0.0);
-    format!("in {low:.n$} .. {high:.n$} {unit}", n = decimals as usize)
+    let shown = outward * (outward * value * scale).ceil() / scale + 0.0;
+    format!("{shown:.places$}")
 }
 
 /// Letters of a name that a line shows.
 const MOST_NAME: usize = 40;
+
+#[cfg(test)]
+mod tests {
+    use super::range;
+
+    #[test]
+    fn ranges_are_rounded_outward_and_large_ones_have_an_exponent() {
+        assert_eq!(range((-0.1234561, 2.0), 6, "m"), "in -0.123457 .. 2.000000 m");
+        assert_eq!(range((1e300, 1.234_567_89e300), 6, ""), "in 1.000000e300 .. 1.234568e300 ");
+        assert_eq!(range((-12_345_678_912.0, 1e308), 9, ""), "in -1.234567892e10 .. 1.000000000e308 ");
+        assert_eq!(range((f64::NEG_INFINITY, f64::INFINITY), 6, "s"), "in -inf .. inf s");
+    }
+}

@@ -1,11 +1,14 @@
 //! What can be written on the command line.
 
+pub(crate) mod numbers;
 mod text;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, FromArgMatches, Parser, Subcommand, ValueEnum};
 
+use numbers::{number, whole};
 pub(crate) use text::{Check, Completions, Explain, Fmt, New};
 
 /// From nothing to something one can send to a colleague.
@@ -23,6 +26,15 @@ A first problem:
 pub(crate) struct Ntg {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+impl Ntg {
+    /// What the words of a command line say, the command's own name first.
+    pub(crate) fn of(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let mut command = numbers::command();
+        let matches = command.try_get_matches_from_mut(words)?;
+        Self::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -144,7 +156,7 @@ pub(crate) struct Solve {
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) set: Vec<String>,
     /// How many points of the solution to print.
-    #[arg(long, default_value_t = 101, value_parser = clap::value_parser!(u32).range(2..=1_000_000), allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 101, value_parser = whole::<u32>(2..=1_000_000))]
     pub(crate) samples: u32,
     /// How to print.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -166,16 +178,16 @@ pub(crate) struct Solve {
     #[arg(long)]
     pub(crate) force: bool,
     /// Give up after that many seconds, those counted in which the spec is read and compiled.
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = number)]
     pub(crate) time_limit: Option<f64>,
     /// Give up after that many iterations.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<usize>(1..=u64::MAX))]
     pub(crate) max_iterations: Option<usize>,
     #[command(flatten)]
     pub(crate) starts: Starts,
     /// Solve again on finer and finer meshes, until cost and constraints are exact to that relative
     /// error; with `--starts`, every minimum.
-    #[arg(long, value_name = "ERROR", allow_negative_numbers = true)]
+    #[arg(long, value_name = "ERROR", value_parser = number)]
     pub(crate) refine: Option<f64>,
     /// Prove every constraint for all times; where one fails between the points, tighten it or hold it at more points
     /// and solve again, until all is proved.
@@ -190,10 +202,10 @@ pub(crate) struct Solve {
     pub(crate) between: Between,
     /// The largest violation between the points of which nothing is said, relative to the constraint's bound; 0.01
     /// without it.
-    #[arg(long, value_name = "VIOLATION", allow_negative_numbers = true)]
+    #[arg(long, value_name = "VIOLATION", value_parser = number)]
     pub(crate) between_tolerance: Option<f64>,
     /// Largest scaled residual of the optimality conditions.
-    #[arg(long, value_name = "RESIDUAL", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RESIDUAL", value_parser = number)]
     pub(crate) tolerance: Option<f64>,
     /// The typical size of an output or a variable, in its declared unit, where the automatic one is wrong: `x=100`.
     #[arg(long, value_name = "NAME=SIZE")]
@@ -243,10 +255,10 @@ pub(crate) enum Between {
 pub(crate) struct Starts {
     /// Solve from many starts (the guess, a coarse search over the plane, random routes, perturbed
     /// guesses) and find the local minima, the best first.
-    #[arg(long = "starts", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
+    #[arg(long = "starts", value_name = "N", value_parser = whole::<u32>(1..=1_000_000))]
     pub(crate) count: Option<u32>,
     /// The seed of the random starts: the same seed gives the same starts.
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "count", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "count", value_parser = whole::<u64>(0..=u64::MAX))]
     pub(crate) seed: u64,
     /// Where starts come from.
     #[arg(long = "start-kind", value_enum, default_value_t = Kind::Mixed, requires = "count")]

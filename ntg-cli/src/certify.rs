@@ -14,6 +14,7 @@ use ntg_runtime::settings::Settings;
 use serde_json::{Value, json};
 
 use crate::arguments::Format;
+use crate::printer::Printer;
 use crate::watch::Interrupt;
 use crate::{Exit, files, setup, write};
 
@@ -54,7 +55,7 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
+pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Exit, String> {
     if let Some(path) = &arguments.output {
         write::may_write(path, arguments.force)?;
     }
@@ -84,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
                 text.push_str(&of_guarantee(&found));
             }
             text.extend(tube.as_ref().map(ToString::to_string));
-            files::print_raw(&text);
+            printer.text(&text);
         }
         Format::Json => {
             let mut document = document(&summary);
@@ -97,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
             if let Some(tube) = &tube {
                 document["tube"] = of_tube(tube);
             }
-            files::print(&format!("{document:#}"));
+            printer.line(&format!("{document:#}"));
         }
     }
     let is_followed = tube.as_ref().is_none_or(Tube::is_whole);

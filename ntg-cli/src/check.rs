@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use crate::arguments::{self, Format};
 use crate::files::{self, Failure};
+use crate::printer::Printer;
 use crate::{Exit, files::BesideSpec, values};
 
 /// What became of a spec.
@@ -26,7 +27,7 @@ struct Checked {
     unread: Option<String>,
 }
 
-pub(crate) fn run(arguments: &arguments::Check) -> Exit {
+pub(crate) fn run(arguments: &arguments::Check, printer: &Printer) -> Exit {
     let specs = match files::specs(&arguments.specs) {
         Ok(specs) => specs,
         Err(message) => {
@@ -40,8 +41,8 @@ pub(crate) fn run(arguments: &arguments::Check) -> Exit {
     }
     let checked: Vec<Checked> = specs.iter().map(|spec| check(files::read(spec), &arguments.set)).collect();
     match arguments.format {
-        Format::Text => checked.iter().for_each(text),
-        Format::Json => files::print(&format!("{:#}", json::document(&checked))),
+        Format::Text => checked.iter().for_each(|checked| text(checked, printer)),
+        Format::Json => printer.line(&format!("{:#}", json::document(&checked))),
     }
     let is_good = checked.iter().all(Checked::is_good);
     if is_good { Exit::Done } else { Exit::Bad }
@@ -85,7 +86,7 @@ fn check(read: Result<(Source, BesideSpec), Failure>, set: &[String]) -> Checked
     }
 }
 
-fn text(checked: &Checked) {
+fn text(checked: &Checked, printer: &Printer) {
     if let Some(message) = &checked.unread {
         tell!("error: {message}");
         return;
@@ -94,8 +95,8 @@ fn text(checked: &Checked) {
         files::show(source, found.iter());
     }
     match &checked.problem {
-        Some(problem) => files::print(&format!("{}: `{problem}` is well formed", checked.name)),
-        None if checked.is_library => files::print(&format!("{}: a library, well formed", checked.name)),
+        Some(problem) => printer.line(&format!("{}: `{problem}` is well formed", checked.name)),
+        None if checked.is_library => printer.line(&format!("{}: a library, well formed", checked.name)),
         None => {
             let errors = |found: &[Diagnostic]| found.iter().filter(|f| f.severity == Severity::Error).count();
             let errors = checked.found.as_ref().map_or(1, |(_, found)| errors(found));

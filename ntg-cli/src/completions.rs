@@ -2,12 +2,13 @@
 
 use clap::CommandFactory;
 
+use crate::Exit;
 use crate::arguments::{self, Ntg};
-use crate::{Exit, files};
+use crate::printer::Printer;
 
-pub(crate) fn run(arguments: &arguments::Completions) -> Exit {
+pub(crate) fn run(arguments: &arguments::Completions, printer: &Printer) -> Exit {
     let mut script = vec![];
     clap_complete::generate(arguments.shell, &mut Ntg::command(), "ntg", &mut script);
-    files::print(String::from_utf8_lossy(&script).trim_end());
+    printer.line(String::from_utf8_lossy(&script).trim_end());
     Exit::Done
 }

@@ -15,6 +15,7 @@ use ntg_compiler::model::Loader;
 use ntg_interp::Interpreted;
 use ntg_runtime::settings::{Method, Settings};
 
+use crate::printer::Printer;
 use crate::{Exit, setup};
 
 /// Write a crate that builds a static and a shared library from a spec, with a header for C99 and C++.
@@ -80,7 +81,7 @@ impl<L: Loader> Loader for Recording<L> {
 }
 
 /// Writes the crate.
-pub(crate) fn run(arguments: &Embed) -> Result<Exit, String> {
+pub(crate) fn run(arguments: &Embed, printer: &Printer) -> Result<Exit, String> {
     let Language::C = arguments.lang;
     let (source, loader) = crate::files::read(&arguments.spec).map_err(|failure| {
         failure.show();
@@ -125,7 +126,7 @@ pub(crate) fn run(arguments: &Embed) -> Result<Exit, String> {
     };
     let count = written.write(&folder, arguments.force)?;
     let shown = folder.display();
-    crate::files::print(&format!(
+    printer.line(&format!(
         "{shown}: {count} files, {} parameters, {} readings, header {shown}/include/{name}.h\n  \
          cargo build --release --manifest-path {shown}/Cargo.toml     # the libraries alone\n  \
          cmake -S {shown} -B build && cmake --build build     # with the loops in {shown}/examples",

@@ -10,9 +10,10 @@ use ntg_interp::Interpreted;
 use ntg_runtime::transcribe::Transcription;
 
 use crate::arguments::{self, What};
+use crate::printer::Printer;
 use crate::{Exit, files};
 
-pub(crate) fn run(arguments: &arguments::Expand) -> Exit {
+pub(crate) fn run(arguments: &arguments::Expand, printer: &Printer) -> Exit {
     let Some(files::Spec { compiled, set, .. }) = files::compile(&arguments.spec, &arguments.set) else {
         return Exit::Bad;
     };
@@ -29,7 +30,7 @@ pub(crate) fn run(arguments: &arguments::Expand) -> Exit {
     };
     match text {
         Ok(text) => {
-            files::print(text.trim_end());
+            printer.line(text.trim_end());
             Exit::Done
         }
         Err(message) => {

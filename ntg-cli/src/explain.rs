@@ -2,12 +2,13 @@
 
 use ntg_compiler::diagnostic::Code;
 
-use crate::{Exit, arguments, files};
+use crate::printer::Printer;
+use crate::{Exit, arguments};
 
-pub(crate) fn run(arguments: &arguments::Explain) -> Exit {
+pub(crate) fn run(arguments: &arguments::Explain, printer: &Printer) -> Exit {
     let Some(wanted) = &arguments.code else {
         for code in Code::ALL {
-            files::print(&format!("{code}  {}", code.title()));
+            printer.line(&format!("{code}  {}", code.title()));
         }
         return Exit::Done;
     };
@@ -22,7 +23,7 @@ pub(crate) fn run(arguments: &arguments::Explain) -> Exit {
     };
     match Code::ALL.iter().find(is_wanted) {
         Some(code) => {
-            files::print(code.manual());
+            printer.line(code.manual());
             Exit::Done
         }
         None => {

@@ -19,7 +19,9 @@ use ntg_structure::Unit;
 use serde_json::json;
 
 use crate::arguments::Format;
+use crate::arguments::numbers::number;
 use crate::guess::{self, Origin};
+use crate::printer::Printer;
 use crate::runs::SAVED;
 use crate::{Exit, files, setup};
 
@@ -74,7 +76,7 @@ pub(crate) struct CheckSolution {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// The largest relative violation, and error of stationarity and complementarity, of a solution.
-    #[arg(long, default_value_t = 1e-6, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1e-6, value_parser = number)]
     tolerance: f64,
 }
 
@@ -164,7 +166,7 @@ impl Read {
 }
 
 /// Writes the three files.
-pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
+pub(crate) fn export(arguments: &Export, printer: &Printer) -> Result<Exit, String> {
     let Kind::Nl = arguments.format;
     let paths = ["nl", "row", "col"].map(|extension| match extension {
         "nl" => arguments.output.clone(),
@@ -185,12 +187,12 @@ pub(crate) fn export(arguments: &Export) -> Result<Exit, String> {
         crate::write::whole(path, arguments.force, text.as_bytes())?;
     }
     let [nl, row, col] = paths.each_ref().map(|path| path.display());
-    files::print(&format!("{nl}: {} variables, {} rows; names in {col} and {row}", nlp.variables(), nlp.rows()));
+    printer.line(&format!("{nl}: {} variables, {} rows; names in {col} and {row}", nlp.variables(), nlp.rows()));
     Ok(Exit::Done)
 }
 
 /// Judges a point.
-pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
+pub(crate) fn check(arguments: &CheckSolution, printer: &Printer) -> Result<Exit, String> {
     let tolerance = arguments.tolerance;
     if !(tolerance.is_finite() && tolerance > 0.0) {
         return Err(format!("--tolerance {tolerance}: a positive number"));
@@ -221,8 +223,8 @@ pub(crate) fn check(arguments: &CheckSolution) -> Result<Exit, String> {
         tolerance,
     };
     match arguments.format {
-        Format::Text => files::print(&said.text()),
-        Format::Json => files::print(&format!("{:#}", said.json())),
+        Format::Text => printer.line(&said.text()),
+        Format::Json => printer.line(&format!("{:#}", said.json())),
     }
     Ok(match (said.is_solution, &judged.optimality) {
         (true, Some(_)) => Exit::Done,
@@ -262,7 +264,7 @@ fn point(path: &Path, read: &Read, nlp: &Transcription<'_>) -> Result<Found, Str
             saved.filter(|saved| saved.len() == nlp.rows()).map(|saved| saved.iter().map(|y| sign * y).collect());
         return Ok(Found { solution: Solution { message: String::new(), x, multipliers }, origin, of_others });
     }
-    let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
+    let text = crate::reading::text(path).map_err(|error| files::unread_of(path, "sol", &error))?;
     let expressions = Expressions::new(&read.program, nlp).map_err(|error| error.to_string())?;
     let read = Solution::read(&text, &Order::of(&expressions));
     read.map(|solution| Found { solution, origin: Origin::Unknowns, of_others: 0 })

@@ -1,10 +1,10 @@
 //! Reads specs and the tables they name; shows findings.
 
 use std::cell::RefCell;
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
-use std::sync::OnceLock;
 
 use ntg_compiler::Compiled;
 use ntg_compiler::diagnostic::{Code, Diagnostic};
@@ -100,11 +100,16 @@ fn below(path: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(found)
 }
 
-/// Why a file could not be read, and which one may be meant.
+/// Why a spec could not be read, and which one may be meant.
 pub(crate) fn unread(path: &Path, error: &std::io::Error) -> String {
+    unread_of(path, "ntg", error)
+}
+
+/// The same of a file that ends so.
+pub(crate) fn unread_of(path: &Path, extension: &str, error: &std::io::Error) -> String {
     let shown = path.display();
     if path.is_dir() {
-        return match nearest(path, Path::new("")) {
+        return match nearest(path, None, extension.as_ref()) {
             Some(inside) => format!("`{shown}` is a folder; name a file in it, such as `{}`", inside.display()),
             None => format!("`{shown}` is a folder; name a file"),
         };
@@ -118,7 +123,7 @@ fn reason(path: &Path, error: &std::io::Error, from: &Path) -> String {
     match error.kind() {
         std::io::ErrorKind::InvalidData => "it is not UTF-8 text; save it in the encoding UTF-8".to_owned(),
         std::io::ErrorKind::NotFound if !folder.is_dir() => format!("there is no folder `{}`", folder.display()),
-        std::io::ErrorKind::NotFound => match nearest(folder, path) {
+        std::io::ErrorKind::NotFound => match nearest(folder, Some(path), path.extension().unwrap_or("ntg".as_ref())) {
             Some(near) => {
                 let near = near.strip_prefix(from).unwrap_or(&near);
                 format!("there is no such file; did you mean `{}`?", near.display())
@@ -129,23 +134,28 @@ fn reason(path: &Path, error: &std::io::Error, from: &Path) -> String {
     }
 }
 
-/// The file of a folder whose name is most like the wanted one and has the same extension, a spec's if none is said.
-fn nearest(folder: &Path, wanted: &Path) -> Option<PathBuf> {
-    let extension = wanted.extension().unwrap_or("ntg".as_ref());
+/// The file of a folder that has an extension and whose name is most like the wanted one, if one is wanted.
+fn nearest(folder: &Path, wanted: Option<&Path>, extension: &OsStr) -> Option<PathBuf> {
     let stem = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok);
     let files = entries.map(|entry| entry.path()).filter(|path| path.extension() == Some(extension));
-    let like = |path: &PathBuf| strsim::normalized_damerau_levenshtein(&stem(path), &stem(wanted));
-    let mut near: Vec<PathBuf> = files.filter(|path| wanted.file_name().is_none() || like(path) >= LIKE).collect();
+    let like = |path: &PathBuf| strsim::normalized_damerau_levenshtein(&stem(path), &stem(wanted.unwrap_or(path)));
+    let mut near: Vec<PathBuf> = files.filter(|path| like(path) >= LIKE).collect();
     near.sort();
     let best = near.into_iter().max_by(|a, b| like(a).total_cmp(&like(b)))?;
     Some(best.strip_prefix(".").map(Path::to_path_buf).unwrap_or(best))
 }
 
+/// The text of a saved solution. Editors may put a byte order mark before it, which is no JSON.
+pub(crate) fn json(path: &Path) -> Result<String, String> {
+    let text = reading::text(path).map_err(|error| unread_of(path, "json", &error))?;
+    Ok(text.trim_start_matches('\u{feff}').to_owned())
+}
+
 /// Reads a spec from a file, or from standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<(Source, BesideSpec), Failure> {
     let name = if is_standard_input(path) { "<stdin>".to_owned() } else { path.display().to_string() };
-    if path.extension().is_some_and(|extension| extension == "csv") {
+    if path.extension().is_some_and(|extension| extension == "csv") && path.is_file() {
         let message =
             format!("`{name}` is a table of numbers; name a spec, which may read it: `from \"...\" column 1`");
         return Err(Failure::Unread { name, message });
@@ -195,35 +205,6 @@ pub(crate) fn compile(path: &Path, set: &[String]) -> Option<Spec> {
             None
         }
     }
-}
-
-/// The first thing that went wrong with standard output.
-static UNPRINTED: OnceLock<String> = OnceLock::new();
-
-/// Prints a line to standard output. A reader that has gone away, as `head` does, is no error; anything else is one, which
-/// [`printed`] tells at the end.
-pub(crate) fn print(text: &str) {
-    noted(writeln!(std::io::stdout(), "{text}"));
-}
-
-/// Prints text as it is.
-pub(crate) fn print_raw(text: &str) {
-    noted(std::io::stdout().write_all(text.as_bytes()));
-}
-
-/// Keeps what went wrong with standard output.
-pub(crate) fn noted(written: std::io::Result<()>) {
-    if let Err(error) = written
-        && error.kind() != std::io::ErrorKind::BrokenPipe
-    {
-        UNPRINTED.get_or_init(|| format!("cannot write to standard output: {error}"));
-    }
-}
-
-/// Whether all that was printed has gone where it was to go.
-pub(crate) fn printed() -> Result<(), String> {
-    noted(std::io::stdout().flush());
-    UNPRINTED.get().map_or(Ok(()), |message| Err(message.clone()))
 }
 
 /// Shows findings on standard error; in colour where that is a terminal and the user's environment wants it.

@@ -5,9 +5,10 @@ use std::path::Path;
 use ntg_compiler::syntax;
 use similar::TextDiff;
 
+use crate::printer::Printer;
 use crate::{Exit, arguments, files, write};
 
-pub(crate) fn run(arguments: &arguments::Fmt) -> Exit {
+pub(crate) fn run(arguments: &arguments::Fmt, printer: &Printer) -> Exit {
     let mut exit = Exit::Done;
     let specs = match files::specs(&arguments.specs) {
         Ok(specs) => specs,
@@ -17,7 +18,7 @@ pub(crate) fn run(arguments: &arguments::Fmt) -> Exit {
         }
     };
     for spec in specs {
-        match format(&spec, arguments.check) {
+        match format(&spec, arguments.check, printer) {
             Ok(true) => {}
             Ok(false) if exit == Exit::Done => exit = Exit::NotFormatted,
             Ok(false) => {}
@@ -28,21 +29,21 @@ pub(crate) fn run(arguments: &arguments::Fmt) -> Exit {
 }
 
 /// Gives whether the spec is, or now is, in the canonical layout. What was wrong has been said.
-fn format(path: &Path, only_check: bool) -> Result<bool, ()> {
+fn format(path: &Path, only_check: bool, printer: &Printer) -> Result<bool, ()> {
     let (source, _) = files::read(path).map_err(|failure| failure.show())?;
     let formatted = syntax::format(&source).map_err(|found| files::show(&source, found.iter()))?;
     let is_same = formatted == source.text;
     if only_check {
         if !is_same {
-            files::print(difference(&source.name, &source.text, &formatted).trim_end());
+            printer.line(difference(&source.name, &source.text, &formatted).trim_end());
         }
         return Ok(is_same);
     }
     if files::is_standard_input(path) {
-        files::print_raw(&formatted);
+        printer.text(&formatted);
     } else if !is_same {
         write::whole(path, true, formatted.as_bytes()).map_err(|message| tell!("error: {message}"))?;
-        files::print(&format!("{}: formatted", path.display()));
+        printer.line(&format!("{}: formatted", path.display()));
     }
     Ok(true)
 }

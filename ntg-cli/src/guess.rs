@@ -50,8 +50,7 @@ fn has_unknowns(saved: &Value, structure: &Structure) -> bool {
 
 /// A saved solution of a version that can be read, with an entry for each element of its arrays.
 fn saved(path: &Path) -> Result<Value, String> {
-    let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
-    let mut saved: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+    let mut saved: Value = serde_json::from_str(&files::json(path)?)
         .map_err(|e| format!("`{}` is not JSON: {e}; {SAVED}", path.display()))?;
     if saved["format"] != FORMAT {
         return Err(format!("`{}` is no saved solution (its \"format\" is not \"{FORMAT}\"); {SAVED}", path.display()));

@@ -23,6 +23,7 @@ mod merge;
 mod new;
 mod options;
 mod plot;
+mod printer;
 mod reading;
 mod report;
 mod route;
@@ -40,9 +41,8 @@ mod write;
 
 use std::ffi::OsString;
 
-use clap::Parser;
-
 use arguments::{Command, Ntg};
+use printer::Printer;
 
 /// How a verb ended, as an exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,42 +72,43 @@ impl Exit {
 
 /// Runs the command with the words of a command line, its own name first; gives its exit status.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let parsed = match Ntg::try_parse_from(words) {
+    let printer = Printer::default();
+    let parsed = match Ntg::of(words) {
         Ok(parsed) => parsed,
         Err(said) => {
             // Help and version are no errors. A reader that has gone away is none either.
             let shown = said.print();
             if !said.use_stderr() {
-                files::noted(shown);
+                printer.noted(shown);
             }
-            return ended(u8::try_from(said.exit_code()).unwrap_or(u8::MAX));
+            return ended(printer, u8::try_from(said.exit_code()).unwrap_or(u8::MAX));
         }
     };
     let exit = match parsed.command {
-        Command::Certify(arguments) => said(certify::run(&arguments)),
-        Command::Check(arguments) => check::run(&arguments),
-        Command::Completions(arguments) => completions::run(&arguments),
-        Command::Explain(arguments) => explain::run(&arguments),
-        Command::Fmt(arguments) => fmt::run(&arguments),
+        Command::Certify(arguments) => said(certify::run(&arguments, &printer)),
+        Command::Check(arguments) => check::run(&arguments, &printer),
+        Command::Completions(arguments) => completions::run(&arguments, &printer),
+        Command::Explain(arguments) => explain::run(&arguments, &printer),
+        Command::Fmt(arguments) => fmt::run(&arguments, &printer),
         Command::Lsp => lsp::run(),
-        Command::New(arguments) => new::run(&arguments),
-        Command::Expand(arguments) => expand::run(&arguments),
-        Command::Embed(arguments) => said(embed::run(&arguments)),
-        Command::Export(arguments) => said(export::export(&arguments)),
-        Command::CheckSolution(arguments) => said(export::check(&arguments)),
-        Command::Solve(arguments) => solve::run(&arguments),
+        Command::New(arguments) => new::run(&arguments, &printer),
+        Command::Expand(arguments) => expand::run(&arguments, &printer),
+        Command::Embed(arguments) => said(embed::run(&arguments, &printer)),
+        Command::Export(arguments) => said(export::export(&arguments, &printer)),
+        Command::CheckSolution(arguments) => said(export::check(&arguments, &printer)),
+        Command::Solve(arguments) => solve::run(&arguments, &printer),
         Command::Plot(arguments) => said(plot::run(&arguments)),
         Command::Report(arguments) => said(report::run(&arguments)),
         Command::Sweep(arguments) => said(sweep::run(&arguments)),
         Command::Merge(arguments) => said(merge::run(&arguments)),
-        Command::Summary(arguments) => said(summary::run(&arguments)),
+        Command::Summary(arguments) => said(summary::run(&arguments, &printer)),
     };
-    ended(u8::try_from(exit.status()).unwrap_or(u8::MAX))
+    ended(printer, u8::try_from(exit.status()).unwrap_or(u8::MAX))
 }
 
 /// The exit status, which is that of an error where not all that was printed could be written.
-fn ended(status: u8) -> u8 {
-    match files::printed() {
+fn ended(printer: Printer, status: u8) -> u8 {
+    match printer.ended() {
         Ok(()) => status,
         Err(message) => {
             tell!("error: {message}");

@@ -6,18 +6,19 @@ use ntg_compiler::diagnostic::Diagnostic;
 use ntg_compiler::source::Source;
 use ntg_compiler::syntax;
 
-use crate::{Exit, arguments, files, write};
+use crate::printer::Printer;
+use crate::{Exit, arguments, write};
 
 /// The spec, with `NAME` and `FILE` where the problem's own stand.
 const START: &str = include_str!("new/start.ntg");
 /// The same in space: a powered descent.
 const THREE_DIMENSIONAL: &str = include_str!("new/three_dimensional.ntg");
 
-pub(crate) fn run(arguments: &arguments::New) -> Exit {
+pub(crate) fn run(arguments: &arguments::New, printer: &Printer) -> Exit {
     let spec = if arguments.three_dimensional { THREE_DIMENSIONAL } else { START };
     match start(&arguments.name, spec, arguments.force) {
         Ok(path) => {
-            files::print(&next(&path));
+            printer.line(&next(&path));
             Exit::Done
         }
         Err(message) => {

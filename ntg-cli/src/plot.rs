@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use ntg_report::figure::{self, Panel};
 use ntg_report::{Run, draw, html, png};
+use ntg_runtime::digits::decimals;
 
 use crate::runs::{self, Inputs};
 use crate::{Exit, write};
@@ -47,6 +48,9 @@ enum Kind {
 
 /// Pixels of a PNG for one unit of the SVG, whose text is meant for 1600 units across.
 const SCALE: f32 = 1.0;
+
+/// Digits of an objective behind the point.
+pub(crate) const DECIMALS: usize = 6;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
     let kind = match arguments.output.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
@@ -106,7 +110,7 @@ fn panels(arguments: &Arguments, runs: &figure::Runs<'_>) -> Result<Vec<Panel>, 
 fn sentence(runs: &figure::Runs<'_>) -> String {
     let one = |run: &Run| {
         let unit = if run.objective_unit.is_empty() { String::new() } else { format!(" {}", run.objective_unit) };
-        format!("{}, objective {:.6}{unit}", html::ending(run), run.objective)
+        format!("{}, objective {}{unit}", html::ending(run), decimals(run.objective, DECIMALS))
     };
     if let [(_, best), others @ ..] = runs
         && let Some(found) = best.starts.as_ref().filter(|_| others.iter().all(|(_, run)| run.spec.is_none()))

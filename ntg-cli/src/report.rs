@@ -21,7 +21,7 @@ use crate::{Exit, write};
 pub(crate) struct Arguments {
     #[command(flatten)]
     inputs: Inputs,
-    /// Where to write.
+    /// Where to write; `.html`.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Draw a track of two quantities; without it, of positions where there are some.
@@ -36,7 +36,14 @@ pub(crate) struct Arguments {
     force: bool,
 }
 
+/// Endings of what a page is not, and what one may hope that it is.
+const OTHERS: [&str; 3] = ["pdf", "png", "svg"];
+
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
+    let kind = arguments.output.extension().map(|kind| kind.to_ascii_lowercase());
+    if kind.is_some_and(|kind| OTHERS.iter().any(|other| kind == *other)) {
+        return Err(format!("`{}`: reports are .html files, which a browser prints", arguments.output.display()));
+    }
     write::may_write(&arguments.output, arguments.force)?;
     let loaded = arguments.inputs.load(&arguments.output)?;
     let runs: Vec<(String, &Run)> = loaded.iter().map(|(name, run)| (name.clone(), run)).collect();

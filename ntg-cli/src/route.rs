@@ -55,7 +55,7 @@ fn unit(structure: &Structure, name: &str) -> Result<Unit, String> {
 fn number(cell: &str, shared: &str, unit: &Unit) -> Result<f64, String> {
     let text = if cell.contains('[') { cell.to_owned() } else { format!("{cell} {shared}") };
     match ntg_interp::quantity(&text, unit)?[..] {
-        [value] => Ok(value / unit.factor),
+        [value] => Ok(unit.typed(value)),
         _ => Err(format!("`{cell}` is not one number; {FORM}")),
     }
 }

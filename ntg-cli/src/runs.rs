@@ -7,11 +7,13 @@ use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_report::Run;
 use ntg_report::run::Recording;
+use ntg_runtime::digits::decimals;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::multistart::MultiReport;
 use ntg_runtime::report::Report;
 use ntg_runtime::settings::{Progress, Settings};
 
+use crate::plot::DECIMALS;
 use crate::solve::explained;
 use crate::watch::{Interrupt, Watch};
 use crate::{arguments, files, options, setup, starts, write};
@@ -58,9 +60,7 @@ impl Inputs {
                 return Err(format!("`{}` is solved already; {option} goes with a spec", path.display()));
             }
         }
-        let text = crate::reading::text(path).map_err(|error| files::unread(path, &error))?;
-        Run::read(text.trim_start_matches('\u{feff}'))
-            .map_err(|message| format!("`{}` {message}; {SAVED}", path.display()))
+        Run::read(&files::json(path)?).map_err(|message| format!("`{}` {message}; {SAVED}", path.display()))
     }
 
     fn solved(&self, path: &Path, output: &Path, interrupt: &Interrupt) -> Result<Vec<(String, Run)>, String> {
@@ -120,7 +120,10 @@ impl Spec<'_> {
             Run { spec: None, ..self.record(&minimum.report, (None, interrupt), &[]) }
         });
         let name = |index: usize, run: &Run| match found.minima.get(index) {
-            Some(minimum) => format!("{:.6}, {} of {} starts", run.objective, minimum.count, found.tried()),
+            Some(minimum) => {
+                let objective = decimals(run.objective, DECIMALS);
+                format!("{objective}, {} of {} starts", minimum.count, found.tried())
+            }
             None => "the nearest point".to_owned(),
         };
         if found.minima.len() > SHOWN {

@@ -27,11 +27,12 @@ use ntg_runtime::settings::{Between, InertiaCorrection, Method, Settings, Violat
 use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
+use crate::printer::Printer;
 use crate::watch::{Interrupt, Watch};
 use crate::{Exit, certify, files, guess, options, route, setup, terminal, write};
 
-pub(crate) fn run(arguments: &arguments::Solve) -> Exit {
-    crate::said(solve(arguments))
+pub(crate) fn run(arguments: &arguments::Solve, printer: &Printer) -> Exit {
+    crate::said(solve(arguments, printer))
 }
 
 /// What is printed beside the report.
@@ -60,7 +61,7 @@ enum Found {
 }
 
 /// The error is what to say; empty where all has been said.
-fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
+fn solve(arguments: &arguments::Solve, printer: &Printer) -> Result<Exit, String> {
     let began = Instant::now();
     let mut settings = settings(arguments)?;
     if let Some(path) = &arguments.save {
@@ -145,8 +146,8 @@ fn solve(arguments: &arguments::Solve) -> Result<Exit, String> {
         width,
     };
     match arguments.format {
-        Format::Text => files::print(&text::document(&solved)),
-        Format::Json => files::print(&format!("{:#}", json::document(&solved))),
+        Format::Text => printer.line(&text::document(&solved)),
+        Format::Json => printer.line(&format!("{:#}", json::document(&solved))),
     }
     if let Some(path) = &arguments.save {
         let iterations = &iterations[..];

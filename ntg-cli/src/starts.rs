@@ -6,6 +6,7 @@ use std::sync::Arc;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use ntg_interp::Interpreted;
 use ntg_runtime::Error;
+use ntg_runtime::digits::decimals;
 use ntg_runtime::guess::Guess;
 use ntg_runtime::multistart::{MultiReport, StartKind, StartProgress, Starts, multistart_from};
 use ntg_runtime::settings::{Control, Settings};
@@ -71,6 +72,6 @@ fn line(count: usize) -> ProgressBar {
 /// "3 of 50 starts, 2 solved, best 128.252905291".
 fn words(progress: &StartProgress) -> String {
     let StartProgress { done, count, solved, best, .. } = *progress;
-    let best = if best.is_nan() { String::new() } else { format!(", best {best:.9}") };
+    let best = if best.is_nan() { String::new() } else { format!(", best {}", decimals(best, 9)) };
     format!("{done} of {count} starts, {solved} solved{best}")
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use ntg_sweep::Summary;
 
+use crate::printer::Printer;
 use crate::{Exit, files, reading};
 
 /// Summarise a table of `ntg sweep`: share solved, limits that bind, quantiles of every number.
@@ -17,12 +18,12 @@ pub(crate) struct Arguments {
     table: PathBuf,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<Exit, String> {
+pub(crate) fn run(arguments: &Arguments, printer: &Printer) -> Result<Exit, String> {
     if let Err(error) = reading::checked(&arguments.table) {
-        return Err(files::unread(&arguments.table, &error));
+        return Err(files::unread_of(&arguments.table, "csv", &error));
     }
     let table = ntg_sweep::read(&arguments.table)?;
     let summary = Summary::of(&table).map_err(|message| format!("`{}`: {message}", arguments.table.display()))?;
-    files::print(&summary.to_string());
+    printer.line(&summary.to_string());
     Ok(Exit::Done)
 }

@@ -12,6 +12,7 @@ use ntg_runtime::problem::Problem;
 use ntg_runtime::settings::Settings;
 use ntg_sweep::{Ended, Format, Plan, Results, Rows, Shard, Study, Wanted, Watcher, blocks, journal, usual_block};
 
+use crate::arguments::numbers::{number, whole};
 use crate::watch::Interrupt;
 use crate::{Exit, files, write};
 
@@ -59,16 +60,16 @@ pub(crate) struct Arguments {
     shard: Option<Shard>,
     /// Rows that start from one solution, that of a neighbour; 1 starts every row from the guess of
     /// the spec. By default 4 to 32, more in larger studies.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<u32>(1..=1_000_000))]
     block: Option<u32>,
     /// Rows at a time; 0 for one on each core.
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = whole::<usize>(0..=u64::MAX))]
     jobs: usize,
     /// Give up a row after that many seconds.
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = number)]
     time_limit: Option<f64>,
     /// Give up a row after that many iterations.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<usize>(1..=u64::MAX))]
     max_iterations: Option<usize>,
     /// Replace an existing table.
     #[arg(long)]

@@ -1,7 +1,11 @@
 //! No command replaces a file that it reads, whatever the name that is given for it, and with `--force` neither.
 
+mod shell;
+
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
+
+use shell::{ntg, said};
 
 const SPEC: &str = "use \"own.csv\" as own;
 problem P {
@@ -14,11 +18,6 @@ problem P {
     final { x == p; }
 }
 ";
-
-fn ntg(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ntg"));
-    command.current_dir(folder).args(arguments).output().expect("the command runs")
-}
 
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -33,13 +32,6 @@ fn folder() -> tempfile::TempDir {
         std::fs::write(folder.path().join(name), text).expect("a file can be written");
     }
     folder
-}
-
-#[track_caller]
-fn said(output: &Output, status: i32) -> String {
-    let err = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(status), "{err}");
-    err
 }
 
 fn texts(folder: &Path) -> Vec<(std::ffi::OsString, Vec<u8>)> {

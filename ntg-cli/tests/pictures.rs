@@ -443,3 +443,22 @@ fn what_was_measured_is_drawn_beside_the_curves_and_as_residuals() {
     done(folder, &["plot", "line.json", "--show", "p", "-o", "line.svg"]);
     assert!(read(folder, "line.svg").contains("tape: p[1]"));
 }
+
+#[test]
+fn curves_of_constraints_go_on_in_time() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/low_observable.ntg");
+    let spec = spec.to_str().expect("UTF-8");
+    // Its limit is looked at between the points too.
+    let output = ntg(folder.path(), &["solve", spec, "--save", "run.json"]);
+    assert!(output.status.code() == Some(3) || output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let run: Value = serde_json::from_str(&read(folder.path(), "run.json")).expect("JSON");
+    let members = run["constraints"].as_array().expect("constraints").iter().flat_map(|one| one["members"].as_array());
+    let mut count = 0;
+    for member in members.flatten() {
+        let times: Vec<f64> = member["t"].as_array().into_iter().flatten().map(number).collect();
+        assert!(times.len() < 2 || times.is_sorted(), "{}: {times:?}", member["name"]);
+        count += usize::from(times.len() > 1);
+    }
+    assert!(count >= 3, "only {count} constraints along the way");
+}

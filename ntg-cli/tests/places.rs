@@ -2,11 +2,13 @@
 //! where they cannot go there.
 #![cfg(unix)]
 
+mod shell;
+
 use std::fs::{self, OpenOptions, Permissions};
 use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
+use shell::{ntg, said};
 use tempfile::TempDir;
 
 const SPEC: &str = "problem Cart {
@@ -32,23 +34,11 @@ const WRITERS: &[(&[&str], &str)] = &[
     (&["new"], "ntg"),
 ];
 
-fn ntg(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_ntg"));
-    command.current_dir(folder).args(arguments).output().expect("the command runs")
-}
-
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     fs::write(folder.path().join("cart.ntg"), SPEC).expect("a file can be written");
     said(&ntg(folder.path(), &["solve", "cart.ntg", "--save", "run.json"]), 0);
     folder
-}
-
-#[track_caller]
-fn said(output: &Output, status: i32) -> String {
-    let err = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(status), "{err}");
-    err
 }
 
 fn forced<'a>(command: &[&'a str], name: &'a str) -> Vec<&'a str> {

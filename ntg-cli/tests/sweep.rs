@@ -363,3 +363,26 @@ fn what_is_wanted_of_arrays_and_agents_is_a_column_for_each_member() {
         assert!(code == Some(2) && said.contains(words), "{code:?}: {said}");
     }
 }
+
+#[test]
+fn values_in_another_unit_and_between_the_ends_of_a_range_are_written_as_one_would_type_them() {
+    const SPEC: &str = "\
+problem Cart {
+    param v = 18 [km/h];
+    duration T = 1 [s];
+    output z [m]: spline(order = 4, intervals = 1);
+    minimize integral(der(z, 2)^2);
+    initial { z == 0 [m]; }
+    final { z == v * 1 [s]; }
+}
+";
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("cart.ntg"), SPEC).expect("a file can be written");
+    let written = |range: &str| {
+        let output = ntg(folder.path(), &["cart.ntg", "--set", range, "-o", "study.csv", "--force"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        column(&table(folder.path().join("study.csv")), "v")
+    };
+    assert_eq!(written("v=1:3:2 [m/s]"), ["3.6", "10.8"]);
+    assert_eq!(written("v=0.1:0.7:7"), ["0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7"]);
+}

@@ -8,9 +8,8 @@ use std::cell::OnceCell;
 use std::path::PathBuf;
 
 use ntg_compiler::diagnostic::{Diagnostic, Severity};
-use ntg_compiler::model::Loader;
-use ntg_compiler::model::loading::unfit;
 use ntg_compiler::model::problem::Problem;
+use ntg_compiler::model::{Loader, loading};
 use ntg_compiler::source::{Source, Span};
 use ntg_compiler::syntax::ast::{Library, Spec};
 use ntg_compiler::syntax::{self, FileKind};
@@ -30,12 +29,9 @@ impl Loader for Beside {
     fn load(&self, path: &str) -> Result<String, String> {
         let folder = self.0.as_ref().ok_or("this text is no file: save it first")?;
         let path = folder.join(path);
+        let about = std::fs::metadata(&path).map(|about| (about.is_file(), about.len()));
         let failed = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
-        let about = std::fs::metadata(&path).map_err(failed)?;
-        match unfit(about.is_file(), about.len()) {
-            Some(why) => Err(why),
-            None => std::fs::read_to_string(&path).map_err(failed),
-        }
+        loading::text(about, || std::fs::read_to_string(&path), failed)
     }
 }
 

@@ -7,8 +7,7 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use ntg_compiler::model::Loader;
-use ntg_compiler::model::loading::unfit;
+use ntg_compiler::model::{Loader, loading};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -60,12 +59,9 @@ impl Files {
 impl Loader for Files {
     fn load(&self, path: &str) -> Result<String, String> {
         let place = absolute(&self.root.join(path));
+        let about = std::fs::metadata(&place).map(|about| (about.is_file(), about.len()));
         let failed = |error: std::io::Error| format!("`{}`: {error}", place.display());
-        let about = std::fs::metadata(&place).map_err(failed)?;
-        if let Some(why) = unfit(about.is_file(), about.len()) {
-            return Err(why);
-        }
-        let text = std::fs::read_to_string(&place).map_err(failed)?;
+        let text = loading::text(about, || std::fs::read_to_string(&place), failed)?;
         let mut read = self.read.borrow_mut();
         if read.iter().all(|(name, _)| name != path) {
             read.push((path.to_owned(), place));

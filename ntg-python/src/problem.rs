@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ntg_compiler::diagnostic::Diagnostic;
-use ntg_compiler::model::loading::unfit;
-use ntg_compiler::model::{self, Loader};
+use ntg_compiler::model::{self, Loader, loading};
 use ntg_compiler::source::Source;
 use ntg_interp::Interpreted;
 use ntg_runtime::guess::Guess;
@@ -59,12 +58,9 @@ impl Loader for Tables {
             return Err(format!("`{path}`: a spec given as text reads no files; give `folder` or `tables`"));
         };
         let place = folder.join(path);
+        let about = std::fs::metadata(&place).map(|about| (about.is_file(), about.len()));
         let failed = |error: std::io::Error| format!("cannot read `{}`: {error}", place.display());
-        let about = std::fs::metadata(&place).map_err(failed)?;
-        if let Some(why) = unfit(about.is_file(), about.len()) {
-            return Err(why);
-        }
-        let text = std::fs::read_to_string(&place).map_err(failed)?;
+        let text = loading::text(about, || std::fs::read_to_string(&place), failed)?;
         found.insert(path.to_owned(), text.clone());
         Ok(text)
     }
@@ -278,7 +274,7 @@ impl Compiled {
     fn parameters(&self) -> Vec<ParameterData> {
         let parameters = self.problem.structure().parameters;
         let plain = parameters.into_iter().map(|p| {
-            let (values, shape) = (p.value.iter().map(|value| value / p.unit.factor).collect(), p.shape());
+            let (values, shape) = (p.value.iter().map(|value| p.unit.typed(*value)).collect(), p.shape());
             (p.name, p.doc, p.unit.symbol, values, shape)
         });
         plain.collect()
@@ -342,7 +338,7 @@ impl Compiled {
         let declared = structure.parameters.iter().find(|parameter| parameter.name == base);
         let unit = declared.map(|parameter| parameter.unit.clone()).unwrap_or_default();
         match ntg_interp::quantity(text, &unit).map_err(invalid)?[..] {
-            [value] => Ok(value / unit.factor),
+            [value] => Ok(unit.typed(value)),
             _ => Err(invalid(format!("`{text}` is not one number"))),
         }
     }

@@ -4,13 +4,17 @@
 //! lie on whole pixels wobbles. Colours are Okabe and Ito's, which colour-blind eyes can tell apart.
 
 mod clip;
+mod fit;
+mod legend;
 
 use std::ops::Range;
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
-use plotters::element::DashedPathElement;
 use plotters::prelude::*;
+
+use fit::{fitted, fitted_bold};
+use legend::Legend;
 
 use crate::figure::{Kind, Limit, Line, Panel, Shape, least_span};
 
@@ -24,13 +28,13 @@ type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
 /// How many units of the drawing a pixel is.
 const PIXEL: u32 = 10;
 const WIDTH: u32 = 1600 * PIXEL;
+/// What is left free beside words at the left, and at least at the right.
+const MARGIN: u32 = 400;
 /// The strip of title and sentence.
 const HEAD: u32 = 130 * PIXEL;
 /// Heights of a panel, and of one that is a map.
 const HEIGHT: u32 = 540 * PIXEL;
 const MAP_HEIGHT: u32 = 1100 * PIXEL;
-/// Height of a row of the legend.
-const ROW: i32 = 400;
 /// Digits that numbers have at most behind the first one.
 const MOST_DIGITS: f64 = 15.0;
 /// The strip of numbers and words beside an axis that goes up, where numbers are short, and what each sign takes of it.
@@ -84,15 +88,20 @@ fn rows(panels: &[Panel]) -> Vec<Vec<&Panel>> {
     rows
 }
 
+/// How high a row is: a legend of more than one line is no smaller plot.
 fn row_height(row: &[&Panel]) -> u32 {
-    if row.iter().any(|panel| panel.equal) { MAP_HEIGHT } else { HEIGHT }
+    let height = if row.iter().any(|panel| panel.equal) { MAP_HEIGHT } else { HEIGHT };
+    let width = WIDTH / u32::try_from(row.len()).unwrap_or(1);
+    height + row.iter().map(|panel| Legend::of(panel, width).further()).max().unwrap_or_default()
 }
 
 fn draw(text: &mut String, height: u32, (title, sentence): (&str, &str), rows: &[Vec<&Panel>]) -> Drawn {
     let root = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
     root.fill(&WHITE)?;
-    root.draw(&Text::new(title.to_owned(), (400, 280), font(460).style(FontStyle::Bold).color(&INK)))?;
-    root.draw(&Text::new(sentence.to_owned(), (400, 840), font(280).color(&GREY)))?;
+    let room = WIDTH - 2 * MARGIN;
+    let at = |y: i32| (MARGIN as i32, y);
+    root.draw(&Text::new(fitted_bold(title, 460, room), at(280), font(460).style(FontStyle::Bold).color(&INK)))?;
+    root.draw(&Text::new(fitted(sentence, 280, room), at(840), font(280).color(&GREY)))?;
     let mut rest = root.split_vertically(HEAD).1;
     for row in rows {
         let (area, below) = rest.split_vertically(row_height(row));
@@ -106,13 +115,16 @@ fn draw(text: &mut String, height: u32, (title, sentence): (&str, &str), rows: &
 }
 
 fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
-    area.draw(&Text::new(panel.title.clone(), (400, 60), font(320).style(FontStyle::Bold).color(&INK)))?;
+    let title = fitted_bold(&panel.title, 320, area.dim_in_pixel().0.saturating_sub(2 * MARGIN));
+    area.draw(&Text::new(title, (MARGIN as i32, 60), font(320).style(FontStyle::Bold).color(&INK)))?;
     let below = area.split_vertically(480).1;
-    let plot = if panel.lines.len() > 1 { legend(&below, &panel.lines)? } else { below };
+    let legend = Legend::of(panel, area.dim_in_pixel().0);
+    legend.draw(&below, &panel.lines)?;
+    let plot = below.split_vertically(legend.height()).1;
     let (mut xs, mut ys) = ranges(panel);
     let beside = beside(&ys);
+    let (width, height) = plot.dim_in_pixel();
     if panel.equal {
-        let (width, height) = plot.dim_in_pixel();
         // What the labels and margins below take.
         let aspect = f64::from(width.saturating_sub(600 + beside)) / f64::from(height.saturating_sub(1100));
         equalise(&mut xs, &mut ys, aspect);
@@ -132,10 +144,10 @@ fn panel(area: &Area<'_>, panel: &Panel) -> Drawn {
         .axis_style(GREY.stroke_width(PIXEL))
         .label_style(font(240).color(&INK))
         .axis_desc_style(font(260).color(&INK))
-        .x_labels(along(&xs, plot.dim_in_pixel().0.saturating_sub(600 + beside)))
+        .x_labels(along(&xs, width.saturating_sub(600 + beside)))
         .y_labels(8)
-        .x_desc(panel.x.as_str())
-        .y_desc(panel.y.as_str())
+        .x_desc(fitted(&panel.x, 260, width.saturating_sub(600 + beside)))
+        .y_desc(fitted(&panel.y, 260, height.saturating_sub(1100)))
         .x_label_formatter(&|x| number(*x, xs.end - xs.start))
         .y_label_formatter(&|y| number(*y, ys.end - ys.start))
         .draw()?;
@@ -166,8 +178,7 @@ fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>)
         }
         let (from, to) = (over.0.max(xs.start), over.1.min(xs.end));
         chart.draw_series(DashedLineSeries::new([(from, *at), (to, *at)], 50, 70, INK.stroke_width(30)))?;
-        let label = Text::new(name.clone(), (100, -260), font(220).color(&GREY));
-        chart.draw_series([EmptyElement::at((from, *at)) + label])?;
+        limit_name(chart, (from, *at), name)?;
     }
     for (i, (x, name)) in panel.marks.iter().filter(|mark| (xs.start..=xs.end).contains(&mark.0)).enumerate() {
         chart.draw_series(DashedLineSeries::new([(*x, ys.start), (*x, ys.end)], 100, 80, GREY.stroke_width(20)))?;
@@ -175,12 +186,24 @@ fn marks(chart: &mut Chart<'_>, panel: &Panel, xs: &Range<f64>, ys: &Range<f64>)
         let height = 40 + 240 * i32::try_from(i % 4)?;
         // Behind its mark, or before it where the panel ends too soon.
         let style = font(220).color(&GREY);
-        let (width, right) = (i32::try_from(style.font.box_size(name)?.0)?, chart.plotting_area().get_x_range().end);
+        let inside = chart.plotting_area().get_x_axis_pixel_range();
+        let name = fitted(name, 220, u32::try_from(inside.end - inside.start)? / 2);
+        let (width, right) = (i32::try_from(style.font.box_size(&name)?.0)?, chart.plotting_area().get_x_range().end);
         let room = chart.backend_coord(&(right, ys.end)).0 - chart.backend_coord(&(*x, ys.end)).0;
         let left = if width + 60 <= room { 60 } else { -60 - width };
-        let label = Text::new(name.clone(), (left, height), style);
+        let label = Text::new(name, (left, height), style);
         chart.draw_series([EmptyElement::at((*x, ys.end)) + label])?;
     }
+    Ok(())
+}
+
+/// The name of a limit above its first point, or as far to the left of it as the frame needs.
+fn limit_name(chart: &mut Chart<'_>, at: (f64, f64), name: &str) -> Drawn {
+    let inside = chart.plotting_area().get_x_axis_pixel_range();
+    let name = fitted(name, 220, u32::try_from(inside.end - inside.start)?.saturating_sub(MARGIN));
+    let width = i32::try_from(fit::width(&name, 220))?;
+    let left = 100.min(inside.end - width - chart.backend_coord(&at).0);
+    chart.draw_series([EmptyElement::at(at) + Text::new(name, (left, -260), font(220).color(&GREY))])?;
     Ok(())
 }
 
@@ -194,8 +217,7 @@ fn limit_curve(
         let first = part.first().copied().filter(|_| number == 0);
         chart.draw_series(DashedLineSeries::new(part, 50, 70, INK.stroke_width(30)))?;
         if let Some(at) = first {
-            let label = Text::new(name.to_owned(), (100, -260), font(220).color(&GREY));
-            chart.draw_series([EmptyElement::at(at) + label])?;
+            limit_name(chart, at, name)?;
         }
     }
     Ok(())
@@ -245,12 +267,14 @@ fn draw_shape(chart: &mut Chart<'_>, shape: &Shape, (xs, ys): (&Range<f64>, &Ran
         // Areas of several lines may have one middle.
         let offset = (offset.0, offset.1 - 260 * i32::try_from(shape.of.unwrap_or(0))?);
         let style = font(200).color(&colour);
-        let size = style.font.box_size(&shape.name)?;
+        let inside = chart.plotting_area().get_x_axis_pixel_range();
+        let name = fitted(&shape.name, 200, u32::try_from(inside.end - inside.start)?);
+        let size = style.font.box_size(&name)?;
         let size = (i32::try_from(size.0)?, i32::try_from(size.1)?);
         let corner = |x: f64, y: f64| chart.backend_coord(&(x, y));
         let (least, most) = (corner(xs.start, ys.end), corner(xs.end, ys.start));
         let offset = within(corner(at.0, at.1), offset, size, (least, most));
-        chart.draw_series([EmptyElement::at(at) + Text::new(shape.name.clone(), offset, style)])?;
+        chart.draw_series([EmptyElement::at(at) + Text::new(name, offset, style)])?;
     }
     Ok(())
 }
@@ -307,37 +331,6 @@ fn dashes(index: usize, run: usize) -> Drawn<Option<(u32, u32)>> {
         (0, again) => Some((140 + 120 * (again - 2), 60)),
         (run, again) => Some((140 / (1 + again), 40 + 40 * u32::try_from(run)?)),
     })
-}
-
-/// Draws the legend at the top; gives the area beneath it.
-fn legend<'a>(area: &Area<'a>, lines: &[Line]) -> Drawn<Area<'a>> {
-    /// Rows of a legend before the rest is left out: who has more lines knows them by their shape.
-    const MOST: i32 = 3;
-    let right = i32::try_from(area.dim_in_pixel().0)?;
-    let (mut x, mut y) = (400, 80);
-    for (index, line) in lines.iter().enumerate() {
-        // The width of a letter is not known in SVG; 13 pixels are ample at this size.
-        let width = 1000 + 130 * i32::try_from(line.name.chars().count())?;
-        if x > 400 && x + width > right {
-            (x, y) = (400, y + ROW);
-        }
-        if y > MOST * ROW {
-            area.draw(&Text::new(format!("and {} more", lines.len() - index), (x, y - 40), font(240).color(&GREY)))?;
-            break;
-        }
-        let ends = [(x, y + 140), (x + 560, y + 140)];
-        let like = line.like.unwrap_or(index);
-        let colour = COLOURS[like % COLOURS.len()];
-        let style = colour.stroke_width(40);
-        match dashes(like, line.run)? {
-            _ if !line.sigmas.is_empty() => area.draw(&Circle::new((x + 280, y + 140), 50, colour.filled()))?,
-            None => area.draw(&PathElement::new(ends, style))?,
-            Some((long, gap)) => area.draw(&DashedPathElement::new(ends, long, gap, style))?,
-        }
-        area.draw(&Text::new(line.name.clone(), (x + 680, y), font(260).color(&INK)))?;
-        x += width;
-    }
-    Ok(area.split_vertically(y + ROW).1)
 }
 
 /// What the axes span: all lines, and the limits.

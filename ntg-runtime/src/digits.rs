@@ -10,6 +10,18 @@ const DIGITS: i32 = 6;
 /// Significant digits that give every number back.
 const ALL_DIGITS: i32 = 17;
 
+/// Where a number without an exponent is longer than anyone reads.
+const LONG: f64 = 1e10;
+/// Where it begins with zeros that hide it.
+const SHORT: f64 = 1e-3;
+
+/// So many digits behind the point; of what is very large or very small behind the first one, with an exponent.
+pub fn decimals(value: f64, places: usize) -> String {
+    let is_plain = value == 0.0 || !value.is_finite() || (SHORT..LONG).contains(&value.abs());
+    // Zero has no sign.
+    if is_plain { format!("{:.places$}", value + 0.0) } else { format!("{value:.places$e}") }
+}
+
 /// Six significant digits, without trailing zeros.
 pub(crate) fn brief(value: f64) -> String {
     rounded(value, DIGITS)
@@ -63,6 +75,14 @@ mod tests {
             assert_eq!(brief(value), text);
         }
         assert_eq!(brief(1.25e-9), "1.25e-9");
+    }
+
+    #[test]
+    fn what_is_very_large_or_very_small_has_an_exponent() {
+        let told = |value: f64| decimals(value, 9);
+        assert_eq!([told(7.601_260_400_1), told(-123_456_789.0)], ["7.601260400", "-123456789.000000000"]);
+        assert_eq!([told(-3.764_163_6e-5), told(1e308)], ["-3.764163600e-5", "1.000000000e308"]);
+        assert_eq!([told(-0.0), told(f64::NEG_INFINITY)], ["0.000000000", "-inf"]);
     }
 
     #[test]

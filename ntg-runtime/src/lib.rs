@@ -8,7 +8,7 @@
 //! a structured interior-point method, and sequential quadratic programming where it fails. [`solve()`] goes the whole
 //! way. The mathematics is in docs/maths.md, sections 3 to 9 and 11 to 14.
 
-mod digits;
+pub mod digits;
 mod error;
 pub mod explain;
 pub mod guess;

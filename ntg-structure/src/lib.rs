@@ -11,7 +11,7 @@
 //! take. Nothing here grows with the number of members or of collocation points.
 //!
 //! All numbers are in SI units; a [`Unit`] is how a person sees them.
-//! The crate depends on nothing and computes nothing.
+//! The crate depends on nothing and computes nothing but what a number is in a unit.
 
 mod call;
 pub mod constant;
@@ -35,7 +35,7 @@ pub use mission::{
     TableExtrapolation, TableMethod, TableSymmetry, Variable,
 };
 pub use part::{Instant, Part, Places};
-pub use quantity::{Independent, Place, Unit};
+pub use quantity::{Independent, Place, Unit, as_typed};
 
 /// A whole problem, without its formulas.
 #[derive(Clone, Debug, PartialEq, Default)]

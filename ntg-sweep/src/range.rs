@@ -1,5 +1,7 @@
 //! `a:b:n`: equally spaced values, and all combinations of several such ranges.
 
+use ntg_runtime::structure::as_typed;
+
 /// Equally spaced values with both ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
@@ -14,14 +16,18 @@ pub struct Range {
 /// Rows beyond which a study is a slip of the pen.
 const MOST: usize = 10_000_000;
 
+/// What the values between may lose, relative to the larger end: two products and a sum, each half a last place.
+const LOST: f64 = 2.0 * f64::EPSILON;
+
 impl Range {
-    /// Its values; one value is the first.
+    /// Its values, those between as a person would have typed them; one value is the first.
     pub fn values(&self) -> Vec<f64> {
         let steps = self.count.saturating_sub(1).max(1) as f64;
         let at = |i: usize| {
             let share = i as f64 / steps;
             // Exact at both ends, whatever the rounding between.
-            self.first * (1.0 - share) + self.last * share
+            let value = self.first * (1.0 - share) + self.last * share;
+            as_typed(value, LOST * self.first.abs().max(self.last.abs()))
         };
         (0..self.count).map(at).collect()
     }
@@ -56,7 +62,7 @@ mod tests {
     fn ends_are_exact_and_the_last_range_runs_fastest() {
         let tenth = Range { first: 0.1, last: 0.7, count: 7 };
         let values = tenth.values();
-        assert_eq!((values[0], values[6], values.len()), (0.1, 0.7, 7));
+        assert_eq!(values, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
         let sets = grid(&[Range { first: 1.0, last: 2.0, count: 2 }, Range { first: 5.0, last: 9.0, count: 3 }]);
         let wanted = [[1.0, 5.0], [1.0, 7.0], [1.0, 9.0], [2.0, 5.0], [2.0, 7.0], [2.0, 9.0]];
         assert_eq!(sets.expect("six"), wanted.map(|set| set.to_vec()));

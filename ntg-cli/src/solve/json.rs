@@ -85,7 +85,7 @@ pub(super) fn document(solved: &Solved<'_>) -> Value {
 }
 
 fn parameter(parameter: &Parameter) -> (String, Value) {
-    let shown = parameter.value.iter().map(|v| json!(v / parameter.unit.factor)).collect();
+    let shown = parameter.value.iter().map(|v| json!(parameter.unit.typed(*v))).collect();
     (parameter.name.clone(), json!({ "unit": parameter.unit.symbol, "value": members(shown, &parameter.shape()) }))
 }
 

@@ -5,6 +5,7 @@ use ntg_interp::{Interpreted, quantity};
 use ntg_sweep::{Design, Distribution};
 
 use super::inputs;
+use crate::arguments::numbers::whole;
 
 /// How a dispersed parameter is written.
 const FORM: &str = "a dispersed parameter is \"NAME ~ DISTRIBUTION [unit]\", such as \"mass ~ normal(1000, 20) [kg]\"";
@@ -18,13 +19,13 @@ pub(super) struct Dispersed {
     #[arg(long, value_name = "NAME ~ DISTRIBUTION", requires = "samples", allow_hyphen_values = true)]
     disperse: Vec<String>,
     /// How many samples of the dispersed parameters; each is taken with every other parameter set.
-    #[arg(long, value_name = "N", requires = "disperse", value_parser = clap::value_parser!(u32).range(1..=10_000_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", requires = "disperse", value_parser = whole::<u32>(1..=10_000_000))]
     samples: Option<u32>,
     /// How samples are laid out.
     #[arg(long, value_enum, default_value_t = Kind::MonteCarlo, requires = "disperse")]
     design: Kind,
     /// The seed of the samples: the same seed gives the same samples on every machine.
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "disperse", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "disperse", value_parser = whole::<u64>(0..=u64::MAX))]
     seed: u64,
 }
 
@@ -75,7 +76,7 @@ fn read(problem: &Interpreted, text: &str) -> Result<(String, Distribution, f64)
     let factor = match unit.is_empty() {
         true => 1.0,
         false => match quantity(&format!("1 {unit}"), &parameter.unit)?[..] {
-            [value] => value / parameter.unit.factor,
+            [value] => parameter.unit.typed(value),
             _ => return Err(FORM.to_owned()),
         },
     };

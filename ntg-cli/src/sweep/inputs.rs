@@ -97,7 +97,7 @@ pub(super) fn parameter(problem: &Interpreted, name: &str) -> Result<Parameter, 
 /// One number, in the declared unit of a parameter.
 fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
     match quantity(text, &parameter.unit)?[..] {
-        [value] => Ok(value / parameter.unit.factor),
+        [value] => Ok(parameter.unit.typed(value)),
         _ => Err(format!("`{text}` is not one number")),
     }
 }
@@ -124,13 +124,21 @@ type Read = (Vec<String>, Vec<Vec<f64>>);
 /// A table of parameter sets.
 fn table(problem: &Interpreted, path: &Path) -> Result<Read, String> {
     if let Err(error) = reading::checked(path) {
-        return Err(files::unread(path, &error));
+        return Err(files::unread_of(path, "csv", &error));
     }
     let table = ntg_sweep::read(path)?;
     if table.names.is_empty() {
         let shown = path.display();
         return Err(format!(
             "`{shown}` is empty; its first line names parameters, and every further one is a set of values"
+        ));
+    }
+    // An index has no blank before its bracket.
+    if let Some(name) = table.names.iter().find(|name| name.contains(" [")) {
+        return Err(format!(
+            "`{}`: a column is called as its parameter, without the unit of `{name}`: numbers are in declared units, or each has \
+             its own, as `1 [m/s]`",
+            path.display()
         ));
     }
     let parameters = table.names.iter().map(|name| parameter(problem, name)).collect::<Result<Vec<_>, _>>();

@@ -108,8 +108,10 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
         "at most 1.8e19 seconds",
     ),
     (&["solve", "mission.ntg", "--refine", "-1"], "the tolerance -1 is not between 1e-12 and 0.1"),
-    (&["solve", "mission.ntg", "--max-iterations", "-1"], "invalid value '-1' for '--max-iterations <N>'"),
-    (&["solve", "mission.ntg", "--starts", "-1"], "-1 is not in 1..=1000000"),
+    (&["solve", "mission.ntg", "--max-iterations", "-1"], "for '--max-iterations <N>': a whole number from 1 on"),
+    (&["solve", "mission.ntg", "--starts", "-1"], "for '--starts <N>': a whole number from 1 to 1000000"),
+    (&["solve", "mission.ntg", "--starts", "2", "--seed", "x"], "for '--seed <N>': a whole number from 0 on"),
+    (&["solve", "mission.ntg", "--time-limit", "1m"], "for '--time-limit <SECONDS>': a number, such as"),
     (
         &["sweep", "mission.ntg", "--from", "none.csv", "-o", "o.csv"],
         "`none.csv` is empty; its first line names parameters",
@@ -117,6 +119,9 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
     (&["solve", "mission.ntg", "--tolerance", "-1"], "between 1e-12 and 0.1"),
     (&["plot", "mission.ntg", "--show", "sped", "-o", "a.svg"], "there are: `x`, `y`, `speed`"),
     (&["plot", "mission.ntg", "-o", "a.pdf"], "plots are .svg or .png files"),
+    (&["report", "run.json", "-o", "a.pdf"], "reports are .html files"),
+    (&["solve", "mission.ntg", "--guess", "."], "`.` is a folder; name a file in it, such as `run.json`"),
+    (&["sweep", "mission.ntg", "--from", "unit.csv", "-o", "o.csv"], "without the unit of `v_max [m/s]`"),
     (&["report", "bad.json", "-o", "a.html"], "give a file that `ntg solve --save` has written"),
     (&["sweep", "mission.ntg", "--from", "bad.csv", "-o", "o.csv"], "row 0, `v_max` = `fast`: write a number"),
     (&["sweep", "mission.ntg", "--from", "bat.csv", "-o", "o.csv"], "did you mean `bad.csv`?"),
@@ -130,6 +135,7 @@ const ON_THE_COMMAND_LINE: &[(&[&str], &str)] = &[
 fn written(folder: &Path) -> String {
     said(&ntg_in(folder, &["new", "mission"], b""), 0);
     fs::write(folder.join("none.csv"), "").expect("writable");
+    fs::write(folder.join("unit.csv"), "v_max [m/s]\n1\n").expect("writable");
     fs::write(folder.join("bad.csv"), "v_max\nfast\n").expect("writable");
     fs::read_to_string(folder.join("mission.ntg")).expect("readable")
 }

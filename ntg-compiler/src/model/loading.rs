@@ -22,6 +22,20 @@ pub fn unfit(is_regular: bool, bytes: u64) -> Option<String> {
     (bytes > LARGEST_FILE).then(|| format!("its {whole} {TOO_LARGE}, {most} MiB"))
 }
 
+/// The text of a file as loaders read it: `about` has whether it is a regular file and how many bytes it has, and nothing is read
+/// of one that is unfit.
+///
+/// # Errors
+/// The reason against the file, or what `failed` says of an error of the system.
+pub fn text<E>(
+    about: Result<(bool, u64), E>,
+    read: impl FnOnce() -> Result<String, E>,
+    failed: impl Fn(E) -> String,
+) -> Result<String, String> {
+    let (is_regular, bytes) = about.map_err(&failed)?;
+    unfit(is_regular, bytes).map_or_else(|| read().map_err(failed), Err)
+}
+
 /// What to do about a file that cannot be read, by the reason for it; `from` is what its path is relative to.
 pub(super) fn help(why: &str, from: &str) -> String {
     if why == NO_FILE {
@@ -47,6 +61,10 @@ mod tests {
         assert_eq!(unfit(false, 0).as_deref(), Some(NO_FILE));
         assert_eq!(help(NO_FILE, "the spec file"), "copy what it gives to a file and name that");
         assert!(unfit(true, 1 << 60).is_some_and(|why| help(&why, "the spec file").starts_with("leave out rows")));
+        let failed = |error: &str| format!("cannot read it: {error}");
+        assert_eq!(text(Ok((true, 5)), || Ok("words".to_owned()), failed), Ok("words".to_owned()));
+        assert_eq!(text(Ok((false, 0)), || panic!("a device is read"), failed), Err(NO_FILE.to_owned()));
+        assert_eq!(text(Err("gone"), || panic!("nothing is read"), failed), Err("cannot read it: gone".to_owned()));
         assert!(help("no such file", "the spec file").starts_with("paths are relative to the spec file"));
     }
 }

@@ -122,7 +122,7 @@ pub use given::{Given, constants, given};
 use library::Libraries;
 use problem::Problem;
 
-/// Gets the text of the files that a spec names; the compiler reads none itself. Loaders of files ask [`loading::unfit`] first.
+/// Gets the text of the files that a spec names; the compiler reads none itself. Loaders of files read them by [`loading::text`].
 pub trait Loader {
     /// The text of a file whose path is as the spec writes it, or why it cannot be had.
     ///

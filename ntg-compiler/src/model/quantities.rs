@@ -115,7 +115,12 @@ impl<'a> Elaborator<'a> {
         let message = format!("the unit of `{name}` stands behind its value: these brackets hold its size");
         let finding = Diagnostic::new(Code::NotWhole, shape.span, message);
         let text = self.text(value);
-        self.report(finding.help(format!("write `{word} {name} = {text} {unit};`")));
+        // A value that has its own unit, and no index, takes no second one.
+        let last = text.strip_suffix(']').and_then(|text| text.rsplit_once('[')).map_or("", |(_, last)| last);
+        let mut symbols = last.split(|c: char| !c.is_alphabetic()).filter(|symbol| !symbol.is_empty()).peekable();
+        let has_unit = symbols.peek().is_some() && symbols.all(units::is_symbol);
+        let behind = if has_unit { String::new() } else { format!(" {unit}") };
+        self.report(finding.help(format!("write `{word} {name} = {text}{behind};`")));
         true
     }
 

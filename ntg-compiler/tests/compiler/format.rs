@@ -115,6 +115,20 @@ fn blanks_and_line_breaks_are_those_of_the_language() {
 }
 
 #[test]
+fn no_blank_follows_a_parenthesis_that_opens() {
+    assert_layout(
+        "problem P {
+    let a = 3 * (b - ( if t <= 1 { 0 } else { c })) + sum(i in 1 .. 2, ( if i == 1 { 0 } else { d[i] }));
+}
+",
+        "problem P {
+    let a = 3 * (b - (if t <= 1 { 0 } else { c })) + sum(i in 1 .. 2, (if i == 1 { 0 } else { d[i] }));
+}
+",
+    );
+}
+
+#[test]
 fn places_parts_and_prices_read_as_they_are_spoken() {
     assert_layout(
         "problem P {

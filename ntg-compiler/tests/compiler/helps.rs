@@ -245,6 +245,18 @@ fn a_part_of_the_time_stands_in_place_of_a_condition() {
 }
 
 #[test]
+fn a_value_that_has_a_unit_gets_no_second_one() {
+    for (text, help) in [
+        ("param a [deg] = 1;", "write `param a = 1 [deg];`"),
+        ("param a [deg] = 1 [rad];", "write `param a = 1 [rad];`"),
+        ("param a [m/s] = 36 [km/h];", "write `param a = 36 [km/h];`"),
+        ("param k[2] = (1, 2); param a [deg] = k[2];", "write `param a = k[2] [deg];`"),
+    ] {
+        assert!(told(text).contains(help), "{}", told(text));
+    }
+}
+
+#[test]
 fn words_without_names_are_helped() {
     let cases = [("periodic;", "periodic x, y;"), ("continuous;", "continuous x up to 1;"), ("jump;", "jump x, y;")];
     for (written, meant) in cases {

@@ -11,7 +11,7 @@ function NtgAt(line, t) {
   const at = { x: of(line.x), y: of(line.y), z: of(line.z) };
   return isFinite(at.x) && isFinite(at.y) ? at : null;
 }
-function NtgMap(place, chart, { colour, dash, number, told }) {
+function NtgMap(place, chart, { colour, dash, number, told, cut }) {
   const NS = "http://www.w3.org/2000/svg";
   const make = (name, attributes, parent) => {
     const element = document.createElementNS(NS, name);
@@ -142,9 +142,9 @@ function NtgMap(place, chart, { colour, dash, number, told }) {
       make("text", { x: margin.left - 6, y: f.py(v) + 4, "text-anchor": "end" }, svg).textContent = text;
     }
     make("rect", { class: "frame", x: margin.left, y: margin.top, width: f.w, height: f.h }, svg);
-    make("text", { x: margin.left + f.w / 2, y: height - 8, "text-anchor": "middle" }, svg).textContent = chart.x;
+    make("text", { x: margin.left + f.w / 2, y: height - 8, "text-anchor": "middle" }, svg).textContent = cut(chart.x, f.w);
     const side = make("text", { transform: `translate(13 ${margin.top + f.h / 2}) rotate(-90)`, "text-anchor": "middle" }, svg);
-    side.textContent = chart.y;
+    side.textContent = cut(chart.y, f.h);
     const inside = make("g", { "clip-path": `url(#clip${place.dataset.chart})` }, svg);
     const names = make("g", { "clip-path": `url(#clip${place.dataset.chart})` }, svg);
     taken = [];

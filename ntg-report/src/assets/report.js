@@ -123,6 +123,12 @@
     return [...new Set(outside.map(([at, name, , , , ys]) => `${name} ${ys ? `${number(Math.min(...ys))} .. ${number(Math.max(...ys))}` : number(at)}`))];
   };
 
+  // As much of a label as there is room for, without its middle: a unit stays at the end.
+  const cut = (text, pixels) => {
+    const most = Math.max(Math.floor(pixels / 7.5), 3), end = Math.floor(most / 3);
+    return text.length <= most ? text : `${text.slice(0, most - 1 - end)}…${text.slice(-end)}`;
+  };
+
   const axis = (label) => ({
     label, labelSize: 22, labelFont: "12px system-ui, sans-serif", font: "11px system-ui, sans-serif",
     stroke: () => css("--ink"), grid: { stroke: () => css("--line"), width: 1 }, ticks: { stroke: () => css("--line"), width: 1 },
@@ -169,7 +175,9 @@
 
   const time = (place, chart) => {
     const log = chart.kind === "log", shade = (i) => colour(chart.lines[i].like ?? i);
-    const width = () => Math.max(place.clientWidth - 14, 240);
+    const width = () => Math.max(place.clientWidth - 14, 240), height = 270;
+    // An ordinate's label stands beside the plot, which is less high than the picture.
+    const less = 60;
     // How the frame of a square in the legend tells the dashes of its line.
     const looks = (i) => { const gaps = dash(chart.lines[i].run, chart.lines[i].like ?? i); return !gaps ? "solid" : gaps.length > 2 ? "double" : gaps[0] < 4 ? "dotted" : "dashed"; };
     const series = chart.lines.map((line, i) => ({
@@ -178,12 +186,12 @@
       value: (u, v) => number(v), points: { show: !!line.sigma || (log || (chart.y.startsWith("dJ*") && !line.x.some((x, k) => k && x === line.x[k - 1]))) && line.x.length < 100, size: 5, fill: () => shade(i), stroke: () => shade(i) },
     }));
     const u = new uPlot({
-      width: width(), height: 270, series: [{ label: chart.x, value: (u, v) => number(v) }, ...series],
+      width: width(), height, series: [{ label: chart.x, value: (u, v) => number(v) }, ...series],
       scales: { x: { time: false }, y: log ? { distr: 3 } : { range: spanned(chart) } },
       axes: [
-        { ...axis(chart.x), ...(log ? { incrs: whole } : {}), values: (u, ticks) => told(ticks) },
+        { ...axis(cut(chart.x, width())), ...(log ? { incrs: whole } : {}), values: (u, ticks) => told(ticks) },
         {
-          ...axis(chart.y), size: room, ...(log ? { splits: decades, filter: (u, splits) => splits } : {}),
+          ...axis(cut(chart.y, height - less)), size: room, ...(log ? { splits: decades, filter: (u, splits) => splits } : {}),
           values: (u, ticks) => (log ? ticks.map((v) => `1e${Math.round(Math.log10(v))}`) : told(ticks)),
         },
       ],
@@ -195,7 +203,7 @@
       const note = place.appendChild(document.createElement("p"));
       note.className = "beyond"; note.textContent = `beyond the picture: ${beyond.join(", ")}`;
     }
-    const resize = () => u.setSize({ width: width(), height: 270 });
+    const resize = () => u.setSize({ width: width(), height });
     new ResizeObserver(resize).observe(place);
     // The clock moves the cursor of all charts over time.
     const clock = (t) => { if (!log) u.setCursor({ left: u.valToPos(t, "x"), top: -10 }); };
@@ -216,7 +224,7 @@
       drawn.push(NtgSpace(place, chart, { colour, dash, number, told, css }));
     } else if (chart.kind === "map") {
       place.classList.add("wide");
-      drawn.push(NtgMap(place, chart, { colour, dash, number, told }));
+      drawn.push(NtgMap(place, chart, { colour, dash, number, told, cut }));
     } else {
       time(place, chart);
     }

@@ -217,7 +217,7 @@ fn term(term: &ntg_runtime::report::TermReport) -> Term {
 
 fn parameters(structure: &Structure) -> IndexMap<String, Values> {
     let shown = structure.parameters.iter().map(|parameter| {
-        let value = parameter.value.iter().map(|value| value / parameter.unit.factor).collect();
+        let value = parameter.value.iter().map(|value| parameter.unit.typed(*value)).collect();
         (parameter.name.clone(), Values { unit: parameter.unit.symbol.clone(), value, shape: parameter.shape() })
     });
     shown.collect()

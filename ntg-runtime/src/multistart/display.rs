@@ -1,7 +1,7 @@
 //! Many starts as a person reads about them.
 
 use super::{MultiReport, Origin};
-use crate::digits::brief;
+use crate::digits::{brief, decimals};
 use std::fmt;
 
 /// Minima that are listed before "and n more".
@@ -37,7 +37,8 @@ impl fmt::Display for MultiReport {
         for minimum in self.minima.iter().take(LISTED) {
             let (report, origin) = (&minimum.report, self.starts[minimum.first].origin);
             let between = report.violation.between;
-            writeln!(f, "  {:>18.9} {:>6} {between:>14.1e}  {origin}", report.objective, minimum.count)?;
+            let objective = decimals(report.objective, 9);
+            writeln!(f, "  {objective:>18} {:>6} {between:>14.1e}  {origin}", minimum.count)?;
         }
         if found > LISTED {
             writeln!(f, "  and {} more", found - LISTED)?;

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::digits::decimals;
+
 /// One round.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Round {
@@ -101,7 +103,7 @@ impl Refined {
             ("round", |number, _| (number + 1).to_string()),
             ("intervals", |_, round| round.intervals.to_string()),
             ("variables", |_, round| round.variables.to_string()),
-            ("objective", |_, round| format!("{:.10}", round.objective)),
+            ("objective", |_, round| decimals(round.objective, 10)),
             ("quadrature", |_, round| format!("{:.1e}", round.quadrature)),
             ("change", |_, round| if round.change.is_nan() { String::new() } else { format!("{:.1e}", round.change) }),
             ("violation", |_, round| format!("{:.1e}", round.violation)),

@@ -48,9 +48,16 @@ impl Trace {
     /// nearest to its bound, and a bound that moves moves it for all sides at once.
     fn add_side(&mut self, other: &Self) {
         let is_upper = self.upper.is_finite();
-        for ((_, value), (_, side)) in self.points.iter_mut().zip(&other.points) {
-            *value = if is_upper { crate::math::max(*value, *side) } else { crate::math::min(*value, *side) };
-        }
+        // Between the points of the grid each side is looked at where it may be beyond its own bound.
+        let mut sides = other.points.iter().peekable();
+        self.points.retain_mut(|(time, value)| {
+            while sides.next_if(|(before, _)| before.total_cmp(time).is_lt()).is_some() {}
+            let side = sides.next_if(|(at, _)| at.total_cmp(time).is_eq());
+            if let Some((_, side)) = side {
+                *value = if is_upper { crate::math::max(*value, *side) } else { crate::math::min(*value, *side) };
+            }
+            side.is_some()
+        });
         for ((_, value), (_, side)) in self.multipliers.iter_mut().zip(&other.multipliers) {
             *value += side;
         }
@@ -81,7 +88,8 @@ impl Solution {
         // A constraint that stands in several point sets (Gauss points and breakpoints) is shown
         // by the finest.
         let mut found: BTreeMap<Key, Trace> = BTreeMap::new();
-        for ((key, _), set) in sets {
+        for ((key, _), mut set) in sets {
+            set.sort();
             let trace = trace(inner, &key, &set);
             if found.get(&key).is_none_or(|held| held.points.len() < trace.points.len()) {
                 found.insert(key, trace);
@@ -153,6 +161,21 @@ fn unit(inner: &Inner, constraint: usize) -> f64 {
 struct Set {
     bounds: (f64, f64),
     values: Vec<(Point, f64)>,
+}
+
+impl Set {
+    /// Puts the values in the order of time: what was looked at between the points of the grid comes behind them.
+    fn sort(&mut self) {
+        self.values.sort_by(|(a, _), (b, _)| a.tau.total_cmp(&b.tau));
+        let values = std::mem::take(&mut self.values);
+        for (point, value) in values {
+            // Where the grid has both sides of a jump, what was looked at besides is one of them.
+            let count = self.values.iter().rev().take_while(|(before, _)| before.tau == point.tau).count();
+            if count < 2 || point.phase.is_none() {
+                self.values.push((point, value));
+            }
+        }
+    }
 }
 
 /// The trace of one member from its checked values, without multipliers.

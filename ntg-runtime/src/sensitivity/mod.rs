@@ -118,7 +118,7 @@ impl Solution {
                 }
                 if names.is_none_or(is_wanted) {
                     variables.push(first + u32::try_from(member).unwrap_or(u32::MAX));
-                    parameters.push(Value { name, value: value / declared.unit.factor, unit: declared.unit.clone() });
+                    parameters.push(Value { name, value: declared.unit.typed(*value), unit: declared.unit.clone() });
                 }
             }
         }

@@ -298,7 +298,7 @@ pub(super) fn solution(nlp: &Transcription, outcome: Outcome) -> Solution {
 pub(super) fn record(nlp: &Transcription, step: &[Setting], outcome: &Outcome, began: Instant) -> StepReport {
     let parameter = |(parameter, value): &Setting| {
         let declared = &nlp.model.structure.parameters[*parameter];
-        Value { name: declared.name.clone(), value: value / declared.unit.factor, unit: declared.unit.clone() }
+        Value { name: declared.name.clone(), value: declared.unit.typed(*value), unit: declared.unit.clone() }
     };
     StepReport {
         parameters: step.iter().map(parameter).collect(),

@@ -34,12 +34,12 @@ impl Stream<'_> {
         self.ops.push(Op::Text(words.to_owned()));
     }
 
-    /// A blank, unless a line or a blank ends here anyway.
+    /// A blank, unless a line or a blank ends here anyway, or a parenthesis opens.
     fn space(&mut self) {
         let last = self.ops.iter().rev().find(|op| matches!(op, Op::Text(_) | Op::Newline | Op::Break(_) | Op::Assign));
         let is_parted = match last {
             None | Some(Op::Newline | Op::Break(_) | Op::Assign) => true,
-            Some(Op::Text(words)) => words.ends_with(' '),
+            Some(Op::Text(words)) => words.ends_with([' ', '(']),
             Some(_) => false,
         };
         if !is_parted {
