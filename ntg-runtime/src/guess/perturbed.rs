@@ -5,7 +5,7 @@
 
 use super::finish;
 use crate::transcribe::layout::Time;
-use crate::transcribe::{SetupError, Transcription};
+use crate::transcribe::{SetupError, Transcription, is_beside_offset};
 use fastrand::Rng;
 
 /// Added functions have this many half waves at most.
@@ -107,7 +107,10 @@ fn add_waves(
     let (least, most) = coefficients
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |held, (c, _)| (held.0.min(x[*c]), held.1.max(x[*c])));
-    let size = [most - least, most.abs(), least.abs()].into_iter().fold(0.0, f64::max);
+    let size = match is_beside_offset(least, most) {
+        true => most - least,
+        false => [most - least, most.abs(), least.abs()].into_iter().fold(0.0, f64::max),
+    };
     let at_rest = || coefficients.iter().map(|(c, _)| resting(*c, unit)).fold(0.0, f64::max);
     let size = if size > 0.0 { size } else { at_rest() };
     for (c, part) in coefficients {

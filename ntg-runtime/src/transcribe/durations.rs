@@ -12,6 +12,9 @@ use ntg_nlp::{Limits, Nlp};
 /// gallery and other specs with free durations none is further off.
 const FAR: i32 = 2;
 
+/// Of a bound that is so many times what rates tell, too, nothing is known. A choice: in ten time constants all is over.
+const FAR_BY_RATES: f64 = 20.0;
+
 /// Where equations tell a duration without an upper bound, its guess is so many times what they tell, and its range so many times.
 /// Choices: what they tell is right to a decade, and motions that are too slow are nearer to a solution than those that are too fast.
 const TOLD_GUESS: f64 = 2.0;
@@ -106,8 +109,9 @@ impl Transcription<'_> {
         for i in 0..self.durations.len() {
             let known = self.durations[i];
             let is_open = known.reach.is_infinite();
-            let guess = typical.map_or(known.guess, |typical| self.duration_near(&known, typical));
-            let is_far = |bound: f64| bound > 10f64.powi(FAR) * guess;
+            let guess = typical.map_or(known.guess, |(typical, _)| self.duration_near(&known, typical));
+            let far = if typical.is_some_and(|(_, by_rates)| by_rates) { FAR_BY_RATES } else { 10f64.powi(FAR) };
+            let is_far = |bound: f64| bound > far * guess;
             if guess == known.guess && !is_open || !is_far(known.reach) {
                 continue;
             }
@@ -130,8 +134,8 @@ impl Transcription<'_> {
         if duration.reach.is_infinite() { wanted } else { wanted.min(duration.guess) }
     }
 
-    /// The time in which something happens, if it is far from what bounds tell.
-    fn typical_duration(&self) -> Option<f64> {
+    /// The time in which something happens, if it is far from what bounds tell; and whether rates tell it.
+    fn typical_duration(&self) -> Option<(f64, bool)> {
         let first = self.durations.iter().map(|duration| duration.guess).reduce(f64::max)?;
         let has_room = |duration: &FreeDuration| {
             let lower = if duration.is_guarded { 0.0 } else { self.limits.lower[duration.variable as usize] };
@@ -161,8 +165,8 @@ impl Transcription<'_> {
             true => vec![(LOOSE, shortest as Find), (STRICT, both_ways), (LOOSE, both_ways)],
             false => vec![(STRICT, downwards), (LOOSE, downwards)],
         };
-        let tenths = ways.into_iter().find_map(|(rule, find)| by(rule, find));
-        tenths.map(|tenths| first * 10f64.powf(tenths / f64::from(PARTS)))
+        let mut told = ways.into_iter().filter_map(|(rule, find)| Some((by(rule, find)?, rule.by_rates)));
+        told.next().map(|(tenths, by_rates)| (first * 10f64.powf(tenths / f64::from(PARTS)), by_rates))
     }
 }
 

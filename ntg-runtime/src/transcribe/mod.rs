@@ -72,7 +72,7 @@ use ntg_nlp::Limits;
 use ntg_splines::Table;
 use ntg_structure::{Angle, Degree, Place, Row, Structure, Unit};
 use rows::{RowInfo, RowKind};
-pub(crate) use scale::Quantity;
+pub(crate) use scale::{Quantity, is_beside_offset};
 use std::sync::Arc;
 use times::Clock;
 

@@ -36,6 +36,11 @@ const OTHER_KIND: f64 = 1e6;
 /// where a size of either kind serves.
 const OFFSET: Range<f64> = 1e-10..1e-3;
 
+/// Whether what lies between two numbers varies by next to nothing beside what it is (docs/maths.md, equation 5.5a).
+pub(crate) fn is_beside_offset(low: f64, high: f64) -> bool {
+    OFFSET.contains(&((high - low) / low.abs().max(high.abs())))
+}
+
 /// What has a size of its own: an output in all phases of an agent, or a variable.
 pub(crate) struct Quantity<'a> {
     name: &'a str,
@@ -114,12 +119,12 @@ impl Transcription<'_> {
 
     /// Where outputs begin whose guess varies by next to nothing beside what it is: at its middle (docs/maths.md, equation
     /// 5.5a). Empty where there are none.
-    fn origins(&self, guess: &[f64]) -> Vec<f64> {
+    pub(super) fn origins(&self, guess: &[f64]) -> Vec<f64> {
         let mut origins = vec![];
         for output in self.model.layout.agents.iter().flat_map(|agent| self.outputs_of(agent.phases.clone())) {
             let values = output.coefficients.iter().map(|v| guess[*v as usize]);
             let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (v.min(l), v.max(h)));
-            if OFFSET.contains(&((high - low) / low.abs().max(high.abs()))) {
+            if is_beside_offset(low, high) {
                 origins.resize(guess.len(), 0.0);
                 output.coefficients.iter().for_each(|v| origins[*v as usize] = f64::midpoint(low, high));
             }
