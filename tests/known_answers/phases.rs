@@ -249,3 +249,32 @@ fn a_report_tells_when_phases_without_named_durations_are() {
     assert!(said.contains("\n  leg[21]: from 2 to 2.1, for 0.1\n  and 9 more"), "{said}");
     assert!(!cart(3.0, "duration T = 5;").to_string().contains(" from "));
 }
+
+/// What a phase of a family names by its index is taken of each member, wherever a total is written.
+#[test]
+fn a_total_over_a_family_takes_what_each_member_names() {
+    let text = |total: &str| {
+        format!(
+            "problem Storage {{
+                param price[3] = (1, 3, 2);
+                state E in 0 .. 2;
+                input u in -1 .. 1: held;
+                dynamics {{ der(E) == -u; }}
+                initial {{ E == 1; }}
+                collocation gauss(points = 2, intervals = 1);
+                phase hour[i in 1 .. 3] {{ duration = 1;  let p = price[i];  let worth = p * u; }}
+                {total}
+            }}"
+        )
+    };
+    for total in [
+        "maximize integral(p * u);",
+        "maximize integral(worth);",
+        "maximize sum(k in 1 .. 3, integral(hour[k], p * u));",
+        "variable v;  temporal { v == integral(p * u); }  maximize v;",
+    ] {
+        let report = Shipped::text(&text(total)).solve();
+        // Bought in the first hour, sold in the others.
+        close(report.objective, 4.0, 1e-6);
+    }
+}
