@@ -471,3 +471,38 @@ fn what_holds_a_speed_has_the_size_of_its_force() {
         assert!(found < Resolution::Unresolved && (report.objective / 1318.63 - 1.0).abs() < 1e-4, "{report}");
     }
 }
+
+/// A spring that swings several times in the guessed time is at rest at all points whatever it does between them: what shorter
+/// intervals find tells where to begin again. The least time is 3.0753713 s, by arcs of circles round `F / k` in the phase plane.
+#[test]
+fn a_motion_that_shorter_intervals_refute_is_found_from_there() {
+    for (units, intervals) in [(true, 30), (true, 36), (false, 30)] {
+        let unit = |unit: &'static str| if units { unit } else { "" };
+        let (length, rate, force, mass) = (unit("[mm]"), unit("[kn]"), unit("[kN]"), unit("[t]"));
+        // In SI without units.
+        let scale = |with: f64, without: f64| if units { with } else { without };
+        let report = Shipped::text(&format!(
+            "problem Spring {{
+                param stiffness = 149000.0 {};
+                initial {{ x == {} {length};  v == {} {rate}; }}
+                final {{ x == 0;  v == 0; }}
+                collocation gauss(points = 2, intervals = {intervals});
+                input F in -{f} {force} .. {f} {force};
+                duration T in 0 ..;
+                let v {rate} = der(x);
+                param mass = {} {mass};
+                minimize time {}: T;
+                state x {length};
+                dynamics {{ mass * der(x, 2) + stiffness * x == F; }}
+            }}",
+            unit("[N/m]"),
+            scale(-935.551_170_5, -0.935_551_170_5),
+            scale(122.651_520_5, 63.097_393_4),
+            scale(5.6, 5600.0),
+            unit("[s]"),
+            f = scale(180.0, 180_000.0),
+        ))
+        .solve();
+        assert!((3.05..3.12).contains(&report.objective), "{units}, {intervals}\n{report}");
+    }
+}

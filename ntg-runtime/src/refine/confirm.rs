@@ -43,9 +43,43 @@ impl Report {
     ///
     /// # Errors
     /// As [`Report::confirmed`].
-    pub fn confirmed_from_now(mut self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
+    pub fn confirmed_from_now(self, problem: &dyn Problem, settings: &Settings) -> Result<Self, Error> {
         if !self.is_open(settings) {
             return Ok(self);
+        }
+        let began = Instant::now();
+        let (report, finer) = self.confirmed_once(problem, settings)?;
+        let Some(better) = finer.filter(|finer| report.is_refuted_by_a_better(finer)) else { return Ok(report) };
+        let most = report.iterations.max(LEAST).min(settings.max_iterations);
+        let rest = Settings { max_iterations: most, on_iteration: None, ..settings.after(began.elapsed()) };
+        let own = WithStructure::new(problem).edited(|structure| structure.clone_from(report.solution.structure()));
+        let mut next = from(&own, &better.solution, &rest)?;
+        if next.status != Status::Solved || !report.is_beaten_by(&next) {
+            return Ok(report);
+        }
+        next.iterations += report.iterations;
+        let (mut next, _) = next.confirmed_once(problem, &settings.after(began.elapsed()))?;
+        next.seconds = report.seconds + began.elapsed().as_secs_f64();
+        Ok(next)
+    }
+
+    /// Whether shorter intervals refute the solution with one whose objective is better.
+    fn is_refuted_by_a_better(&self, finer: &Self) -> bool {
+        let is_refuted = self.confirmation.as_ref().is_some_and(|found| found.refutes(self.cost()));
+        is_refuted && finer.status == Status::Solved && self.is_beaten_by(finer)
+    }
+
+    /// Whether the objective of another solution is better by more than is worth a warning.
+    fn is_beaten_by(&self, other: &Self) -> bool {
+        let by = other.objective - self.objective;
+        let is_better = if self.solution.structure().maximize { by > 0.0 } else { by < 0.0 };
+        is_better && self.cost().apart(other.objective) > self.between_tolerance
+    }
+
+    /// The report with what solves on shorter intervals say, and the last of these.
+    fn confirmed_once(mut self, problem: &dyn Problem, settings: &Settings) -> Result<(Self, Option<Self>), Error> {
+        if !self.is_open(settings) {
+            return Ok((self, None));
         }
         let began = Instant::now();
         let mut mesh = WithStructure::new(problem).edited(|structure| {
@@ -55,7 +89,7 @@ impl Report {
         let mut nlp = Transcription::new(&mesh)?;
         let Some((doubt, missed, most)) = self.doubts(&nlp, settings)? else {
             self.seconds += began.elapsed().as_secs_f64();
-            return Ok(self.advised());
+            return Ok((self.advised(), None));
         };
         let mut found = Confirmation {
             doubt,
@@ -68,7 +102,7 @@ impl Report {
             seconds: 0.0,
         };
         let until = settings.time_limit.map(|limit| began + limit);
-        let mut last = None;
+        let mut last: Option<Self> = None;
         while found.halvings < HALVINGS && found.asks_more(self.cost(), settings.between_tolerance) {
             let marks = halved(&nlp);
             drop(nlp);
@@ -82,7 +116,8 @@ impl Report {
                 method: Method::Auto,
                 ..settings.clone()
             };
-            let next = from(&finer, last.as_ref().unwrap_or(&self.solution), &settings)?;
+            let before = last.as_ref().map_or(&self.solution, |last| &last.solution);
+            let next = from(&finer, before, &settings)?;
             let is_late = matches!(next.status, Status::TimeLimit | Status::Cancelled);
             if is_late && found.halvings > 0 {
                 // What the solve before has told stands.
@@ -105,12 +140,12 @@ impl Report {
                 Doubt::Objective => Some(next.correction_part()),
             };
             found.missed.push(again.unwrap_or(f64::INFINITY));
-            last = Some(next.solution);
+            last = Some(next);
         }
         found.seconds = began.elapsed().as_secs_f64();
         self.seconds += found.seconds;
         self.confirmation = Some(found);
-        Ok(self.advised())
+        Ok((self.advised(), last))
     }
 
     /// Whether nothing has been asked of a solution yet but that it holds at the points.
