@@ -600,3 +600,27 @@ fn what_only_the_objective_decides_has_the_size_of_its_minimum() {
         }
     }
 }
+
+/// A battery earns `5 - (-1) + 4 - 2` from a guess that is far beyond its limits.
+#[test]
+fn a_guess_beyond_its_bounds_is_no_size() {
+    for guess in [0.0, 1.0, 9.0, 1e2, 1e5, 1e9, -1e5] {
+        let report = Shipped::text(&format!(
+            "problem Storage {{
+                duration T = 4;
+                state E in 0 .. 1;
+                input charge in 0 .. 1: held;
+                input sell in 0 .. 1: held;
+                collocation gauss(points = 2, intervals = 4);
+                let price = if t <= 1 {{ -1 }} else if t <= 2 {{ 5 }} else if t <= 3 {{ 2 }} else {{ 4 }};
+                maximize integral(price * (sell - charge));
+                dynamics {{ der(E) == charge - sell; }}
+                initial {{ E == 0; }}
+                final {{ E == 0; }}
+                guess {{ charge = {guess:e}; }}
+            }}"
+        ))
+        .solve();
+        close(report.objective, 8.0, 1e-7);
+    }
+}

@@ -69,6 +69,7 @@ pub fn start(nlp: &Transcription, guess: Option<&Guess>) -> Result<Vec<f64>, Set
     }
     curves.extend(statements.program_curves(&x)?);
     apply(layout, &curves, &mut x)?;
+    move_inside(nlp, &curves, &mut x);
     aside::bend(nlp, &curves, &mut x)?;
     heading::turn(nlp, &curves, &mut x)?;
     finish(nlp, x)
@@ -207,6 +208,23 @@ fn missed_by_integrals(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
         }
     }
     missed
+}
+
+/// Moves outputs inside their own bounds whose guess is far outside: a guess in another unit is no size of what is within bounds.
+fn move_inside(nlp: &Transcription, curves: &[Curve], x: &mut [f64]) {
+    /// So many times beyond the larger bound. A choice: what is outside by less is a guess of the same size.
+    const FAR: f64 = 10.0;
+    for Curve { phase, output, .. } in curves {
+        let coefficients = &nlp.model.layout.phases[*phase].outputs[*output].coefficients;
+        let largest = coefficients.iter().map(|v| x[*v as usize].abs()).fold(0.0, f64::max);
+        let Some((lower, upper)) = defaults::bounds(nlp, *phase, *output).filter(|(lower, upper)| lower < upper) else {
+            continue;
+        };
+        let bound = lower.abs().max(upper.abs());
+        if bound.is_finite() && largest > FAR * bound {
+            coefficients.iter().for_each(|v| x[*v as usize] = x[*v as usize].clamp(lower, upper));
+        }
+    }
 }
 
 fn clamp(nlp: &Transcription, x: &mut [f64]) {

@@ -60,12 +60,16 @@ impl Report {
         next.iterations += report.iterations;
         let (mut next, _) = next.confirmed_once(problem, &settings.after(began.elapsed()))?;
         next.seconds = report.seconds + began.elapsed().as_secs_f64();
-        Ok(next)
+        let holds = |found: &Confirmation| found.status.has_solution() && !found.refutes(next.cost());
+        let is_confirmed = next.resolution().is_some_and(|resolution| resolution < Resolution::Unresolved);
+        Ok(if is_confirmed && next.confirmation.as_ref().is_none_or(holds) { next } else { report })
     }
 
-    /// Whether shorter intervals refute the solution with one whose objective is better.
+    /// Whether shorter intervals refute the solution with one whose objective is better. What leaves its limits between the points
+    /// is refuted by what goes another way, which is found from there to leave them elsewhere.
     fn is_refuted_by_a_better(&self, finer: &Self) -> bool {
-        let is_refuted = self.confirmation.as_ref().is_some_and(|found| found.refutes(self.cost()));
+        let refutes = |found: &Confirmation| !matches!(found.doubt, Doubt::Limit(_)) && found.refutes(self.cost());
+        let is_refuted = self.confirmation.as_ref().is_some_and(refutes);
         is_refuted && finer.status == Status::Solved && self.is_beaten_by(finer)
     }
 
