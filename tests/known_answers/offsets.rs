@@ -230,3 +230,29 @@ fn rounding_of_far_positions_is_no_contradiction() {
     let far = solved(&problem("3.5e9 [m]"));
     close(far.objective / 1e18, near.objective, 1e-6);
 }
+
+/// A tank comes to the pressure around it: `log(2) / rate`, whatever that pressure is beside what it differs by.
+#[test]
+fn how_long_a_motion_takes_does_not_hang_on_where_it_comes_to_rest() {
+    for (offset, by) in [(0.0, 1.0), (1e3, 1.0), (101_325.0, 0.1), (1e6, 10.0), (3e8, 50.0)] {
+        for duration in ["in 0 ..", "in 0 .. 10", "in 0.1 .. 10", "in 0 .. 1e6"] {
+            let spec = Shipped::text(&format!(
+                "problem Leak {{
+                    duration T {duration};
+                    state p;
+                    collocation gauss(points = 3, intervals = 8);
+                    minimize T;
+                    dynamics {{ der(p) == 0.4 * ({offset:e} - p); }}
+                    initial {{ p == {offset:e} + {by}; }}
+                    final {{ p == {offset:e} + {}; }}
+                }}",
+                by / 2.0
+            ));
+            let report = solve(spec.problem(), &Settings::default()).expect("it can be set up");
+            // Digits of the offset are those of the gradient: some of these end as acceptable.
+            assert!(report.status.has_solution(), "{offset}, {by}, {duration}\n{report}");
+            // As far as rounding of the offset lets it be known.
+            close(report.objective, 2.0_f64.ln() / 0.4, 1e-6_f64.max(1e-15 * offset / by));
+        }
+    }
+}

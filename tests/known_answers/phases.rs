@@ -278,3 +278,30 @@ fn a_total_over_a_family_takes_what_each_member_names() {
         close(report.objective, 4.0, 1e-6);
     }
 }
+
+/// Where the index of a family chooses a formula, a total over its members takes what each one chooses.
+#[test]
+fn a_total_over_a_family_takes_what_each_member_chooses() {
+    let text = |cost: &str| {
+        format!(
+            "problem Legs {{
+                output x: spline(order = 4, intervals = 2, smoothness = 1);
+                phase leg[i in 1 .. 3] {{
+                    duration = 1;
+                    let c = {cost};
+                    final {{ x == i; }}
+                }}
+                initial {{ x == 0; }}
+                minimize integral(c);
+            }}"
+        )
+    };
+    // Straight lines are best, whatever their weights: x' = 1 on each leg.
+    for (cost, known) in [
+        ("if i == 2 { 10 * der(x)^2 } else { der(x)^2 }", 12.0),
+        ("(if i >= 2 { 10 } else { 1 }) * der(x)^2", 21.0),
+        ("if i in 1 .. 2 { 10 * der(x)^2 } else { der(x)^2 }", 21.0),
+    ] {
+        close(Shipped::text(&text(cost)).solve().objective, known, 1e-7);
+    }
+}

@@ -315,7 +315,10 @@ impl<'a> Elaborator<'a> {
         if self.may_not_be_chosen {
             return true; // The value of the branch that is chosen is looked at for itself.
         }
-        let Some((least, most)) = extremes(form, &cx.loops) else { return true };
+        // A total over a family of phases has its members, as a loop has.
+        let of_totals = self.total_indices.values().map(|range| &self.problem.ranges[*range as usize]);
+        let loops: Vec<Loop> = cx.loops.iter().chain(of_totals).cloned().collect();
+        let Some((least, most)) = extremes(form, &loops) else { return true };
         let (first, last) = ends;
         let outside = if least < first { least } else { most };
         if (first..=last).contains(&outside) {

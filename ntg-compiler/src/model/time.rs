@@ -174,18 +174,12 @@ impl<'a> Elaborator<'a> {
 
     /// The context of an expression that is taken along, or at an end of, a stretch.
     pub(super) fn on(&self, cx: &Context<'a>, stretch: &Stretch, point: Point) -> Context<'a> {
-        // A total over a family has its members: what is taken of each may be indexed by it.
-        let total = self.total_indices.get(&stretch.phase).map(|range| &self.problem.ranges[*range as usize]);
-        let outer = match total.filter(|over| stretch.index == Some(Form::index(over.index))) {
-            Some(over) => cx.inside(over.clone()),
-            None => cx.clone(),
-        };
         Context {
             scope: self.phases[stretch.phase].scope,
             agent: stretch.agent.clone(),
             phase: stretch.index.clone(),
             point,
-            ..outer
+            ..cx.clone()
         }
     }
 

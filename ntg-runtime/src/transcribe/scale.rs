@@ -119,7 +119,7 @@ impl Transcription<'_> {
 
     /// Where outputs begin whose guess varies by next to nothing beside what it is: at its middle (docs/maths.md, equation
     /// 5.5a). Empty where there are none.
-    pub(super) fn origins(&self, guess: &[f64]) -> Vec<f64> {
+    fn origins(&self, guess: &[f64]) -> Vec<f64> {
         let mut origins = vec![];
         for output in self.model.layout.agents.iter().flat_map(|agent| self.outputs_of(agent.phases.clone())) {
             let values = output.coefficients.iter().map(|v| guess[*v as usize]);

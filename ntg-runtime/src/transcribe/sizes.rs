@@ -125,9 +125,7 @@ impl Transcription<'_> {
         (workspace, at): (&mut Workspace, &mut Evaluation),
     ) -> Option<Trial> {
         self.derivatives(x, 1.0, &vec![0.0; self.elements.rows.len()], workspace, at).ok()?;
-        let origins = self.origins(x).into_iter().chain(std::iter::repeat(0.0));
-        let from_origin: Vec<f64> = x.iter().zip(origins).map(|(x, origin)| x - origin).collect();
-        let mut balance = self.balance(groups, &from_origin);
+        let mut balance = self.balance(groups, x);
         let durations: Vec<usize> = self.durations.iter().map(|d| balance.group[d.variable as usize]).collect();
         durations.iter().for_each(|group| balance.own_bound[*group] = 0.0);
         self.collect_slopes(at, &mut balance);
