@@ -139,13 +139,9 @@ pub(crate) fn until_measured(
         let most = if large.is_some() { left.min(MAGNIFIED) } else { left };
         let options = Options { max_iterations: most, tolerance, ..options.after(began.elapsed()) };
         let (mut outcome, mut measure) = solve(&Erased::of(&resized), round, &options);
-        let first = *first.get_or_insert(outcome.objective_factor);
-        let fallen = -first * outcome.objective;
+        let fallen = -*first.get_or_insert(outcome.objective_factor) * outcome.objective;
         let is_stopped = matches!(outcome.status, Status::Cancelled | Status::TimeLimit);
-        let has_fallen = fallen > FALLEN && (outcome.status.has_solution() || is_feasible_by(&outcome, &options));
-        // A solve that ends at no solution comes back with its best point, which may be the first one.
-        let on_the_way = || !outcome.status.has_solution() && first * fallen_on_the_way(&outcome, &options) > FALLEN;
-        if !is_stopped && (has_fallen || on_the_way()) {
+        if fallen > FALLEN && !is_stopped && (outcome.status.has_solution() || is_feasible_by(&outcome, &options)) {
             (outcome.status, measure) = (Status::Unbounded, Measure::Holds);
         }
         // By its earlier sizes the start was no solution: that larger ones make it one says nothing.
@@ -259,15 +255,6 @@ pub(crate) fn until_measured(
 fn is_feasible_by(end: &Outcome, options: &Options) -> bool {
     let scaled = end.objective_factor * end.objective;
     residuals::is_feasible_by(end.residuals.scaled.primal, scaled, options.constraint_tolerance)
-}
-
-/// How far the objective has fallen below 0 at points on the way that are feasible.
-fn fallen_on_the_way(end: &Outcome, options: &Options) -> f64 {
-    let is_feasible = |(objective, primal): &(f64, f64)| {
-        residuals::is_feasible_by(*primal, end.objective_factor * objective, options.constraint_tolerance)
-    };
-    let points = end.history.iter().map(|record| (record.objective, record.residuals.scaled.primal));
-    points.filter(is_feasible).fold(0.0, |most, (objective, _)| most.max(-objective))
 }
 
 /// A saddle, and the point beside it from which a solve goes on.

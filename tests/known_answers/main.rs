@@ -37,6 +37,7 @@ mod least_of_zero;
 mod limits;
 mod missile;
 mod norms;
+mod objective_sizes;
 mod offsets;
 mod oscillator;
 mod out_of_reach;

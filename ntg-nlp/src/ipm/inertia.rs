@@ -21,7 +21,7 @@ const LEAST_FRACTION: f64 = 1e-4;
 const FRACTION_FACTOR: f64 = 4.0;
 /// A fraction whose step was shorter than this was hardly enough: directions without curvature lead from bound to bound. It is
 /// tried again before a smaller one. A fit to 228 specs and swarms of 16 to 32 vehicles: a tenth fewer iterations than with 0,
-/// and with 0.3 and more `acrobot`, `truck_trailer` or `alpine_rider` are lost or take twice as many.
+/// and with 0.25, 0.3 and more one of `alpine_rider`, `acrobot` and `truck_trailer` is lost or takes twice as many.
 const CUT: f64 = 0.2;
 /// Shifts of the diagonal where the convexified matrix is singular: the first one, and their factor.
 const SINGULAR_SHIFT: f64 = 1e-8;

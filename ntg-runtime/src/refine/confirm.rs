@@ -8,6 +8,7 @@ use crate::guess::{Defect, defect};
 use crate::problem::{Problem, WithStructure};
 use crate::report::{Confirmation, ConstraintReport, Doubt, Report, Resolution};
 use crate::settings::{Between, Method, Settings};
+use crate::solution::Solution;
 use crate::status::Status;
 use crate::strategy::warm;
 use crate::transcribe::crossed::crossed;
@@ -48,21 +49,38 @@ impl Report {
             return Ok(self);
         }
         let began = Instant::now();
-        let (report, finer) = self.confirmed_once(problem, settings)?;
+        let before = self.seconds;
+        let (mut report, finer) = self.confirmed_once(problem, settings)?;
         let Some(better) = finer.filter(|finer| report.is_refuted_by_a_better(finer)) else { return Ok(report) };
-        let most = report.iterations.max(LEAST).min(settings.max_iterations);
-        let rest = Settings { max_iterations: most, on_iteration: None, ..settings.after(began.elapsed()) };
-        let own = WithStructure::new(problem).edited(|structure| structure.clone_from(report.solution.structure()));
-        let mut next = from(&own, &better.solution, &rest)?;
-        if next.status != Status::Solved || !report.is_beaten_by(&next) {
-            return Ok(report);
+        if let Some(found) = report.found_again(problem, &better.solution, &settings.after(began.elapsed()))? {
+            report = found;
         }
-        next.iterations += report.iterations;
-        let (mut next, _) = next.confirmed_once(problem, &settings.after(began.elapsed()))?;
-        next.seconds = report.seconds + began.elapsed().as_secs_f64();
+        report.seconds = before + began.elapsed().as_secs_f64();
+        Ok(report)
+    }
+
+    /// A better solution on the mesh of this one, from one on shorter intervals, which these do not refute in turn; none where
+    /// there is none.
+    fn found_again(
+        &self,
+        problem: &dyn Problem,
+        from_here: &Solution,
+        settings: &Settings,
+    ) -> Result<Option<Self>, Error> {
+        let began = Instant::now();
+        let most = self.iterations.max(LEAST).min(settings.max_iterations);
+        let rest = Settings { max_iterations: most, on_iteration: None, ..settings.clone() };
+        let own = WithStructure::new(problem).edited(|structure| structure.clone_from(self.solution.structure()));
+        let mut next = from(&own, from_here, &rest)?;
+        if next.status != Status::Solved || !self.is_beaten_by(&next) {
+            return Ok(None);
+        }
+        next.iterations += self.iterations;
+        let (next, _) = next.confirmed_once(problem, &settings.after(began.elapsed()))?;
         let holds = |found: &Confirmation| found.status.has_solution() && !found.refutes(next.cost());
-        let is_confirmed = next.resolution().is_some_and(|resolution| resolution < Resolution::Unresolved);
-        Ok(if is_confirmed && next.confirmation.as_ref().is_none_or(holds) { next } else { report })
+        let is_confirmed = next.resolution().is_some_and(|resolution| resolution < Resolution::Unresolved)
+            && next.confirmation.as_ref().is_none_or(holds);
+        Ok(is_confirmed.then_some(next))
     }
 
     /// Whether shorter intervals refute the solution with one whose objective is better. What leaves its limits between the points

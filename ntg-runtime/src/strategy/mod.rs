@@ -8,9 +8,9 @@
 //! [`Session`] keeps everything that one solve leaves to the next. `solve` goes through the steps of a continuation,
 //! `coarse_start` finds starts on fewer knots, `simulated_start` by simulation, `fallback` is the sequence of attempts where
 //! a solve fails, `feasible_guess` looks whether a guess was better, `tips` whether a solution at the tip of a corner is a
-//! minimum, `plateaus` whether one that does not feel some variables is, `way_down` where either leads; `least_durations` whether one ends where only the
-//! transcription holds it; `relaxation` looks whether
-//! one with helpers in the place of corners meets the equations as they are written; `corner_sides` and `held_sides` say on which
+//! minimum, `plateaus` whether one that does not feel some variables is, `way_down` where either leads; `least_durations`
+//! whether one ends where only the transcription holds it; `relaxation` looks whether one with helpers in the place of corners
+//! meets the equations as they are written; `corner_sides` and `held_sides` say on which
 //! sides of their corners helpers are held where it does not.
 
 mod beside;

@@ -3,7 +3,6 @@
 //! Takes bounds, boundary conditions and slopes; gives a guess of each free duration. Of a bound that is far beyond what
 //! balances the equations nothing is known but that somebody wrote it.
 
-use super::layout::Time;
 use super::rows::shortest_duration;
 use super::{Transcription, defaults};
 use ntg_nlp::{Limits, Nlp};
@@ -90,12 +89,8 @@ impl Transcription<'_> {
             self.limits.lower[*variable as usize] = shortest_duration(*upper);
         }
         let limits = &self.limits;
-        let free = self.model.layout.phases.iter().filter_map(|phase| match phase.duration {
-            Time::Free(variable) => Some(variable),
-            Time::Fixed(_) => None,
-        });
         let mut durations: Vec<FreeDuration> = vec![];
-        for variable in free {
+        for variable in self.model.layout.free_durations() {
             let told = longest.iter().find(|told| told.0 == variable);
             let upper = told.map_or(limits.upper[variable as usize], |told| told.1);
             let lower = limits.lower[variable as usize];

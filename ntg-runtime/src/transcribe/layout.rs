@@ -92,6 +92,14 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
+    /// The variables that are durations, phase by phase.
+    pub(crate) fn free_durations(&self) -> impl Iterator<Item = u32> + '_ {
+        self.phases.iter().filter_map(|phase| match phase.duration {
+            Time::Free(variable) => Some(variable),
+            Time::Fixed(_) => None,
+        })
+    }
+
     /// Expands all families and numbers all variables.
     pub(crate) fn new(structure: &Structure) -> Result<Self, SetupError> {
         let mut layout = Self { phase_first: vec![vec![]; structure.phases.len()], ..Self::default() };

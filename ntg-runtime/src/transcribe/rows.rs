@@ -5,7 +5,6 @@
 
 use super::error::SetupError;
 use super::frame::Frame;
-use super::layout::Time;
 use super::names;
 use super::points::Point;
 use super::times::phase_words;
@@ -159,11 +158,7 @@ pub(crate) fn shortest_duration(upper: f64) -> f64 {
 
 /// The durations without a lower bound above 0, whose least length is the transcription's.
 pub(crate) fn guarded_durations<'a>(frame: &'a Frame, bounds: &'a [Pair]) -> impl Iterator<Item = u32> + 'a {
-    let free = frame.layout.phases.iter().filter_map(|phase| match phase.duration {
-        Time::Free(variable) => Some(variable),
-        Time::Fixed(_) => None,
-    });
-    free.filter(|variable| {
+    frame.layout.free_durations().filter(|variable| {
         let (lower, upper) = bounds[*variable as usize];
         lower == shortest_duration(upper)
     })
