@@ -46,6 +46,57 @@ fn a_time_between_knots_moves_with_a_free_duration() {
     close(report.phases()[0].end, 6.0, 1e-6);
 }
 
+/// What `der` is applied to varies at a place too: time, scaled time, arguments of functions and tables of time.
+#[test]
+fn derivatives_of_time_are_the_same_at_a_place_as_along_the_way() {
+    let spec = Shipped::text(
+        "problem P {
+            duration T in 1 .. 3;
+            fn rate(a) = der(a);
+            table line(s) = linear { 0: 0; 4: 8; }
+            collocation gauss(points = 3, intervals = 6);
+            state v;
+            input u in -10 .. 10;
+            variable a; variable b; variable c; variable d; variable e; variable f; variable g; variable h;
+            let hook = sin(t);
+            let scaled = tau^2;
+            dynamics { der(v) == u; }
+            minimize integral(u^2) + (T - 2)^2 + final(der(line(t)));
+            initial { v == der(tau^2); }
+            at T / 2 { v == der(t * tau); }
+            final { v == der(scaled) + der(hook); }
+            temporal {
+                a == final(der(t));  b == final(rate(hook));  c == at(T / 2, rate(t^2));  d == final(der(scaled));
+                e == initial(der(tau));  f == final(der(t^3, 2));  g == final(der(v * t));  h == at(T / 2, tau + t * der(tau));
+            }
+        }",
+    );
+    let report = spec.solve();
+    assert!(report.is_solved(), "{report}");
+    let end = report.phases()[0].end;
+    let v = |t: f64, order: usize| report.solution.output("v").expect("an output").derivative(t, order);
+    // Two lines of speed: 0 to 1, and on to 2 / T + cos T; the slope of the table is 2.
+    let last = 2.0 / end + end.cos();
+    assert!(v(0.0, 0).abs() < 1e-8, "{}", v(0.0, 0));
+    close(v(end / 2.0, 0), 1.0, 1e-8);
+    close(v(end, 0), last, 1e-8);
+    close(report.objective, 2.0 / end * (1.0 + (last - 1.0).powi(2)) + (end - 2.0).powi(2) + 2.0, 1e-8);
+    let rate = v(end, 1) * end + last;
+    for (name, known) in [
+        ("a", 1.0),
+        ("b", end.cos()),
+        ("c", end),
+        ("d", 2.0 / end),
+        ("e", 1.0 / end),
+        ("f", 6.0 * end),
+        ("g", rate),
+        ("h", 1.0),
+    ] {
+        let found = report.solution.variable(name).expect("a variable");
+        assert!((found - known).abs() < 1e-8, "{name}: {found} {known}");
+    }
+}
+
 /// A price on where a state is at a time, and a limit on it, make an input jump there: a closed polygon of speeds 1, 0, -1.
 #[test]
 fn an_input_jumps_where_a_price_or_a_limit_stands_at_a_time() {

@@ -455,6 +455,7 @@ impl<'a> Elaborator<'a> {
     ) -> Option<Value> {
         let spread = at.is_empty() || self.shape(cx, expr)?.is_number();
         let value = self.element(cx, expr, if spread { &[] } else { at });
+        let value = self.placed(cx, value);
         self.settle(value, place)
     }
 }

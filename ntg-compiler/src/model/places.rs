@@ -111,6 +111,7 @@ impl<'a> Elaborator<'a> {
         };
         let inner = self.on(cx, &stretch, point);
         let value = self.element_or_zero(&inner, of, at);
+        let value = self.placed(&inner, value);
         self.mark_event(span, self.text(span), false);
         value.map(value.node, value.dimension, span).shown_in(value.unit.clone())
     }

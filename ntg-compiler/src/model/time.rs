@@ -12,7 +12,7 @@ use super::problem::{Form, Leaf, Loop, PhaseAt};
 use super::scope::{Allow, Context, Point, ScopeId};
 use super::value::{OpenIndex, Value, What};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Fold, NodeId};
+use crate::expr::{Fold, InputId, Map, NodeId};
 use crate::source::Span;
 use crate::syntax::ast::{Boundary, Event, Expr, Path};
 
@@ -49,20 +49,8 @@ impl<'a> Elaborator<'a> {
         let node = match (cx.allow, cx.point, phase) {
             (Allow::Guess, Point::Nowhere, None) => self.guessed_time(cx),
             (Allow::Guess, _, Some(phase)) => Some(self.leaf(Leaf::Time(phase))),
-            (Allow::All, Point::Path | Point::Start | Point::End, Some(phase)) => Some(self.leaf(Leaf::Time(phase))),
-            (Allow::All, Point::MissionStart, Some(phase)) => Some(self.leaf(Leaf::Start(phase))),
-            (Allow::All, Point::MissionEnd, Some(phase)) => {
-                let start = self.leaf(Leaf::Start(phase.clone()));
-                let duration = self.leaf(Leaf::Duration(phase));
-                Some(self.problem.dag.add(start, duration))
-            }
-            (Allow::All, Point::MissionInside(instant), Some(phase)) => {
-                let start = self.leaf(Leaf::Start(phase.clone()));
-                let duration = self.leaf(Leaf::Duration(phase));
-                let tau = self.problem.dag.constant(instant.tau());
-                let gone = self.problem.dag.mul(tau, duration);
-                Some(self.problem.dag.add(start, gone))
-            }
+            (Allow::All, Point::Nowhere, _) => None,
+            (Allow::All, _, Some(phase)) => Some(self.leaf(Leaf::Time(phase))), // Until `placed`.
             _ => None,
         };
         match node {
@@ -88,16 +76,56 @@ impl<'a> Elaborator<'a> {
     /// `tau`.
     pub(super) fn scaled_time(&mut self, cx: &Context<'a>, span: Span) -> Value {
         let node = match (cx.allow, cx.point) {
-            (Allow::Guess, _) | (Allow::All, Point::Path) => self.leaf(Leaf::Tau),
-            (Allow::All, Point::Start | Point::MissionStart) => self.problem.dag.constant(0.0),
-            (Allow::All, Point::End | Point::MissionEnd) => self.problem.dag.constant(1.0),
-            (Allow::All, Point::MissionInside(instant)) => self.problem.dag.constant(instant.tau()),
             (Allow::All, Point::MissionAmong { index, .. }) => {
                 return self.open(OpenIndex { index, cut: None, span });
             }
+            (Allow::Guess, _) => self.leaf(Leaf::Tau),
+            (Allow::All, point) if point != Point::Nowhere => self.leaf(Leaf::Tau), // Until `placed`.
             _ => return self.misplaced_value(What::ScaledTime, span, "tau", Some(Dimension::NONE)),
         };
         Value::new(node, Dimension::NONE, span)
+    }
+
+    /// A whole expression of a place, with the place's own time and scaled time for those that vary. Not before: what
+    /// `der` is applied to varies there too.
+    pub(super) fn placed(&mut self, cx: &Context<'a>, value: Value) -> Value {
+        let (tau, is_of_mission) = match cx.point {
+            Point::Start => (0.0, false),
+            Point::End => (1.0, false),
+            Point::MissionStart => (0.0, true),
+            Point::MissionEnd => (1.0, true),
+            Point::MissionInside(instant) => (instant.tau(), true),
+            Point::Nowhere | Point::Path | Point::MissionAmong { .. } => return value,
+        };
+        if cx.allow != Allow::All || !value.is_sound() {
+            return value;
+        }
+        let mut places: Map<InputId, NodeId> = Map::default(); // Looked up, never iterated.
+        for input in self.problem.dag.inputs_of(&[value.node]) {
+            let place = match self.problem.leaves.leaf(input).clone() {
+                Leaf::Tau => self.problem.dag.constant(tau),
+                Leaf::Time(phase) if is_of_mission => self.time_of(phase, tau),
+                _ => continue,
+            };
+            places.insert(input, place);
+        }
+        let [node] = self.problem.dag.substitute(&[value.node], |input| places.get(&input).copied())[..] else {
+            return value;
+        };
+        Value { node, ..value }
+    }
+
+    /// The time at a part of a phase.
+    fn time_of(&mut self, phase: PhaseAt, tau: f64) -> NodeId {
+        let start = self.leaf(Leaf::Start(phase.clone()));
+        if tau == 0.0 {
+            return start;
+        }
+        let duration = self.leaf(Leaf::Duration(phase));
+        let dag = &mut self.problem.dag;
+        let part = dag.constant(tau);
+        let gone = dag.mul(part, duration);
+        dag.add(start, gone)
     }
 
     /// The phases of an agent; a family of phases is one stretch, its member left open.
@@ -243,6 +271,7 @@ impl<'a> Elaborator<'a> {
         };
         let inner = self.on(cx, &stretch, point);
         let value = self.element_or_zero(&inner, of, at);
+        let value = self.placed(&inner, value);
         self.mark_event(span, self.text(span), false);
         value.map(value.node, value.dimension, span).shown_in(value.unit.clone())
     }
