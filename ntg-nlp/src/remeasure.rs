@@ -163,7 +163,7 @@ pub(crate) fn until_measured(
             }
             Some(before) if !outcome.status.has_solution() => match confirmed(before, &outcome, &options) {
                 Confirmed::By(end) => return unless_worse(left_saddle, end),
-                Confirmed::Not(before) => return unless_worse(left_saddle, narrower(before, outcome)),
+                Confirmed::Not(before) => return unless_worse(left_saddle, refuted(before, outcome)),
                 Confirmed::Improved(size) => Measure::Objective(size),
             },
             _ => measure,
@@ -394,6 +394,16 @@ fn narrower(wide: Outcome, end: Outcome) -> Outcome {
     match end.status {
         Status::Solved | Status::Cancelled | Status::TimeLimit => end,
         _ => Outcome { status: Status::Acceptable, iterations, seconds, ..wide },
+    }
+}
+
+/// The end of a solve that one with a larger scale of the objective has not confirmed. Where its gradient is not small beside the
+/// objective itself either, what was found is no better than any other point.
+fn refuted(before: Outcome, end: Outcome) -> Outcome {
+    let is_stationary = before.residuals.scaled.dual <= ALL_BUT_STATIONARY * scaled_objective(&before);
+    match narrower(before, end) {
+        end if end.status == Status::Acceptable && !is_stationary => Outcome { status: Status::StepTooSmall, ..end },
+        end => end,
     }
 }
 

@@ -127,3 +127,35 @@ fn a_product_within_bounds_is_bounded_in_any_unit() {
         assert!((report.objective / (10.0_f64 / 6.0).powf(1.5) - 1.0).abs() < 1e-6, "{report}");
     }
 }
+
+/// What grows by e^16 and more cannot be turned by a weak input, and need not be: any input is feasible. From the constant guess
+/// all of it was "infeasible", or fell without limit.
+#[test]
+fn growth_that_no_input_can_turn_is_feasible_and_bounded() {
+    for (rate, x0, intervals, objective) in [
+        (4.0, 1.0, 20, "minimize final(x)^2;"),
+        (4.0, 1.0, 10, "minimize final(x)^2;"),
+        (4.5, 3.0, 40, "maximize final(x);"),
+        (5.0, 0.3, 10, "minimize final(x);"),
+        (5.0, 0.3, 40, "minimize final(x);"),
+    ] {
+        let spec = Shipped::text(&format!(
+            "problem Growth {{
+                duration T = 4;
+                state x;
+                input u in -1 .. 1;
+                collocation gauss(points = 4, intervals = {intervals});
+                dynamics {{ der(x) == {rate} * x + u; }}
+                initial {{ x == {x0}; }}
+                {objective}
+            }}"
+        ));
+        let report = spec.solve();
+        assert!(report.is_solved(), "{rate}, {intervals}, {objective}: {report}");
+        let input = if objective.contains("max") { 1.0 } else { -1.0 };
+        let last = (x0 + input / rate) * f64::exp(4.0 * rate) - input / rate;
+        let known = if objective.contains("^2") { last.powi(2) } else { last };
+        // Ten intervals follow e^20 to a part in 5000.
+        close(report.objective, known, 1e-3);
+    }
+}

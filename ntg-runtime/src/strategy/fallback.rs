@@ -32,6 +32,10 @@ const ATTEMPTS: [Attempt; 11] = [
     Attempt::Onwards,
 ];
 
+/// A motion of so many times the sizes of its outputs is none of the guess's. A choice: two of four digits that a linear program
+/// with a tolerance of 1e-8 has left where sizes are 1e4 too small.
+const OUTGROWN: f64 = 1e2;
+
 /// How an attempt that follows a failed one solves a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Attempt {
@@ -150,8 +154,10 @@ impl Session {
                 outcome = better(outcome, next);
             }
         } else {
+            let mut is_unbounded = false;
             for attempt in ATTEMPTS {
-                let is_believed = (is_guess && is_infeasible(&outcome)) || is_proven(nlp, &outcome);
+                let is_believed = (is_guess && is_infeasible(&outcome)) || is_unbounded || is_proven(nlp, &outcome);
+                let is_believed = is_believed && !(attempt == Attempt::Simulated && outgrows(nlp, x, &settings)?);
                 if is_believed
                     || !attempt.follows(&outcome.status, seems_infeasible)
                     || (was_simulated && attempt == Attempt::Simulated)
@@ -165,8 +171,8 @@ impl Session {
                     // Two ways that find no end are no accident of one.
                     let is_again = attempt == Attempt::Rays || outcome.status == Status::Unbounded;
                     if is_again && next.status == Status::Unbounded {
-                        outcome = next;
-                        break;
+                        (outcome, is_unbounded) = (next, true);
+                        continue;
                     }
                     seems_infeasible |= misses(&next);
                     outcome = better(outcome, next);
@@ -260,6 +266,14 @@ impl Session {
 /// are so much too large that the least violation is one of their tolerance.
 fn is_proven(nlp: &Transcription, outcome: &Outcome) -> bool {
     is_infeasible(outcome) && nlp.is_linear() && nlp.smaller_sizes(&outcome.x).is_none()
+}
+
+/// Whether the motion that follows from the guessed inputs leaves the sizes that the guess tells far behind: what was found out
+/// with those is rounding beside it.
+fn outgrows(nlp: &mut Transcription, x: &[f64], settings: &Settings) -> Result<bool, SetupError> {
+    nlp.set_scales(x, settings)?;
+    let Some(motion) = simulated(nlp, x) else { return Ok(false) };
+    Ok(motion.iter().zip(&nlp.limits.scale).any(|(x, size)| x.abs() > OUTGROWN * size))
 }
 
 /// The largest violation of a row at a point, times the row's factor, and the minimised objective; infinite where a row has

@@ -8,6 +8,7 @@ use super::budget::Budget;
 use super::fallback::violation_by;
 use super::session::{FirstPoint, Session};
 use crate::transcribe::{SetupError, Transcription};
+use ntg_nlp::residuals::ACCEPTABLE;
 use ntg_nlp::{Nlp, Outcome, Start, Status};
 
 /// By how much of the objective a guess has to be better. A law: that of an acceptable end (1e-6).
@@ -35,6 +36,12 @@ impl Session {
         let Some(settings) = budget.further() else { return Ok((outcome, true)) };
         let scales = nlp.limits.clone();
         nlp.set_scales(guess, &settings)?;
+        // What grows by 1e8 leaves equations that the guess misses by all of their terms met, by the tolerance of its end.
+        let by_guess: Vec<f64> = nlp.limits.row_scale.iter().map(|size| 1.0 / size).collect();
+        if violation_by(nlp, &by_guess, guess).0 > ACCEPTABLE {
+            nlp.limits = scales;
+            return Ok((outcome, false));
+        }
         nlp.raise_sizes(&scales.scale, &settings);
         let next = self.solve_measured(nlp, FirstPoint { x: guess, from: Start::Near }, &settings);
         budget.spend(next.iterations);
