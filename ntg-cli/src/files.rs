@@ -121,7 +121,15 @@ pub(crate) fn unread_of(path: &Path, extension: &str, error: &std::io::Error) ->
 fn reason(path: &Path, error: &std::io::Error, from: &Path) -> String {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match error.kind() {
-        std::io::ErrorKind::InvalidData => "it is not UTF-8 text; save it in the encoding UTF-8".to_owned(),
+        std::io::ErrorKind::InvalidData => {
+            let why = error.get_ref().and_then(|why| why.downcast_ref::<FromUtf8Error>());
+            let place = why.map_or_else(String::new, |why| {
+                let (before, rest) = why.as_bytes().split_at(why.utf8_error().valid_up_to());
+                let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+                format!(", line {line} has the byte 0x{:02x}", rest.first().copied().unwrap_or_default())
+            });
+            format!("it is not UTF-8 text{place}; save it in the encoding UTF-8")
+        }
         std::io::ErrorKind::NotFound if !folder.is_dir() => format!("there is no folder `{}`", folder.display()),
         std::io::ErrorKind::NotFound => match nearest(folder, Some(path), path.extension().unwrap_or("ntg".as_ref())) {
             Some(near) => {

@@ -25,6 +25,9 @@ pub(crate) struct Arguments {
     every: Option<String>,
 }
 
+/// Endings of files that are neither of both, and what one may hope that samples are.
+const OTHERS: [&str; 12] = ["xlsx", "xls", "ods", "tsv", "json", "html", "pdf", "png", "svg", "mat", "h5", "feather"];
+
 /// Rows that are written at most.
 const MOST: f64 = 1e7;
 
@@ -42,6 +45,7 @@ impl Arguments {
     /// Whether all can be written, before anything is solved.
     pub(crate) fn checked(&self, force: bool) -> Result<(), String> {
         for (path, format) in self.files() {
+            fits(path, format)?;
             write::may_write(path, force)?;
             ntg_sweep::bytes(&[], format).map_err(|message| format!("--parquet: {message}"))?;
         }
@@ -81,6 +85,27 @@ impl Arguments {
             write::whole(path, force, &ntg_sweep::bytes(&columns, format)?)?;
         }
         Ok(())
+    }
+}
+
+/// Refuses a name that says that a file is of another format.
+fn fits(path: &Path, format: Format) -> Result<(), String> {
+    let shown = path.display();
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match (format, ending.as_str()) {
+        (Format::Csv, "parquet") => {
+            Err(format!("`{shown}`: --csv writes comma-separated values; name a .csv file, or give --parquet {shown}"))
+        }
+        (Format::Parquet, "csv") => {
+            Err(format!("`{shown}`: --parquet writes Parquet; name a .parquet file, or give --csv {shown}"))
+        }
+        (Format::Csv, ending) if OTHERS.contains(&ending) => {
+            Err(format!("`{shown}`: samples are .csv or .parquet files; spreadsheets open .csv"))
+        }
+        (Format::Parquet, ending) if OTHERS.contains(&ending) => {
+            Err(format!("`{shown}`: samples are .csv or .parquet files"))
+        }
+        _ => Ok(()),
     }
 }
 

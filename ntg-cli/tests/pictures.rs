@@ -263,6 +263,12 @@ fn samples_are_equally_spaced_and_end_at_the_end() {
         (&["--csv", "b.csv", "--every", "1 m"], "--every 1 m"),
         (&["--csv", "b.csv", "--every", "soon"], "write a number"),
         (&["--csv", "tour.csv"], "--force"),
+        // What another program would open as what it is not.
+        (&["--csv", "b.xlsx"], "`b.xlsx`: samples are .csv or .parquet files; spreadsheets open .csv"),
+        (&["--csv", "b.Parquet"], "name a .csv file, or give --parquet b.Parquet"),
+        (&["--csv", "b.json"], "samples are .csv or .parquet files"),
+        (&["--parquet", "b.csv"], "name a .parquet file, or give --csv b.csv"),
+        (&["--parquet", "b.xlsx"], "`b.xlsx`: samples are .csv or .parquet files"),
     ] {
         let output = ntg(folder.path(), &[&["solve", "tour.ntg"], arguments].concat());
         let said = String::from_utf8_lossy(&output.stderr).into_owned();

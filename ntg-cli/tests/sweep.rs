@@ -386,3 +386,33 @@ problem Cart {
     assert_eq!(written("v=1:3:2 [m/s]"), ["3.6", "10.8"]);
     assert_eq!(written("v=0.1:0.7:7"), ["0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7"]);
 }
+
+#[test]
+fn a_table_that_cannot_be_read_is_told_with_its_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("move.ntg"), MOVE).expect("a spec");
+    let ragged = "line 4: this row has 1 cell, the first line names 2 columns; write as many cells in every row";
+    let coded = "line 2: this is not UTF-8 text: byte 0xff; save the file in the encoding UTF-8";
+    for (bytes, words) in [(&b"from,to\n# first\n1,2\n3\n"[..], ragged), (&b"from,to\n1,\xff2\n"[..], coded)] {
+        std::fs::write(folder.path().join("sets.csv"), bytes).expect("a table");
+        for command in [&["sweep", "move.ntg", "--from", "sets.csv", "-o", "o.csv"][..], &["summary", "sets.csv"]] {
+            let mut ntg = Command::new(env!("CARGO_BIN_EXE_ntg"));
+            let output = ntg.current_dir(folder.path()).args(command).output().expect("the command starts");
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(
+                output.status.code() == Some(2) && said.contains(&format!("`sets.csv`, {words}")),
+                "{command:?}: {said}"
+            );
+        }
+    }
+}
+
+const MOVE: &str = "problem Move {
+    duration T = 1;
+    param from = 0;
+    param to = 1;
+    output x: spline(order = 4, intervals = 2);
+    minimize integral(der(x, 2)^2);
+    initial { x == from; }
+    final { x == to; }
+}";

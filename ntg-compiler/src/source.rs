@@ -19,6 +19,14 @@ pub struct Source {
     pub text: String,
 }
 
+/// The lines of a source, for whoever asks for many places.
+#[derive(Clone, Debug)]
+pub(crate) struct Lines<'a> {
+    source: &'a Source,
+    /// The first byte of each line.
+    starts: Vec<usize>,
+}
+
 /// A half-open stretch of bytes, `start .. end`, of one source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
@@ -53,9 +61,13 @@ impl Source {
         let byte = self.boundary(byte as usize);
         let start = self.line_start(byte);
         let line = 1 + self.text[..start].bytes().filter(|b| *b == b'\n').count();
+        Place { line, column: self.column(start, byte) }
+    }
+
+    /// The column of a byte of the line that begins at `start`.
+    fn column(&self, start: usize, byte: usize) -> usize {
         // The byte order mark is no column of the first line.
-        let column = 1 + self.text[start..byte].chars().filter(|c| *c != '\u{feff}').count();
-        Place { line, column }
+        1 + self.text[start..byte].chars().filter(|c| *c != '\u{feff}').count()
     }
 
     /// The text of a span; what lies beyond the end is left out.
@@ -97,6 +109,20 @@ impl Source {
     /// The nearest character boundary at or before `byte`, within the text.
     pub(crate) fn boundary(&self, byte: usize) -> usize {
         self.text.floor_char_boundary(byte)
+    }
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn of(source: &'a Source) -> Self {
+        let breaks = source.text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        Self { source, starts: std::iter::once(0).chain(breaks.map(|(at, _)| at + 1)).collect() }
+    }
+
+    /// As [`Source::place`].
+    pub(crate) fn place(&self, byte: u32) -> Place {
+        let byte = self.source.boundary(byte as usize);
+        let line = self.starts.partition_point(|start| *start <= byte);
+        Place { line, column: self.source.column(self.starts[line - 1], byte) }
     }
 }
 
@@ -146,6 +172,8 @@ mod tests {
         assert_eq!(source.place(0), Place { line: 1, column: 1 });
         assert_eq!(source.place(6), Place { line: 2, column: 2 }); // `ẋ` has three bytes.
         assert_eq!(source.place(999), Place { line: 3, column: 2 });
+        let lines = Lines::of(&source);
+        assert!((0..20).all(|byte| lines.place(byte) == source.place(byte)), "the lines are those of the source");
     }
 
     #[test]

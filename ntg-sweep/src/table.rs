@@ -47,14 +47,16 @@ impl Format {
 /// In words: unreadable files, rows of different lengths.
 pub fn read(path: &Path) -> Result<Table, String> {
     let bytes = std::fs::read(path).map_err(|error| format!("cannot read `{}`: {error}", path.display()))?;
-    let table = match Format::of(path)? {
-        Format::Csv => crate::csv::read(&bytes),
+    let shown = path.display();
+    match Format::of(path)? {
+        Format::Csv => {
+            crate::csv::read(&bytes).map_err(|fault| format!("`{shown}`, line {}: {}", fault.line, fault.message))
+        }
         #[cfg(feature = "parquet")]
-        Format::Parquet => crate::parquet::read(bytes),
+        Format::Parquet => crate::parquet::read(bytes).map_err(|message| format!("`{shown}`: {message}")),
         #[cfg(not(feature = "parquet"))]
-        Format::Parquet => Err("Parquet is not built in".to_owned()),
-    };
-    table.map_err(|message| format!("`{}`: {message}", path.display()))
+        Format::Parquet => Err(format!("`{shown}`: Parquet is not built in")),
+    }
 }
 
 /// One column of results.

@@ -13,7 +13,7 @@ use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::mention::mentioned;
 use super::problem::{Form, IndexId, Loop};
-use super::scope::{Allow, Context, Entity, Meaning, look_up};
+use super::scope::{Allow, Context, Entity, Meaning, ScopeId, look_up};
 use super::value::{Value, What};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::source::Span;
@@ -258,6 +258,21 @@ impl<'a> Elaborator<'a> {
         None
     }
 
+    /// Where a family around a scope declares its index of this name, if nothing nearer has the name.
+    fn family_index(&self, scope: ScopeId, name: &str) -> Option<Span> {
+        let mut next = Some(scope);
+        while let Some(scope) = next.map(|id| &self.scopes[id]) {
+            if scope.names.contains_key(name) {
+                return None;
+            }
+            if let Some(index) = scope.index.filter(|index| index.text == name) {
+                return Some(index.span);
+            }
+            next = scope.parent;
+        }
+        None
+    }
+
     /// A loop and the context inside it.
     pub(super) fn range(&mut self, cx: &Context<'a>, range: &'a IndexRange) -> Option<(Loop, Context<'a>)> {
         let name = range.index.text.as_str();
@@ -273,13 +288,17 @@ impl<'a> Elaborator<'a> {
     pub(super) fn bind_index(&mut self, cx: &Context<'a>, index: &'a Ident) {
         let name = index.text.as_str();
         self.index_names.entry(name).or_insert(index.span);
-        let hidden = cx.local(name).is_some() || self.index_in_sight(cx, name).is_some();
+        // The index of a family is hidden from what stands inside the family: a definition of the whole problem is taken in each of
+        // its members, and means its own indices.
+        let family = self.family_index(cx.library.unwrap_or(cx.lexical), name);
+        let hidden = cx.local(name).is_some() || family.is_some();
         let declared = look_up(&self.scopes, cx.library.unwrap_or(cx.lexical), name).map(|(_, declared)| declared);
         if hidden || declared.is_some() {
             let mut finding = Diagnostic::new(Code::DeclaredTwice, index.span, format!("`{name}` is declared twice"))
                 .label(index.span, "declared again as an index here");
-            if let Some(declared) = declared.filter(|_| !hidden) {
-                finding = finding.label(declared.span, "first declared here");
+            let first = declared.filter(|_| !hidden).map(|declared| declared.span).or(family);
+            if let Some(first) = first {
+                finding = finding.label(first, "first declared here");
             }
             self.report(finding.help("give the index another name"));
         }

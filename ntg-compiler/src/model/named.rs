@@ -222,8 +222,9 @@ impl<'a> Elaborator<'a> {
     /// Tells of indices of a family that hide other names.
     fn hidden_indices(&mut self, cx: &Context<'a>, definition: usize) {
         let indices: Vec<&'a Ident> = self.definitions[definition].indices().collect();
+        let home = self.home(cx, self.definitions[definition].scope);
         for index in indices {
-            self.bind_index(cx, index);
+            self.bind_index(&home, index);
         }
     }
 

@@ -176,7 +176,9 @@ impl<'a> Elaborator<'a> {
                 // What is wrong with a path is told of here, and must not hide what else is wrong.
                 let stretches = self.stretches_of(cx, path.as_ref(), expr.span).unwrap_or_default();
                 let Some(first) = stretches.first() else { return Some(Shape::NUMBER) };
-                let inner = self.on(cx, first, Point::Path);
+                // Members are alike; one has a value of the family's index.
+                let first = if first.index.is_none() { self.first_member(first) } else { first.clone() };
+                let inner = self.on(cx, &first, Point::Path);
                 self.shape(&inner, of)
             }
             ExprKind::Reduce(reduction) => {

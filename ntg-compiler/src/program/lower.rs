@@ -19,13 +19,14 @@ use super::points::point_sets;
 use super::{KernelBody, Program};
 use crate::expr::{Dag, Map, Node, NodeId};
 use crate::model::problem::{self as model, Constraint, Imposed, Loop, Problem};
-use crate::source::{Source, Span};
+use crate::source::{Lines, Source, Span};
 
 /// Makes a problem's program. `source` is the text that the problem's spans point into.
 pub fn lower(problem: Problem, source: &Source) -> Program {
     let mut lowering = Lowering {
         problem,
         source,
+        lines: Lines::of(source),
         kernels: Vec::new(),
         bodies: Vec::new(),
         names: Names::default(),
@@ -55,6 +56,7 @@ pub fn lower(problem: Problem, source: &Source) -> Program {
 pub(super) struct Lowering<'a> {
     pub(super) problem: Problem,
     source: &'a Source,
+    lines: Lines<'a>,
     kernels: Vec<Kernel>,
     bodies: Vec<KernelBody>,
     names: Names,
@@ -71,8 +73,6 @@ struct Gathered {
     loops: Vec<ntg_structure::Loop>,
     domain: Domain,
     purpose: &'static str,
-    /// Whether they are about what members of a scenario have in common alone.
-    is_common: bool,
     pieces: Vec<Piece>,
 }
 
@@ -133,20 +133,24 @@ impl Lowering<'_> {
 
     fn groups(&mut self, pieces: Vec<Piece>, structure: &mut Structure, shown: bool) -> Vec<Group> {
         let mut gathered: Vec<Gathered> = Vec::new();
+        // By whether they are about what members of a scenario have in common alone, loops and domain.
+        let mut known: HashMap<(bool, Vec<ntg_structure::Loop>, Domain), usize> = HashMap::new(); // Looked up, never iterated.
         for piece in pieces {
             let loops = positions(&piece.loops);
             let environment = Environment::of(&piece.loops);
             let is_common = self.is_common(&piece);
             for (domain, purpose) in self.domains(&piece, &environment, structure) {
                 let apart = matches!(domain, Domain::Mission);
-                let fits = |g: &&mut Gathered| g.is_common == is_common && g.loops == loops && g.domain == domain;
-                match gathered.iter_mut().find(|g| !apart && fits(g)) {
-                    Some(group) => group.pieces.push(piece.clone()),
-                    None => {
-                        let pieces = vec![piece.clone()];
-                        gathered.push(Gathered { loops: loops.clone(), domain, purpose, is_common, pieces });
-                    }
+                let key = (is_common, loops.clone(), domain.clone());
+                if let Some(group) = known.get(&key) {
+                    gathered[*group].pieces.push(piece.clone());
+                    continue;
                 }
+                if !apart {
+                    known.insert(key, gathered.len());
+                }
+                let pieces = vec![piece.clone()];
+                gathered.push(Gathered { loops: loops.clone(), domain, purpose, pieces });
             }
         }
         let first = if shown { 0 } else { structure.groups.len() };
@@ -369,7 +373,7 @@ impl Lowering<'_> {
 
     /// Where something stands, for structures that outlive the source.
     pub(super) fn place(&self, span: Span) -> Place {
-        let at = self.source.place(span.start);
+        let at = self.lines.place(span.start);
         let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         Place { line: number(at.line), column: number(at.column), text: self.source.snippet(span) }
     }

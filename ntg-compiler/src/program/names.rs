@@ -1,23 +1,29 @@
 //! Readable, distinct names for kernels and their inputs.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Hands out names, none twice.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Names {
     taken: HashSet<String>, // Asked, never iterated.
+    /// The last number behind each wish; up to there all are taken.
+    last: HashMap<String, usize>, // Looked up, never iterated.
 }
 
 impl Names {
     /// `wish`, or `wish` with the first free number behind it.
     pub(super) fn distinct(&mut self, wish: &str) -> String {
-        let mut name = wish.to_owned();
-        let mut count = 1;
-        while !self.taken.insert(name.clone()) {
-            count += 1;
-            name = format!("{wish}_{count}");
+        if self.taken.insert(wish.to_owned()) {
+            return wish.to_owned();
         }
-        name
+        let count = self.last.entry(wish.to_owned()).or_insert(1);
+        loop {
+            *count += 1;
+            let name = format!("{wish}_{count}");
+            if self.taken.insert(name.clone()) {
+                return name;
+            }
+        }
     }
 }
 

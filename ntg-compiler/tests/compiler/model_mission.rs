@@ -254,3 +254,45 @@ fn names_of_other_scopes_need_their_path() {
     let found = findings(text);
     assert_eq!(found.matches("E020").count(), 2, "{found}");
 }
+
+/// Text of three hours, each with its own price: statements of the problem, of each hour, and the objective.
+fn hours(common: &str, own: &str, total: &str) -> String {
+    format!(
+        "problem Storage {{
+            param price[3] = (1, 3, 2);
+            {common}
+            collocation gauss(points = 2, intervals = 1);
+            state E in 0 .. 2;
+            input u in -1 .. 1: held;
+            dynamics {{ der(E) == -u; }}
+            initial {{ E == 1; }}
+            phase hour[i in 1 .. 3] {{ duration = 1; {own} }}
+            {total}
+        }}"
+    )
+}
+
+#[test]
+fn what_a_family_names_by_its_index_itself_stands_in_totals() {
+    for own in ["let c = i * u;", "let p = price[i];  let c = p * i * u;", "let w = (i, 2 * i);  let c = w[2] * u;"] {
+        for total in ["maximize integral(c);", "maximize integral(c) - final(c);", "minimize initial(c)^2;"] {
+            good(&hours("", own, total));
+        }
+        let (p, q) = (
+            good(&hours("", own, "maximize integral(c);")),
+            good(&hours("", own, "maximize sum(k in 1 .. 3, integral(hour[k], c));")),
+        );
+        assert_eq!((p.phases.len(), q.phases.len()), (1, 1), "{own}: the family stays one");
+    }
+}
+
+#[test]
+fn an_index_of_the_whole_problem_is_none_of_a_family() {
+    for (common, own) in [
+        ("let e[i in 1 .. 3] = 2 * price[i];", "let c = e[i] * u;"),
+        ("let all = sum(i in 1 .. 3, price[i]);", "let c = all * price[i] * u;"),
+        ("trajectory { for i in 1 .. 3 { u <= price[i]; } }", "let c = i * u;"),
+    ] {
+        good(&hours(common, own, "maximize integral(c);"));
+    }
+}

@@ -6,6 +6,7 @@
 //! an element depends on fewer, the last ones are padding. An element at a breakpoint depends on some of the variables
 //! of the interval beside it; it is given all variables of that interval, so that both are worked on together.
 
+use super::chains::Chains;
 use crate::contract::Block;
 
 /// Slots with common element variables.
@@ -56,7 +57,8 @@ impl Supports {
         let mut all: Vec<Support> = vec![];
         for slot in 0..block.slots {
             let Some(lead) = leader[slot] else { continue };
-            let at = all.iter().position(|c| c.slots[0] == lead).unwrap_or_else(|| {
+            // The leader is the first one of its support.
+            let at = of[lead].unwrap_or_else(|| {
                 all.push(Support { slots: vec![], first: 0, last: 0 });
                 all.len() - 1
             });
@@ -178,24 +180,19 @@ impl Lists {
 
 /// For each slot the first slot of the same support; none for a slot that depends on nothing.
 fn leaders(block: &Block) -> Vec<Option<usize>> {
-    let mut leader: Vec<usize> = (0..block.slots).collect();
+    let mut chains = Chains::new(block.slots);
     let mut used = vec![false; block.slots];
     for e in 0..block.elements {
-        let (width, map) = (block.variables(e).len(), block.map(e));
-        for element_variable in 0..width {
-            let mut sharing = (0..block.slots).filter(|slot| map[slot * width + element_variable] != 0.0);
-            let Some(first) = sharing.next() else { continue };
-            used[first] = true;
-            for slot in sharing {
+        let width = block.variables(e).len();
+        let mut first: Vec<Option<usize>> = vec![None; width];
+        for (slot, map) in block.map(e).chunks_exact(width.max(1)).enumerate() {
+            for (first, _) in first.iter_mut().zip(map).filter(|(_, coefficient)| **coefficient != 0.0) {
                 used[slot] = true;
-                let (low, high) = (leader[first].min(leader[slot]), leader[first].max(leader[slot]));
-                if low != high {
-                    leader.iter_mut().filter(|l| **l == high).for_each(|l| *l = low);
-                }
+                chains.join(*first.get_or_insert(slot), slot);
             }
         }
     }
-    leader.into_iter().zip(used).map(|(leader, used)| used.then_some(leader)).collect()
+    used.into_iter().enumerate().map(|(slot, used)| used.then(|| chains.first(slot))).collect()
 }
 
 #[cfg(test)]

@@ -8,11 +8,12 @@ use super::heading;
 use super::program::{Base, Guess};
 use super::statements::Statements;
 use crate::transcribe::layout::{Layout, Time};
+use crate::transcribe::own_bounds::OwnBounds;
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Transcription, defaults};
 use ntg_nlp::{Nlp, Target};
 use ntg_splines::{Knots, Sampled, fit_all, fit_places};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
 /// A guessed function of scaled time, SI: its values at many times.
@@ -118,7 +119,8 @@ fn raw_start(nlp: &Transcription, guess: &Guess, raw: &[f64]) -> Result<Vec<f64>
 pub(crate) fn apply(layout: &Layout, curves: &[Curve], x: &mut [f64]) -> Result<(), SetupError> {
     let knots = |curve: &Curve| &layout.phases[curve.phase].outputs[curve.output].knots;
     let of = |curve: &Curve| (curve.phase, curve.output);
-    let counts = |(i, curve): (usize, &Curve)| !curves[i + 1..].iter().any(|later| of(later) == of(curve));
+    let last: HashMap<(usize, usize), usize> = curves.iter().enumerate().map(|(i, curve)| (of(curve), i)).collect(); // Looked up.
+    let counts = |(i, curve): (usize, &Curve)| last[&of(curve)] == i;
     let mut left: Vec<&Curve> =
         curves.iter().enumerate().filter(|&pair| counts(pair)).map(|(_, curve)| curve).collect();
     while let Some(&first) = left.first() {
@@ -214,12 +216,15 @@ fn missed_by_integrals(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
 fn move_inside(nlp: &Transcription, curves: &[Curve], x: &mut [f64]) {
     /// So many times beyond the larger bound. A choice: what is outside by less is a guess of the same size.
     const FAR: f64 = 10.0;
+    if curves.is_empty() {
+        return;
+    }
+    let bounds = OwnBounds::of(nlp);
     for Curve { phase, output, .. } in curves {
         let coefficients = &nlp.model.layout.phases[*phase].outputs[*output].coefficients;
         let largest = coefficients.iter().map(|v| x[*v as usize].abs()).fold(0.0, f64::max);
-        let Some((lower, upper)) = defaults::bounds(nlp, *phase, *output).filter(|(lower, upper)| lower < upper) else {
-            continue;
-        };
+        let own = bounds.all(nlp, (*phase, *output)).filter(|(lower, upper)| lower < upper);
+        let Some((lower, upper)) = own else { continue };
         let bound = lower.abs().max(upper.abs());
         if bound.is_finite() && largest > FAR * bound {
             coefficients.iter().for_each(|v| x[*v as usize] = x[*v as usize].clamp(lower, upper));

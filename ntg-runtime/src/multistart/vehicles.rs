@@ -8,8 +8,9 @@
 use crate::guess::Guess;
 use crate::transcribe::instances::{index_at, members};
 use crate::transcribe::layout::Layout;
+use crate::transcribe::own_bounds::OwnBounds;
 use crate::transcribe::slots::AffineMap;
-use crate::transcribe::{Transcription, defaults, names};
+use crate::transcribe::{Transcription, names};
 use ntg_splines::Side;
 use ntg_structure::{Family, GuessKind, GuessScope, Output};
 
@@ -106,7 +107,8 @@ impl Vehicle {
                 held.iter_mut().zip(at).for_each(|(h, v)| *h = (h.0.min(v), h.1.max(v)));
             }
         }
-        let bounds: Vec<_> = self.members[0].iter().map(|o| defaults::bounds(nlp, phases.start, *o)).collect();
+        let own = OwnBounds::of(nlp);
+        let bounds: Vec<_> = self.members[0].iter().map(|o| own.all(nlp, (phases.start, *o))).collect();
         let sides = held.iter().zip(&bounds).map(|(h, bound)| {
             let confined = bound.map_or(0.0, |(lower, upper)| upper - lower);
             (h.1 - h.0).max(if confined.is_finite() { 0.5 * confined } else { 0.0 })
@@ -230,6 +232,7 @@ fn candidates(nlp: &Transcription, agent: usize) -> Vec<Candidate> {
     let phases = layout.agents[agent].phases.clone();
     let (Some(first), Some(last)) = (phases.clone().next(), phases.last()) else { return vec![] };
     let declared = &nlp.model.structure.phases[layout.phases[first].phase].outputs;
+    let bounds = OwnBounds::of(nlp);
     let mut found = vec![];
     for (output, member) in layout.phases[first].outputs.iter().enumerate() {
         let own = &declared[member.output];
@@ -237,7 +240,7 @@ fn candidates(nlp: &Transcription, agent: usize) -> Vec<Candidate> {
             let map = AffineMap { terms: layout.basis(phase, output, 0, tau, side), offset: 0.0 };
             nlp.linear.value(&map).is_some()
         };
-        let confined = defaults::bounds(nlp, first, output).is_some_and(|(a, b)| (b - a).is_finite());
+        let confined = bounds.all(nlp, (first, output)).is_some_and(|(a, b)| (b - a).is_finite());
         let later = &nlp.model.structure.phases[layout.phases[last].phase].outputs;
         let same =
             |o: &crate::transcribe::layout::OutputMember| o.index == member.index && later[o.output].name == own.name;

@@ -46,6 +46,7 @@ pub(super) fn constraints(
         })
         .collect();
     let all_sizes = Sizes::at(nlp, (outcome, at));
+    let starts = nlp.model.layout.starts(&outcome.x);
     for (row, info) in nlp.elements.rows.iter().enumerate() {
         let RowKind::Constraint(constraint) = info.kind else { continue };
         let bounds = (nlp.limits.row_lower[row], nlp.limits.row_upper[row]);
@@ -55,7 +56,7 @@ pub(super) fn constraints(
         let sizes = (|| all_sizes.at_points(nlp, constraint, &info.indices), report.unit.factor);
         let indices = structure.constraints[constraint].shown_indices(&info.indices);
         keep(nlp, &outcome.x, &mut report.points, (at.rows[row], bounds, sizes), (&info.point, indices));
-        multipliers::add(nlp, outcome, row, report);
+        multipliers::add(nlp, (outcome, &starts), row, report);
     }
     let mut means = Means::new(reports.len());
     let mut foreseen = Foreseen::new(nlp, outcome);

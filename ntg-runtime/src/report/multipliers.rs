@@ -15,12 +15,17 @@ use std::collections::HashMap;
 type Place<'a> = (usize, &'a [i64], Option<usize>, u64, bool);
 
 /// Adds one row's multiplier to its constraint's report.
-pub(super) fn add(nlp: &Transcription, outcome: &Outcome, row: usize, report: &mut ConstraintReport) {
+pub(super) fn add(
+    nlp: &Transcription,
+    (outcome, starts): (&Outcome, &[f64]),
+    row: usize,
+    report: &mut ConstraintReport,
+) {
     let Some(raw) = outcome.row_multipliers.get(row) else { return };
     let model = &nlp.model;
     let sense = sense(&model.structure, report.unit.factor);
     report.sensitivity += sense * raw;
-    let found = multiplier(&model.layout, &outcome.x, &nlp.elements.rows[row], sense * raw);
+    let found = multiplier((&model.layout, starts), &outcome.x, &nlp.elements.rows[row], sense * raw);
     if report.multiplier.as_ref().is_none_or(|held| found.value.abs() > held.value.abs()) {
         report.multiplier = Some(found);
     }
@@ -33,6 +38,7 @@ impl Solution {
     pub fn multipliers(&self, constraint: &str) -> Vec<Multiplier> {
         let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
         let mut found: Vec<Multiplier> = vec![];
+        let starts = layout.starts(&self.inner.x);
         // Where the multipliers of a member at a point are, of corners alone.
         let mut places: HashMap<Place<'_>, usize> = HashMap::new(); // Looked up, never iterated.
         for (info, raw) in self.inner.rows.iter().zip(&self.inner.row_multipliers) {
@@ -42,7 +48,7 @@ impl Solution {
                 continue;
             }
             let sense = sense(structure, declared.unit.factor);
-            let own = multiplier(layout, &self.inner.x, info, sense * raw);
+            let own = multiplier((layout, &starts), &self.inner.x, info, sense * raw);
             if declared.sides > 0 {
                 let indices = declared.shown_indices(&info.indices);
                 let point = &info.point;
@@ -80,10 +86,11 @@ pub(super) fn sense(structure: &Structure, unit: f64) -> f64 {
     sign * unit / structure.objective_unit.factor
 }
 
-pub(super) fn multiplier(layout: &Layout, x: &[f64], info: &RowInfo, value: f64) -> Multiplier {
+/// The multiplier of a row from its value; `starts` are those of all phases.
+pub(super) fn multiplier((layout, starts): (&Layout, &[f64]), x: &[f64], info: &RowInfo, value: f64) -> Multiplier {
     let Some(phase) = info.point.phase else { return Multiplier { value, density: false, time: None } };
     let duration = layout.duration(phase, x);
-    let time = Some(layout.start(phase, x) + info.point.tau * duration);
+    let time = Some(starts[phase] + info.point.tau * duration);
     let weight = info.point.weight * duration;
     if weight.is_nan() {
         return Multiplier { value, density: false, time };

@@ -96,13 +96,14 @@ impl Solution {
             }
         }
         let mut masses: BTreeMap<Key, Masses> = BTreeMap::new();
+        let starts = inner.model.layout.starts(&inner.x);
         for (info, raw) in inner.rows.iter().zip(&inner.row_multipliers) {
             let RowKind::Constraint(constraint) = info.kind else { continue };
             let key = key(constraint, info.point, &info.indices);
             let Some(trace) = found.get_mut(&key) else { continue };
             let sense = multipliers::sense(&inner.model.structure, unit(inner, constraint));
             masses.entry(key).or_default().push(info.point, sense * raw, is_gauss(&nlp, info));
-            let shown = multipliers::multiplier(&inner.model.layout, &inner.x, info, sense * raw);
+            let shown = multipliers::multiplier((&inner.model.layout, &starts), &inner.x, info, sense * raw);
             // Beside Gauss points stand breakpoints without weights, whose multipliers are no
             // densities: they are not drawn with the others.
             let comparable = trace.multipliers.is_empty() || trace.density == shown.density;

@@ -22,6 +22,7 @@ use crate::transcribe::rows::RowInfo;
 use crate::transcribe::{Model, SetupError, Transcription, names};
 use ntg_nlp::Multipliers;
 use ntg_structure::{Structure, Unit};
+use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -167,8 +168,9 @@ impl Solution {
     pub fn phases(&self) -> Vec<PhaseTimes> {
         let (model, x) = (&self.inner.model, &self.inner.x);
         let layout = &model.layout;
+        let starts = layout.starts(x);
         let phase = |p: usize| {
-            let start = layout.start(p, x);
+            let start = starts[p];
             let name = names::phase(&model.structure, layout, p);
             PhaseTimes { name, start, end: start + layout.duration(p, x) }
         };
@@ -188,7 +190,7 @@ impl Solution {
                 found.push((format!("duration({name})"), duration));
             }
         };
-        let mut durations = vec![];
+        let (mut durations, starts) = (vec![], layout.starts(x));
         for (agent, member) in layout.agents.iter().enumerate() {
             let path = names::agent(structure, layout, agent);
             let whole: f64 = member.phases.clone().map(|p| layout.duration(p, x)).sum();
@@ -207,7 +209,7 @@ impl Solution {
             for phase in member.phases.clone() {
                 let (own, duration) = (&layout.phases[phase], layout.duration(phase, x));
                 let path = names::phase(structure, layout, phase);
-                let start = layout.start(phase, x);
+                let start = starts[phase];
                 events(&path, (start, start + duration), duration);
                 if let Some(name) = &structure.phases[own.phase].duration_name {
                     durations.push((names::join(&path, name), duration));
@@ -216,13 +218,9 @@ impl Solution {
         }
         durations.extend(found);
         // The one phase of an agent may share its duration's name with the agent.
-        let mut times: Vec<(String, f64)> = vec![];
-        for (name, seconds) in durations {
-            if times.iter().all(|known| known.0 != name) {
-                times.push((name, seconds));
-            }
-        }
-        times
+        let mut known = HashSet::new(); // Looked up, never iterated.
+        durations.retain(|(name, _)| known.insert(name.clone()));
+        durations
     }
 
     /// Whether no phase of a stretch has a name for its duration.

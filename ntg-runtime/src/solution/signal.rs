@@ -10,6 +10,7 @@ use crate::transcribe::node::Site;
 use crate::transcribe::points::Point;
 use ntg_splines::Side;
 use ntg_structure::{Domain, Unit};
+use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -173,15 +174,22 @@ pub(crate) struct Place {
     pub(crate) indices: Vec<i64>,
 }
 
+/// Signals in order, and where each is among them by its name and phases.
+#[derive(Default)]
+struct Signals<'p> {
+    all: Vec<Signal<'p>>,
+    known: HashMap<(String, Option<Range<usize>>), usize>, // Looked up, never iterated.
+}
+
 impl Solution {
     /// Every named expression; `problem` must be the one that was solved.
     pub fn signals<'p>(&self, problem: &'p dyn Problem) -> Vec<Signal<'p>> {
-        let mut found: Vec<Signal<'p>> = vec![];
+        let mut found = Signals::default();
         for named in 0..self.structure().named.len() {
             // A structure that could be transcribed has no index outside a family here.
             let _ = self.add_signals(problem, named, &mut found);
         }
-        found
+        found.all
     }
 
     /// A named expression by its path: `speed`, `uav[2].speed`, `pd[1]` over all phases of the agent;
@@ -206,7 +214,7 @@ impl Solution {
         &self,
         problem: &'p dyn Problem,
         named: usize,
-        found: &mut Vec<Signal<'p>>,
+        found: &mut Signals<'p>,
     ) -> Result<(), SetupError> {
         let model = &self.inner.model;
         let (structure, layout) = (&model.structure, &model.layout);
@@ -227,18 +235,19 @@ impl Solution {
             let name = names::join(&path, &names::member(&declared.name, declared.family, index));
             let phases = agent.map(|agent| layout.agents[agent].phases.clone());
             let piece = Piece { phase, named, indices };
-            match found.iter_mut().find(|signal| signal.name == name && signal.phases == phases) {
-                Some(signal) => signal.pieces.push(piece),
-                None => found.push(Signal {
+            let at = *found.known.entry((name.clone(), phases.clone())).or_insert_with(|| {
+                found.all.push(Signal {
                     problem,
                     inner: self.inner.clone(),
                     name,
                     doc: declared.doc.clone(),
                     unit: declared.unit.clone(),
                     phases,
-                    pieces: vec![piece],
-                }),
-            }
+                    pieces: vec![],
+                });
+                found.all.len() - 1
+            });
+            found.all[at].pieces.push(piece);
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ use super::{Inner, Solution, spaced};
 use crate::transcribe::names;
 use ntg_splines::Side;
 use ntg_structure::Unit;
+use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -201,18 +202,21 @@ impl Solution {
     fn along(&self, path: &str, phases: Range<usize>) -> Vec<Trajectory> {
         let (structure, layout) = (&self.inner.model.structure, &self.inner.model.layout);
         let mut found: Vec<Trajectory> = vec![];
+        let mut known: HashMap<(&str, Option<i64>), usize> = HashMap::new(); // Looked up, never iterated.
         for phase in phases.clone() {
             let member = &layout.phases[phase];
-            for output in &member.outputs {
+            for (number, output) in member.outputs.iter().enumerate() {
                 let declared = &structure.phases[member.phase].outputs[output.output];
                 if declared.is_helper() {
                     continue;
                 }
-                let name = &declared.name;
-                let Some(one) = self.one((path, phases.clone()), name, output.index) else { continue };
-                if found.iter().all(|known| known.name != one.name) {
-                    found.push(one);
-                }
+                let at = *known.entry((&declared.name, output.index)).or_insert_with(|| {
+                    let name = names::join(path, &names::member(&declared.name, declared.family, output.index));
+                    let (outputs, unit) = (vec![None; phases.len()], declared.unit.clone());
+                    found.push(Trajectory { inner: self.inner.clone(), phases: phases.clone(), name, unit, outputs });
+                    found.len() - 1
+                });
+                found[at].outputs[phase - phases.start].get_or_insert(number);
             }
         }
         found

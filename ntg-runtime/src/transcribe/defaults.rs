@@ -2,11 +2,13 @@
 
 use super::Transcription;
 use super::measured::Measured;
+use super::own_bounds::OwnBounds;
 use super::slots::AffineMap;
-use ntg_nlp::Target;
 use ntg_splines::{Knots, Sampled, Side, fit_all, fit_places};
-use ntg_structure::{Block, Degree, Domain, Row};
+use ntg_structure::Block;
+use std::cell::OnceCell;
 use std::collections::HashMap;
+use std::rc::Rc;
 
 /// Bounds a decade or more apart have their geometric mean as middle.
 const DECADE: f64 = 10.0;
@@ -74,23 +76,32 @@ fn middle((mut lower, mut upper): (f64, f64), unit: f64) -> f64 {
 pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
     let mut met = HashMap::new(); // Looked up, never iterated.
+    let bounds = OnceCell::new();
     let measured = Measured::of(nlp);
     let moving: Vec<[bool; 2]> =
         (0..layout.phases.len()).map(|phase| ENDS.map(|end| is_moving(nlp, phase, end))).collect();
-    for agent in 0..layout.agents.len() {
-        for phase in layout.agents[agent].phases.clone() {
-            for output in 0..layout.phases[phase].outputs.len() {
-                let known = known_values(nlp, (&measured, &moving), (phase, output), x);
-                let first = layout.phases[phase].outputs[output].coefficients[0];
+    let starts = layout.starts(x);
+    for agent in &layout.agents {
+        // What is known of an output is the same in all phases.
+        let mut all: HashMap<(usize, usize), Rc<Way>> = HashMap::new(); // Looked up, never iterated.
+        for output in nlp.outputs_of(agent.phases.clone()) {
+            let known = known_values(nlp, (&measured, &moving, &starts), &output.members, x);
+            let way = Rc::new(Way { is_curved: known.windows(2).any(is_curved), known });
+            all.extend(output.members.into_iter().map(|member| (member, Rc::clone(&way))));
+        }
+        for phase in agent.phases.clone() {
+            for (output, member) in layout.phases[phase].outputs.iter().enumerate() {
+                let way = &all[&(phase, output)];
                 // What members of a scenario share is looked at once.
-                let constant = match known.is_empty() {
-                    true => *met.entry(first).or_insert_with(|| constant(nlp, phase, output)),
+                let constant = match way.known.is_empty() {
+                    true => *met
+                        .entry(member.coefficients[0])
+                        .or_insert_with(|| constant(nlp, bounds.get_or_init(|| OwnBounds::of(nlp)), (phase, output))),
                     false => 0.0,
                 };
-                let (start, duration) = (layout.start(phase, x), layout.duration(phase, x));
-                let member = &layout.phases[phase].outputs[output];
-                let value = |tau: f64| between(&known, start + tau * duration).unwrap_or(constant);
-                let coefficients = match known.windows(2).any(is_curved) {
+                let (start, duration) = (starts[phase], layout.duration(phase, x));
+                let value = |tau: f64| between(&way.known, start + tau * duration).unwrap_or(constant);
+                let coefficients = match way.is_curved {
                     true => fitted(&member.knots, value),
                     false => member.knots.greville().into_iter().map(value).collect(),
                 };
@@ -102,6 +113,12 @@ pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
     }
 }
 
+/// What is known of an output along its agent, by time, and whether it goes in curves from one value to the next.
+struct Way {
+    known: Vec<Known>,
+    is_curved: bool,
+}
+
 /// The coefficients of the spline that follows a function best.
 fn fitted(knots: &Knots, value: impl Fn(f64) -> f64) -> Vec<f64> {
     let places = fit_places(knots);
@@ -111,14 +128,14 @@ fn fitted(knots: &Knots, value: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// The middle of constant bounds, else 0. What is bounded from below alone, and by nothing but what the compiler knows of the
 /// width of a cone, is one of its unit: at 0 is the tip (docs/maths.md, section 18).
-fn constant(nlp: &Transcription, phase: usize, output: usize) -> f64 {
+fn constant(nlp: &Transcription, bounds: &OwnBounds, (phase, output): (usize, usize)) -> f64 {
     let is_written = |constraint: usize| nlp.model.structure.constraints[constraint].block != Block::Corner;
     let layout = &nlp.model.layout.phases[phase];
     let unit = nlp.model.structure.phases[layout.phase].outputs[layout.outputs[output].output].unit.factor;
-    if let Some(written) = bounds_by(nlp, phase, output, is_written) {
+    if let Some(written) = bounds.by(nlp, (phase, output), is_written) {
         return middle(written, unit);
     }
-    let Some((lower, upper)) = bounds(nlp, phase, output) else { return 0.0 };
+    let Some((lower, upper)) = bounds.all(nlp, (phase, output)) else { return 0.0 };
     if upper.is_finite() { middle((lower, upper), unit) } else { lower + unit }
 }
 
@@ -155,30 +172,24 @@ fn is_moving(nlp: &Transcription, phase: usize, end: (f64, Side)) -> bool {
     with_rates.any(|output| fixed(nlp, (phase, output), end).is_some_and(|(_, still)| still == 0))
 }
 
-/// What is known wherever a boundary condition fixes this output in its agent, or a measurement tells it, by time.
+/// What is known wherever a boundary condition fixes an output in its agent, or a measurement tells it, by time. `members`
+/// are the phases in which the output is, and its number in each.
 fn known_values(
     nlp: &Transcription,
-    (measured, moving): (&Measured, &[[bool; 2]]),
-    (phase, output): (usize, usize),
+    (measured, moving, starts): (&Measured, &[[bool; 2]], &[f64]),
+    members: &[(usize, usize)],
     x: &[f64],
 ) -> Vec<Known> {
-    let (structure, layout) = (&nlp.model.structure, &nlp.model.layout);
-    let name = |phase: usize, output: usize| {
-        let member = &layout.phases[phase];
-        let found = &member.outputs[output];
-        (&structure.phases[member.phase].outputs[found.output].name, found.index)
-    };
+    let layout = &nlp.model.layout;
     let mut known = vec![];
-    for other in layout.agents[layout.phases[phase].agent].phases.clone() {
-        let same = (0..layout.phases[other].outputs.len()).find(|o| name(other, *o) == name(phase, output));
-        let Some(same) = same else { continue };
-        let time = |tau: f64| layout.start(other, x) + tau * layout.duration(other, x);
-        for (end, is_moving) in ENDS.into_iter().zip(moving[other]) {
+    for &(phase, output) in members {
+        let time = |tau: f64| starts[phase] + tau * layout.duration(phase, x);
+        for (end, is_moving) in ENDS.into_iter().zip(moving[phase]) {
             let still_at = |still: usize| if is_moving { 0 } else { still };
-            let own = fixed(nlp, (other, same), end);
+            let own = fixed(nlp, (phase, output), end);
             known.extend(own.map(|(value, still)| Known { time: time(end.0), value, still: still_at(still) }));
         }
-        let times = measured.values(other, same).iter();
+        let times = measured.values(phase, output).iter();
         known.extend(times.map(|(tau, value)| Known { time: time(*tau), value: *value, still: 0 }));
     }
     known.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -213,63 +224,6 @@ fn rise(s: f64, p: usize, q: usize) -> f64 {
         binomial *= (degree - j) as f64 / (j + 1) as f64;
     }
     sum
-}
-
-/// Bounds along the phase on the output itself, each member of an array by its own: rows of one slot whose
-/// coefficients are one multiple of the B-splines' values, which add up to 1.
-pub(crate) fn bounds(nlp: &Transcription, phase: usize, output: usize) -> Option<(f64, f64)> {
-    bounds_by(nlp, phase, output, |_| true)
-}
-
-/// As [`bounds`], by some of the constraints alone.
-fn bounds_by(nlp: &Transcription, phase: usize, output: usize, counts: impl Fn(usize) -> bool) -> Option<(f64, f64)> {
-    let layout = &nlp.model.layout;
-    let mut coefficients = layout.phases[phase].outputs[output].coefficients.clone();
-    coefficients.sort_unstable();
-    let mut found: Option<(f64, f64)> = None;
-    for (group, block) in nlp.elements.batches.iter().zip(&nlp.elements.blocks) {
-        let declared = &nlp.model.structure.groups[group.group];
-        if !matches!(declared.domain, Domain::Path { .. }) {
-            continue;
-        }
-        let counts = |row: &usize| match &declared.rows[*row] {
-            Row::Constraint { constraint, .. } => counts(*constraint),
-            _ => false,
-        };
-        let is_linear = |row: &usize| group.degree[*row] == Degree::Linear;
-        for row in (0..block.rows).filter(is_linear).filter(counts) {
-            let slots: Vec<usize> = block.jacobian.iter().filter(|e| e.0 == row).map(|e| e.1).collect();
-            let &[slot] = &slots[..] else { continue };
-            // Whether a row is about nothing but the value of this very member of its array.
-            let is_own = |element: usize| {
-                let variables = block.variables(element);
-                let map = &block.map(element)[slot * variables.len()..][..variables.len()];
-                let active = || variables.iter().zip(map).filter(|(_, c)| **c != 0.0);
-                active().all(|(v, c)| coefficients.binary_search(v).is_ok() && *c > 0.0)
-                    && (active().map(|(_, c)| c).sum::<f64>() - 1.0).abs() < 1e-9
-            };
-            let point = |element: usize| &group.batch.sites[element].point;
-            let here = |element: &usize| point(*element).phase == Some(phase) && is_own(*element);
-            let Some(first) = (0..block.elements).find(here) else { continue };
-            // Several members may limit it there: the sides of `abs(u) <= c` are two.
-            let there = |element: &usize| point(*element).tau == point(first).tau && here(element);
-            for element in (first..block.elements).filter(there) {
-                let Target::Row(target) = block.target[row * block.elements + element] else { continue };
-                let Some((slope, offset)) = nlp.frame().line(group, element, row, slot) else { continue };
-                let rows = &nlp.limits;
-                let ends =
-                    [rows.row_lower[target as usize], rows.row_upper[target as usize]].map(|b| (b - offset) / slope);
-                let (lower, upper) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-                if lower == f64::NEG_INFINITY && upper == f64::INFINITY {
-                    // It is not posed.
-                    continue;
-                }
-                let held = found.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-                found = Some((held.0.max(lower), held.1.min(upper)));
-            }
-        }
-    }
-    found
 }
 
 #[cfg(test)]

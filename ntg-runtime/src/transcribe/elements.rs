@@ -287,18 +287,21 @@ fn no_maker(frame: &Frame, constraint: usize, index: &[i64]) -> SetupError {
 }
 
 impl Frame<'_> {
-    /// A linear row of one slot as `slope * slot + offset`, from its values at 0 and 1.
-    pub(crate) fn line(&self, group: &GroupBatch, element: usize, row: usize, slot: usize) -> Option<(f64, f64)> {
+    /// A linear row of one slot as `slope * slot + offset` in each element, from its values at 0 and 1.
+    pub(crate) fn lines(&self, group: &GroupBatch, row: usize, slot: usize) -> Vec<Option<(f64, f64)>> {
         let elements = group.batch.sites.len();
         let mut work = group.batch.node.work();
         let mut slots = vec![0.0; group.batch.slots.len()];
-        let mut value = |at: f64| {
+        let mut values = |at: f64| {
             slots[slot * elements..][..elements].fill(at);
             group.batch.node.values(self.problem, self.tables, &slots, &mut work);
-            work.values[row * elements + element]
+            work.values[row * elements..][..elements].to_vec()
         };
-        let (offset, one) = (value(0.0), value(1.0));
-        let slope = one - offset;
-        (slope.is_finite() && slope != 0.0 && offset.is_finite()).then_some((slope, offset))
+        let ends = values(0.0).into_iter().zip(values(1.0));
+        let line = |(offset, one): (f64, f64)| {
+            let slope = one - offset;
+            (slope.is_finite() && slope != 0.0 && offset.is_finite()).then_some((slope, offset))
+        };
+        ends.map(line).collect()
     }
 }

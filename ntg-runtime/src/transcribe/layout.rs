@@ -182,7 +182,8 @@ impl Layout {
         let Some(found) = self.integral_members.get(integral) else {
             return Err(SetupError::malformed(format!("there is no integral number {integral}")));
         };
-        match found.iter().position(|member| member == index) {
+        // Members are in the order of their indices.
+        match found.binary_search_by(|member| member[..].cmp(index)).ok() {
             Some(position) => Ok(self.integral_first[integral] + narrow(position)),
             None => {
                 let place = structure.integrals[integral].place.clone();

@@ -34,6 +34,7 @@ mod measured;
 pub(crate) mod names;
 pub(crate) mod node;
 mod norm_slopes;
+pub(crate) mod own_bounds;
 pub(crate) mod points;
 mod range_maps;
 mod reduce;

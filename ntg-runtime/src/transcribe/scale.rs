@@ -13,7 +13,7 @@ use super::{Transcription, names};
 use crate::settings::{Scaling, Settings};
 use ntg_nlp::multiples;
 use ntg_structure::{Family, GuessKind, Unit};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 
 /// Below this fraction of its size a variable says that the size is too large: the tolerance of what it stands in is looser
@@ -191,13 +191,12 @@ impl Transcription<'_> {
         for quantity in small.chain(quantities.iter().filter(is_unit)) {
             quantity.coefficients.iter().for_each(|v| doubtful[*v as usize] = true);
         }
-        let is_guessed = |quantity: &Quantity| {
-            let variables = structure.guesses.iter().filter_map(|guess| match &guess.kind {
-                GuessKind::Variable { variable, .. } => structure.variables.get(*variable),
-                _ => None,
-            });
-            quantity.members.is_empty() && variables.into_iter().any(|declared| declared.name == quantity.name)
-        };
+        let told = structure.guesses.iter().filter_map(|guess| match &guess.kind {
+            GuessKind::Variable { variable, .. } => Some(&*structure.variables.get(*variable)?.name),
+            _ => None,
+        });
+        let told: HashSet<&str> = told.collect(); // Looked up, never iterated.
+        let is_guessed = |quantity: &Quantity| quantity.members.is_empty() && told.contains(quantity.name);
         let is_told = |quantity: &&Quantity| quantity.coefficients.iter().any(is_fixed) || is_guessed(quantity);
         for quantity in quantities.iter().filter(is_unit).filter(|quantity| !is_told(quantity)) {
             quantity.coefficients.iter().for_each(|v| known[*v as usize] = 0.0);
@@ -346,24 +345,24 @@ impl Transcription<'_> {
     /// Every output of some phases once, with the coefficients of all of them.
     pub(crate) fn outputs_of(&self, phases: Range<usize>) -> Vec<Quantity<'_>> {
         let mut found: Vec<Quantity> = vec![];
+        let mut known: HashMap<(&str, Option<i64>), usize> = HashMap::new(); // Looked up, never iterated.
         for phase in phases {
             let member = &self.model.layout.phases[phase];
             for (number, output) in member.outputs.iter().enumerate() {
                 let declared = &self.model.structure.phases[member.phase].outputs[output.output];
-                match found.iter_mut().find(|f| f.name == declared.name && f.index == output.index) {
-                    Some(known) => {
-                        known.members.push((phase, number));
-                        known.coefficients.extend(&output.coefficients);
-                    }
-                    None => found.push(Quantity {
+                let at = *known.entry((&declared.name, output.index)).or_insert_with(|| {
+                    found.push(Quantity {
                         name: &declared.name,
                         family: declared.family,
                         index: output.index,
                         unit: &declared.unit,
-                        members: vec![(phase, number)],
-                        coefficients: output.coefficients.clone(),
-                    }),
-                }
+                        members: vec![],
+                        coefficients: vec![],
+                    });
+                    found.len() - 1
+                });
+                found[at].members.push((phase, number));
+                found[at].coefficients.extend(&output.coefficients);
             }
         }
         found

@@ -11,6 +11,7 @@ use super::shape::Traced;
 use super::slots::{AffineMap, Source};
 use ntg_math::{Simd, Task, dispatch};
 use ntg_structure::At;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// The affine maps of all slots of some elements.
@@ -103,14 +104,21 @@ impl SlotMaps {
 /// Slots that are the same output for every member, though not the same derivative, together.
 fn bundles(members: &[Member]) -> Vec<Vec<usize>> {
     let mut bundles: Vec<Vec<usize>> = vec![];
+    // Bundles by what they are for the first member. Looked up, never iterated.
+    let mut known: HashMap<Source, Vec<usize>> = HashMap::new();
     for slot in 0..members.first().map_or(0, |member| member.1.len()) {
-        let joins = |bundle: &&mut Vec<usize>| {
-            let output = |sources: &[Source], slot: usize| sources[slot].without_derivative();
-            members.iter().all(|(_, sources)| output(sources, slot) == output(sources, bundle[0]))
+        let output = |sources: &[Source], slot: usize| sources[slot].without_derivative();
+        let joins = |bundle: &&usize| {
+            let first = bundles[**bundle][0];
+            members.iter().all(|(_, sources)| output(sources, slot) == output(sources, first))
         };
-        match bundles.iter_mut().find(joins) {
-            Some(bundle) => bundle.push(slot),
-            None => bundles.push(vec![slot]),
+        let alike = known.entry(output(members[0].1, slot)).or_default();
+        match alike.iter().find(joins) {
+            Some(bundle) => bundles[*bundle].push(slot),
+            None => {
+                alike.push(bundles.len());
+                bundles.push(vec![slot]);
+            }
         }
     }
     bundles

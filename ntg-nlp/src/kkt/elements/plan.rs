@@ -108,7 +108,8 @@ impl<const L: usize> Plan<L> {
         let held = held(supports, &batching, &map, unknowns);
         let depends = |slot: usize| supports.of[slot].is_some_and(|support| !held[support]);
         let pairs = slot_pairs(block, &rows, &kinds, depends);
-        let at = |i: usize, j: usize| pairs.iter().position(|&p| p == (i.max(j), i.min(j)));
+        // They are sorted.
+        let at = |i: usize, j: usize| pairs.binary_search(&(i.max(j), i.min(j))).ok();
         let pair_of = block.hessian.iter().map(|&(i, j)| at(i, j)).collect();
         for (row, _) in rows.iter_mut().zip(&kinds).filter(|(_, [condensed, _])| *condensed) {
             row.entries.retain(|(_, slot)| supports.of[*slot].is_some());
@@ -320,9 +321,12 @@ impl<const L: usize> Plan<L> {
 /// The supports that meet, as lists of which every two do. `pairs` are all pairs of slots that a chain of pairs connects.
 fn meeting(pairs: &[(usize, usize)], supports: &Supports) -> Vec<Vec<usize>> {
     // The first slot of a chain meets all others.
+    let mut first_of: Vec<Option<usize>> = vec![None; supports.of.len()];
+    for &(i, j) in pairs {
+        first_of[i] = Some(first_of[i].map_or(j, |first| first.min(j)));
+    }
     let mut firsts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for slot in 0..supports.of.len() {
-        let first = pairs.iter().filter(|(i, _)| *i == slot).map(|(_, j)| *j).min();
+    for (slot, first) in first_of.into_iter().enumerate() {
         if let (Some(first), Some(support)) = (first, supports.of[slot]) {
             firsts.entry(first).or_default().push(support);
         }

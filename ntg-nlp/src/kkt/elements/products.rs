@@ -1,8 +1,10 @@
 //! The products `E^T K E` that take second derivatives by slots to second derivatives by element variables
 //! (docs/maths.md, section 11.2): which rows of `K E` and `E^T K E` are not zero, and which terms each sums.
 
+use super::super::chains::Chains;
 use super::super::pack::{Pack, Term, combine};
 use super::super::supports::Supports;
+use std::collections::BTreeMap;
 
 /// `E^T K E` for one pattern of `K`.
 #[derive(Clone, Debug, Default)]
@@ -78,25 +80,26 @@ impl Products {
         coefficient_of: &[usize],
         entries: &Entries,
     ) -> Self {
-        let slots = supports.of.len();
         let mut half: Vec<Row> = vec![];
-        let mut known = vec![vec![false; supports.all.len()]; slots];
-        for (slot, known) in known.iter_mut().enumerate() {
-            for (c, support) in supports.all.iter().enumerate() {
-                let with = |other: usize| pairs.iter().position(|&p| p == (slot.max(other), slot.min(other)));
-                let terms = support.slots.iter().filter_map(|&other| Some((with(other)?, coefficient_of[other])));
-                let terms: Vec<Term> = terms.map(|(pair, at)| (pair as u32, at as u32)).collect();
-                if !terms.is_empty() {
-                    known[c] = true;
-                    let (first, len) =
-                        (slot * supports.element_variables + support.first, support.last - support.first);
-                    half.push(Row { first, len, terms });
-                }
+        // For each slot the supports of those that it has an entry with.
+        let mut known: Vec<Vec<usize>> = vec![];
+        for (slot, others) in partners(&pairs, supports.of.len()).into_iter().enumerate() {
+            // By support, within one in the order of its slots, which increase.
+            let mut terms: BTreeMap<usize, Vec<Term>> = BTreeMap::new();
+            for (other, pair) in others {
+                let Some(support) = supports.of[other] else { continue };
+                terms.entry(support).or_default().push((pair as u32, coefficient_of[other] as u32));
             }
+            known.push(terms.keys().copied().collect());
+            half.extend(terms.into_iter().map(|(support, terms)| {
+                let support = &supports.all[support];
+                let first = slot * supports.element_variables + support.first;
+                Row { first, len: support.last - support.first, terms }
+            }));
         }
         let mut full = vec![];
         entries.each_row(supports, |(p, q), i, first, len| {
-            let slots = supports.all[p].slots.iter().filter(|slot| known[**slot][q]);
+            let slots = supports.all[p].slots.iter().filter(|slot| known[**slot].binary_search(&q).is_ok());
             let term =
                 |slot: &usize| (coefficient_of[*slot] + i, slot * supports.element_variables + supports.all[q].first);
             let terms: Vec<Term> = slots.map(term).map(|(c, h)| (c as u32, h as u32)).collect();
@@ -127,17 +130,33 @@ impl Products {
     }
 }
 
+/// For each slot the others that it is in a pair with, increasing, and the number of the pair.
+fn partners(pairs: &[(usize, usize)], slots: usize) -> Vec<Vec<(usize, usize)>> {
+    let mut partners = vec![vec![]; slots];
+    for (pair, &(i, j)) in pairs.iter().enumerate() {
+        partners[i].push((j, pair));
+        if i != j {
+            partners[j].push((i, pair));
+        }
+    }
+    partners.iter_mut().for_each(|others| others.sort_unstable());
+    partners
+}
+
 /// All pairs of slots that a chain of pairs connects: what factors of `K` may fill.
 pub(super) fn closure(pairs: &[(usize, usize)], slots: usize) -> Vec<(usize, usize)> {
-    let mut leader: Vec<usize> = (0..slots).collect();
-    for &(i, j) in pairs {
-        let (low, high) = (leader[i].min(leader[j]), leader[i].max(leader[j]));
-        leader.iter_mut().filter(|l| **l == high).for_each(|l| *l = low);
+    let mut chains = Chains::new(slots);
+    pairs.iter().for_each(|&(i, j)| chains.join(i, j));
+    let mut touched = vec![false; slots];
+    pairs.iter().for_each(|&(i, j)| (touched[i], touched[j]) = (true, true));
+    // The slots so far of each chain, which has the number of its first slot.
+    let (mut so_far, mut all) = (vec![vec![]; slots], vec![]);
+    for i in (0..slots).filter(|&slot| touched[slot]) {
+        let chain: &mut Vec<usize> = &mut so_far[chains.first(i)];
+        chain.push(i);
+        all.extend(chain.iter().map(|&j| (i, j)));
     }
-    let touched = |slot: usize| pairs.iter().any(|&(i, j)| i == slot || j == slot);
-    let used: Vec<usize> = (0..slots).filter(|&slot| touched(slot)).collect();
-    let all = used.iter().flat_map(|&i| used.iter().filter(move |&&j| j <= i).map(move |&j| (i, j)));
-    all.filter(|&(i, j)| leader[i] == leader[j]).collect()
+    all
 }
 
 #[cfg(test)]

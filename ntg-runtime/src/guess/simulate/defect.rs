@@ -1,6 +1,6 @@
 //! By how much a solution leaves its own equations of motion (docs/maths.md, equation 9.3d).
 
-use super::motion::Equations;
+use super::motion::{Along, Equations};
 use super::radau::{Motion, integrate};
 use crate::transcribe::Transcription;
 use ntg_splines::Side;
@@ -67,7 +67,8 @@ impl Signed {
 /// where the solution `x` ends an interval and where its equations lead from the interval's start, with its own inputs. None
 /// where the equations of no phase decide how it moves.
 pub(crate) fn defect(nlp: &Transcription, x: &[f64]) -> Option<Defect> {
-    let phases = (0..nlp.model.layout.phases.len()).filter_map(|phase| of_phase(nlp, phase, x));
+    let along = Along::of(nlp)?;
+    let phases = (0..nlp.model.layout.phases.len()).filter_map(|phase| of_phase(nlp, &along, phase, x));
     phases.reduce(larger)
 }
 
@@ -77,9 +78,9 @@ fn larger(one: Defect, other: Defect) -> Defect {
 }
 
 /// The largest defect in one phase.
-fn of_phase(nlp: &Transcription, phase: usize, x: &[f64]) -> Option<Defect> {
+fn of_phase<'a>(nlp: &'a Transcription, along: &Along<'a>, phase: usize, x: &'a [f64]) -> Option<Defect> {
     let layout = &nlp.model.layout;
-    let mut equations = Equations::new(nlp, phase, x)?;
+    let mut equations = Equations::new(nlp, along, phase, x)?;
     let columns: Vec<(usize, usize)> = equations.columns.keys().copied().collect();
     let at = |tau: f64, side: Side| -> Vec<f64> {
         let value = |(output, of): &(usize, usize)| layout.flat(phase, *output, *of, (tau, side), x);

@@ -22,7 +22,7 @@ pub(crate) use defect::{Defect, defect};
 
 use super::start::{Curve, apply, finish, pointwise};
 use crate::transcribe::Transcription;
-use motion::Equations;
+use motion::{Along, Equations};
 use radau::{Motion, integrate};
 use std::rc::Rc;
 
@@ -36,9 +36,10 @@ const RUNS_OFF: f64 = 1e12;
 pub(crate) fn simulated(nlp: &Transcription, x: &[f64]) -> Option<Vec<f64>> {
     let layout = &nlp.model.layout;
     let mut x = x.to_vec();
+    let along = Along::of(nlp)?;
     for phase in 0..layout.phases.len() {
         let guess = x.clone();
-        let mut equations = Equations::new(nlp, phase, &guess)?;
+        let mut equations = Equations::new(nlp, &along, phase, &guess)?;
         let sizes = equations.sizes().to_vec();
         let initial = initial::initial(nlp, &equations, &guess, &sizes);
         let track = Rc::new(integrate(&mut equations, initial, &layout.phases[phase].breakpoints)?);

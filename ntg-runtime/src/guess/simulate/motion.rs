@@ -71,12 +71,14 @@ pub(super) struct Equations<'a> {
     calls: Vec<AtPlaces>,
 }
 
-impl<'a> Equations<'a> {
-    /// The equations of a phase; none where they do not decide how its outputs move.
-    pub(super) fn new(nlp: &'a Transcription, phase: usize, x: &'a [f64]) -> Option<Self> {
+/// What holds all along each phase: groups, and where each is, in their order.
+pub(super) struct Along<'a>(Vec<Vec<(&'a Group, Site)>>);
+
+impl<'a> Along<'a> {
+    /// Of all phases at once; none where an index is outside its family.
+    pub(super) fn of(nlp: &'a Transcription) -> Option<Self> {
         let frame = nlp.frame();
-        let middle = Point { tau: 0.5, ..Point::start(phase) };
-        let mut members = vec![];
+        let mut all = vec![vec![]; nlp.model.layout.phases.len()];
         for group in &frame.structure.groups {
             let Domain::Path { phase: of, points, part } = &group.domain else { continue };
             // What holds at the ends of intervals alone is taken back there and moves nothing.
@@ -84,10 +86,21 @@ impl<'a> Equations<'a> {
             if !part.is_whole() || is_at_ends {
                 continue;
             }
-            let here = |_: &_, _: &[f64], of: usize| if of == phase { vec![middle] } else { vec![] };
-            let sites = domain_sites(&frame, &group.loops, &group.domain, here).ok()?;
-            members.extend(sites.into_iter().filter_map(|site| Member::new(&frame, group, site)));
+            let middle = |_: &_, _: &[f64], of: usize| vec![Point { tau: 0.5, ..Point::start(of) }];
+            for site in domain_sites(&frame, &group.loops, &group.domain, middle).ok()? {
+                all[site.point.phase?].push((group, site));
+            }
         }
+        Some(Self(all))
+    }
+}
+
+impl<'a> Equations<'a> {
+    /// The equations of a phase; none where they do not decide how its outputs move.
+    pub(super) fn new(nlp: &'a Transcription, along: &Along<'a>, phase: usize, x: &'a [f64]) -> Option<Self> {
+        let frame = nlp.frame();
+        let own = along.0[phase].iter();
+        let members: Vec<Member> = own.filter_map(|(group, site)| Member::new(&frame, group, site.clone())).collect();
         let mut orders = BTreeMap::new();
         for member in &members {
             for source in member.rows.iter().flat_map(|(row, _)| member.sources_of(*row)) {
