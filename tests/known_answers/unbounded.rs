@@ -2,7 +2,7 @@
 
 use ntg::prelude::*;
 
-use crate::support::Shipped;
+use crate::support::{Shipped, close};
 
 /// Variables and linear constraints, with a ray along which the objective falls.
 const PROGRAMS: [&str; 3] = [
