@@ -4,7 +4,7 @@ use ntg::prelude::*;
 use ntg::runtime::multistart::{Minimum, multistart};
 use ntg::runtime::report::Resolution;
 
-use crate::support::Shipped;
+use crate::support::{Shipped, close};
 
 fn resolution(text: &str) -> (Resolution, Report) {
     let report = Shipped::text(text).solve();
@@ -447,6 +447,37 @@ fn a_variable_is_a_bound_as_a_number_is() {
         let limit = report.constraints.iter().find(|own| own.name.contains("norm")).expect("it is one");
         let between = limit.between.as_ref().expect("it is checked").relative;
         assert!(between < 0.05, "{between}");
+    }
+}
+
+/// So it is beside limits without a variable, and where the limit varies by far more: two posts, as far from both as may be.
+#[test]
+fn a_clearance_is_missed_by_a_part_of_itself() {
+    for (half, far, intervals) in [(96.5, 1324.7, 10), (40.0, 900.0, 8), (10.0, 300.0, 10)] {
+        let (found, report) = resolution(&format!(
+            "problem Posts {{
+                duration T = 20 [s];
+                output x, y [m]: spline(order = 4, intervals = {intervals});
+                variable m [m];
+                param half = {half} [m];
+                param far = {far} [m];
+                maximize m;
+                initial {{ x == -far;  y == 0.03 * half; }}
+                final {{ x == far;  y == 0.03 * half; }}
+                trajectory {{
+                    upper: hypot(x, y - half) >= m;  lower: hypot(x, y + half) >= m;
+                    hypot(der(x), der(y)) <= 6 * far / T;  y in -half .. half;
+                }}
+            }}"
+        ));
+        let clearance = report.solution.variable("m").expect("a variable");
+        for name in ["upper", "lower"] {
+            let own = report.constraints.iter().find(|own| own.name == name).expect("it is one");
+            let between = own.between.as_ref().expect("it is checked");
+            assert!(between.violation > 0.02 * clearance, "the points step over the posts: {report}");
+            close(between.relative, between.violation / clearance, 1e-2);
+        }
+        assert!(found > Resolution::Fine, "{report}");
     }
 }
 

@@ -94,7 +94,7 @@ impl Terms {
             _ => at_points,
         };
         let bound = self.limited.map_or(0.0, |_| self.bound.min(at_points));
-        let between = between.max(bound);
+        let between = if bound > 0.0 { bound.max(LEAST_SIDE * between) } else { between };
         Some(Size { at_points, between })
     }
 }
@@ -175,7 +175,7 @@ impl Ranges {
                 let kind = kind(term);
                 if kind.is_linear || *is_posed && bent <= BENT {
                     own.variation = own.variation.max(high - low);
-                    if kind.is_variable {
+                    if kind.is_variable && low <= high {
                         own.bound = own.bound.max(low.abs()).max(high.abs());
                     }
                 } else if kind.is_input && bent <= STEADY {
