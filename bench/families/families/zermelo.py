@@ -30,12 +30,16 @@ def extremal(heading, T, V, shear, y0):
     return along + shear * area, y
 
 
+# The logarithm of the longest time that is looked at: a step of `fsolve` may lead anywhere.
+LONGEST = 100
+
+
 def through_shear(x, y0, y1, V, shear):
     """The least time from (0, y0) to (x, y1), in units of length and speed that are about 1."""
     best = math.inf
     for heading in np.linspace(-math.pi, math.pi, 25)[1:] + 0.01:
         for T in np.geomspace(0.1, 10, 7) * (math.hypot(x, y1 - y0) / V):
-            miss = lambda z: np.subtract(extremal(z[0], math.exp(z[1]), V, shear, y0), (x, y1))
+            miss = lambda z: np.subtract(extremal(z[0], math.exp(min(z[1], LONGEST)), V, shear, y0), (x, y1))
             found, _, end, _ = fsolve(miss, [heading, math.log(T)], full_output=True, xtol=1e-13)
             if end == 1 and np.abs(miss(found)).max() < 1e-9:
                 best = min(best, math.exp(found[1]))
