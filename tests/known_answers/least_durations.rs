@@ -189,3 +189,29 @@ fn rates_tell_how_long_a_motion_takes() {
         close(report.objective / seconds, (1.0 + 0.3 * 5.0 / 2.0_f64).ln() / 0.3, 1e-6);
     }
 }
+
+/// The fastest way over ground on which speed grows evenly to one side is an arc, and takes
+/// `acosh(1 + b^2 d^2 / (2 c0 c1)) / b`. The limit has no bound but 0: at 2 us, for 5 ps, it was "solved".
+#[test]
+fn a_limit_of_speed_that_changes_with_the_place_tells_a_duration() {
+    for (length, time, seconds) in [("nm", "ps", 1e-12), ("mm", "us", 1e-6), ("m", "s", 1.0), ("km", "h", 3600.0)] {
+        for (x, y, c, b) in [(321.0, 23.5, 25.1, 0.764), (40.0, 30.0, 2.0, 0.1), (5.0, 4.0, 60.0, 20.0)] {
+            for intervals in [8, 23] {
+                let report = solved(&format!(
+                    "problem Ray {{
+                        let c [{length}/{time}] = {c} [{length}/{time}] + {b} [1/{time}] * y;
+                        duration T in 0 [{time}] ..;
+                        output x, y [{length}]: spline(order = 5, intervals = {intervals});
+                        initial {{ x == 0;  y == 0; }}
+                        final {{ x == {x} [{length}];  y == {y} [{length}]; }}
+                        trajectory {{ hypot(der(x), der(y)) <= c; }}
+                        minimize T;
+                    }}"
+                ));
+                let squares: f64 = x * x + y * y;
+                let known = (1.0 + b * b * squares / (2.0 * c * (c + b * y))).acosh() / b;
+                close(report.objective, known * seconds, 2e-3);
+            }
+        }
+    }
+}

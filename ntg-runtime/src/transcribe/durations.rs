@@ -4,8 +4,8 @@
 //! balances the equations nothing is known but that somebody wrote it.
 
 use super::rows::shortest_duration;
-use super::{Transcription, defaults};
-use ntg_nlp::{Limits, Nlp};
+use super::{Transcription, Workspace, defaults};
+use ntg_nlp::{Evaluation, Limits, Nlp};
 
 /// A duration from bounds counts unless another one, so many decades away, balances the equations better. A fit: of 141 shipped,
 /// gallery and other specs with free durations none is further off.
@@ -21,6 +21,10 @@ const TOLD_RANGE: f64 = 20.0;
 
 /// So many decades from the guess by bounds are looked at. A choice: from an age of the world to a vibration of a molecule.
 const RANGE: i32 = 24;
+
+/// All is slow with durations of so many times the guess by bounds. A choice: as many decades as of a motion by bounds nobody
+/// would mean.
+const SLOW: f64 = 1e12;
 
 /// Parts of a decade in which the best duration is looked for.
 const PARTS: i32 = 10;
@@ -147,10 +151,11 @@ impl Transcription<'_> {
         }
         let (mut work, mut at) = self.workspace();
         let groups = self.output_groups();
+        let room = self.room((&mut x, first), (&mut work, &mut at))?;
         let mut trial = |rule: Rule, tenths: i32| {
             let typical = first * 10f64.powf(f64::from(tenths) / f64::from(PARTS));
             self.durations.iter().for_each(|d| x[d.variable as usize] = self.duration_near(d, typical));
-            self.imbalance((&x, &groups), rule.by_rates, (&mut work, &mut at))
+            self.imbalance((&x, &groups, &room), rule.by_rates, (&mut work, &mut at))
         };
         let is_open = self.durations.iter().any(|duration| duration.reach.is_infinite());
         let mut by = |rule: Rule, find: Find| find(&mut |tenths| trial(rule, tenths), rule);
@@ -162,6 +167,24 @@ impl Transcription<'_> {
         };
         let mut told = ways.into_iter().filter_map(|(rule, find)| Some((by(rule, find)?, rule.by_rates)));
         told.next().map(|(tenths, by_rates)| (first * 10f64.powf(tenths / f64::from(PARTS)), by_rates))
+    }
+
+    /// What each limit along the way leaves where all is slow; 0 where that is a matter of how slow. `first` is a duration by bounds.
+    fn room(&self, (x, first): (&mut [f64], f64), (work, at): (&mut Workspace, &mut Evaluation)) -> Option<Vec<f64>> {
+        let mut left = |slow: f64| -> Option<Vec<f64>> {
+            self.durations.iter().for_each(|d| x[d.variable as usize] = self.duration_near(d, slow * first));
+            self.values(x, work, at).ok()?;
+            let limits = self.limits.row_lower.iter().zip(&self.limits.row_upper);
+            let rows = self.elements.rows.iter().zip(at.rows.iter().zip(limits));
+            let room = rows.map(|(info, (value, (lower, upper)))| match info.point.phase {
+                Some(_) => (value - lower).min(upper - value).max(0.0),
+                None => 0.0,
+            });
+            Some(room.collect())
+        };
+        let (slow, slower) = (left(SLOW)?, left(10.0 * SLOW)?);
+        let is_same = |(one, other): (&f64, &f64)| (one - other).abs() < 0.5 * one;
+        Some(slow.iter().zip(&slower).map(|own| if is_same(own) { *own.0 } else { 0.0 }).collect())
     }
 }
 

@@ -117,14 +117,16 @@ impl Transcription<'_> {
     /// By how many decades the terms of equations differ in size, in sum: of each the largest from the next, and of each
     /// inequality the largest from the bound that it exceeds; with the objective of a motion of the sizes that balance them.
     /// Durations are no terms: they stand in those of derivatives. Where it is `by_rates`, a rate is a term beside what it is
-    /// proportional to. None where something is not finite.
+    /// proportional to. `room` is what each row leaves where all is slow: the bound of a limit of 0. None where something is not
+    /// finite.
     pub(super) fn imbalance(
         &self,
-        (x, groups): (&[f64], &[Vec<u32>]),
+        (x, groups, room): (&[f64], &[Vec<u32>], &[f64]),
         by_rates: bool,
         (workspace, at): (&mut Workspace, &mut Evaluation),
     ) -> Option<Trial> {
         self.derivatives(x, 1.0, &vec![0.0; self.elements.rows.len()], workspace, at).ok()?;
+        let here = at.rows.clone();
         let mut balance = self.balance(groups, x);
         let durations: Vec<usize> = self.durations.iter().map(|d| balance.group[d.variable as usize]).collect();
         durations.iter().for_each(|group| balance.own_bound[*group] = 0.0);
@@ -145,8 +147,13 @@ impl Transcription<'_> {
         self.values(&motion, workspace, at).ok()?;
         // What is flat at the guess, as a square of speeds at rest, is exceeded by the motion.
         for (row, constraint) in balance.constraint_of.iter().enumerate().filter(|own| balance.is_inequality[*own.1]) {
-            let (lower, upper, value) = (self.limits.row_lower[row], self.limits.row_upper[row], at.rows[row]);
-            let (bound, missed) = if value > upper { (upper, value - upper) } else { (lower, lower - value) };
+            let (lower, upper) = (self.limits.row_lower[row], self.limits.row_upper[row]);
+            let missed_at = |value: f64| if value > upper { (upper, value - upper) } else { (lower, lower - value) };
+            let (bound, missed) = match missed_at(at.rows[row]) {
+                // Of a place that is as far away as the motion little is known, and the guess is nearer.
+                (0.0, _) => (room[row], missed_at(here[row]).1),
+                known => known,
+            };
             let exceeded = (1.0 + missed.max(0.0) / bound.abs()).log10();
             if exceeded.is_finite() {
                 decades[*constraint] = decades[*constraint].max(exceeded);
