@@ -32,8 +32,8 @@ const ATTEMPTS: [Attempt; 11] = [
     Attempt::Onwards,
 ];
 
-/// A motion of so many times the sizes of its outputs is none of the guess's. A choice: two of four digits that a linear program
-/// with a tolerance of 1e-8 has left where sizes are 1e4 too small.
+/// A motion of so many times the sizes that the guess tells is far from the guess. A choice: a tenth of that is within what bounds
+/// and typical sizes are off by.
 const OUTGROWN: f64 = 1e2;
 
 /// How an attempt that follows a failed one solves a program.

@@ -22,8 +22,7 @@ const TOLD_RANGE: f64 = 20.0;
 /// So many decades from the guess by bounds are looked at. A choice: from an age of the world to a vibration of a molecule.
 const RANGE: i32 = 24;
 
-/// All is slow with durations of so many times the guess by bounds. A choice: as many decades as of a motion by bounds nobody
-/// would mean.
+/// All is slow with durations of so many times the guess by bounds. A choice: half of the decades that are looked at.
 const SLOW: f64 = 1e12;
 
 /// Parts of a decade in which the best duration is looked for.
@@ -151,7 +150,8 @@ impl Transcription<'_> {
         }
         let (mut work, mut at) = self.workspace();
         let groups = self.output_groups();
-        let room = self.room((&mut x, first), (&mut work, &mut at))?;
+        let room = self.room((&mut x, first), (&mut work, &mut at));
+        let room = room.unwrap_or_else(|| vec![0.0; self.elements.rows.len()]);
         let mut trial = |rule: Rule, tenths: i32| {
             let typical = first * 10f64.powf(f64::from(tenths) / f64::from(PARTS));
             self.durations.iter().for_each(|d| x[d.variable as usize] = self.duration_near(d, typical));
@@ -169,7 +169,8 @@ impl Transcription<'_> {
         told.next().map(|(tenths, by_rates)| (first * 10f64.powf(tenths / f64::from(PARTS)), by_rates))
     }
 
-    /// What each limit along the way leaves where all is slow; 0 where that is a matter of how slow. `first` is a duration by bounds.
+    /// What each limit along the way leaves where all is slow; 0 where that is a matter of how slow, none where something is not
+    /// finite then, as what grows with time. `first` is a duration by bounds.
     fn room(&self, (x, first): (&mut [f64], f64), (work, at): (&mut Workspace, &mut Evaluation)) -> Option<Vec<f64>> {
         let mut left = |slow: f64| -> Option<Vec<f64>> {
             self.durations.iter().for_each(|d| x[d.variable as usize] = self.duration_near(d, slow * first));
