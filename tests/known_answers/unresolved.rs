@@ -481,6 +481,29 @@ fn a_clearance_is_missed_by_a_part_of_itself() {
     }
 }
 
+/// The least peak of what can be followed exactly is what the mesh leaves of it, and no measure.
+#[test]
+fn a_peak_that_only_the_mesh_leaves_is_resolved() {
+    for (amplitude, rate, intervals) in [(2.627, 3.627, 6), (2.627, 3.627, 8), (666.0, 2.5, 8)] {
+        let text = format!(
+            "problem Fit {{
+                duration T = 1.833;
+                variable p;
+                state x;
+                input u;
+                collocation gauss(points = 3, intervals = {intervals});
+                let wanted = {amplitude} * exp(-{rate} * t);
+                dynamics {{ der(x) == u; }}
+                trajectory {{ abs(x - wanted) <= p; }}
+                minimize p;
+            }}"
+        );
+        let report = solve(Shipped::text(&text).problem(), &Settings::default()).expect("it can be set up");
+        assert!(report.is_solved() && report.objective < 1e-3 * amplitude, "{report}");
+        assert_eq!(report.resolution(), Some(Resolution::Fine), "{report}");
+    }
+}
+
 /// What holds a speed over hills is as large as the force that does, whatever the force is divided by.
 #[test]
 fn what_holds_a_speed_has_the_size_of_its_force() {

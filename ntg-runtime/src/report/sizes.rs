@@ -32,6 +32,10 @@ const STEADY: f64 = 1.01;
 /// size. A choice: the points may not see a hill, and what is missed by 3e-5 of all is no hill.
 const LEAST_SIDE: f64 = 3e-3;
 
+/// A variable that is a bound counts for at least this part of what the limit varies by. A choice: a least peak of what can be
+/// followed exactly is what the mesh leaves of it, 1e-4 to 1e-2 of all, and means nothing.
+const LEAST_BOUND: f64 = 3e-2;
+
 /// Below this part of the size of its terms what an equation says is 0, as `sin(pi)`, and so is what is missed of it. A law:
 /// rounding of some terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -94,7 +98,7 @@ impl Terms {
             _ => at_points,
         };
         let bound = self.limited.map_or(0.0, |_| self.bound.min(at_points));
-        let between = if bound > 0.0 { bound.max(LEAST_SIDE * between) } else { between };
+        let between = if bound > 0.0 { bound.max(LEAST_BOUND * between) } else { between };
         Some(Size { at_points, between })
     }
 }
