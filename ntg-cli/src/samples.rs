@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     every: Option<String>,
 }
 
-/// Endings of files that are neither of both, and what one may hope that samples are.
+/// Endings of formats that samples are not written in, though someone may expect it.
 const OTHERS: [&str; 12] = ["xlsx", "xls", "ods", "tsv", "json", "html", "pdf", "png", "svg", "mat", "h5", "feather"];
 
 /// Rows that are written at most.

@@ -120,3 +120,28 @@ fn an_objective_within_bounds_is_not_unbounded() {
         assert_ne!(report.status, Status::Unbounded, "{intervals}: {report}");
     }
 }
+
+/// A stock that grows by what is left in it, `k0 e^(T - 1)` at best: an end that another scale of the objective refutes was
+/// "optimal to 1e-6" with 1e5 times too little.
+#[test]
+fn what_is_called_a_solution_is_near_the_optimum_over_decades() {
+    let mut solutions = 0;
+    for (k0, duration, intervals) in [(1e-4, 26.0, 25), (1e-2, 14.0, 14), (1.0, 10.0, 20)] {
+        let spec = Shipped::text(&format!(
+            "problem Growth {{
+                duration T = {duration};
+                state k;
+                input u in 0 .. 1;
+                collocation gauss(points = 3, intervals = {intervals});
+                maximize integral((1 - u) * k);
+                dynamics {{ der(k) == u * k; }}
+                initial {{ k == {k0}; }}
+            }}"
+        ));
+        let report = solve(spec.problem(), &Settings::default()).expect("it can be set up");
+        let known = k0 * f64::exp(duration - 1.0);
+        assert!(!report.has_solution() || (report.objective / known - 1.0).abs() < 0.05, "{known}\n{report}");
+        solutions += usize::from(report.has_solution());
+    }
+    assert!(solutions > 0, "ten time constants have one");
+}

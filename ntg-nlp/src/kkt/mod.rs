@@ -5,8 +5,8 @@
 //! ```
 //!
 //! [`system`] holds the scaled program, the matrix `A` and its factors. `supports` finds which slots depend on the same
-//! variables, `chains` what pairs connect, `unknowns` which rows are not condensed, `elements` condenses the others into second derivatives element by
-//! element, `ordering` says in which order unknowns are eliminated, `storage` where the entries of that matrix and of its
+//! variables, `chains` what pairs connect, `unknowns` which rows are not condensed, `elements` condenses the others into
+//! second derivatives element by element, `ordering` says in which order unknowns are eliminated, `storage` where the entries of that matrix and of its
 //! factors are stored, `factor` factorises it with the products of `panel`, `substitution` solves for one right-hand side and
 //! `columns` for several at a time.
 

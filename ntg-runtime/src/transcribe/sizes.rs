@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// What a limit of 0 leaves where all is slow counts so many times: elsewhere than at the guess it may leave more, and motions that
-/// are too fast are nearer to the fastest one than those that are too slow, beside which any detour is as good. A fit to 120 random
-/// least times over ground on which speed grows to one side: of 60, with 1, 8, 16 and 30 times 49, 55, 57 and 60 are solved.
+/// are too fast are nearer to the fastest one than those that are too slow, beside which any detour is as good. A fit to
+/// `bench/families/run --only media --count 60 --seed 900`, which takes 7973, 4313, 2504 and 2470 iterations with 1, 8, 16 and 30.
 const ROOM: f64 = 30.0;
 
 /// Sizes below this fraction of what balances their constraints are rounding.
@@ -153,13 +153,13 @@ impl Transcription<'_> {
         // What is flat at the guess, as a square of speeds at rest, is exceeded by the motion.
         for (row, constraint) in balance.constraint_of.iter().enumerate().filter(|own| balance.is_inequality[*own.1]) {
             let (lower, upper) = (self.limits.row_lower[row], self.limits.row_upper[row]);
-            let exceeded = match (if at.rows[row] > upper { upper } else { lower }, room[row]) {
+            let missed = |value: f64| (lower - value).max(value - upper);
+            let bound = if at.rows[row] > upper { upper } else { lower };
+            let exceeded = if bound == 0.0 {
                 // Of a place that is as far away as the motion little is known, and the guess is nearer.
-                (0.0, room) => {
-                    let missed = (lower - here[row]).max(here[row] - upper);
-                    ((missed + room) / (ROOM * room)).log10().max(0.0)
-                }
-                (bound, _) => (1.0 + (lower - at.rows[row]).max(at.rows[row] - upper).max(0.0) / bound.abs()).log10(),
+                ((missed(here[row]) + room[row]) / (ROOM * room[row])).log10().max(0.0)
+            } else {
+                (1.0 + missed(at.rows[row]).max(0.0) / bound.abs()).log10()
             };
             if exceeded.is_finite() {
                 decades[*constraint] = decades[*constraint].max(exceeded);
