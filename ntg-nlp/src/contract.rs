@@ -125,7 +125,7 @@ pub struct Limits {
     /// Rows that define variables by others; the interior-point method meets them at every trial point (docs/maths.md,
     /// section 11.18).
     pub definitions: Vec<Definition>,
-    /// Equations over durations that may vanish, which are posed times a power of the duration (docs/maths.md, section 11.17).
+    /// Durations in rows that are posed times powers of them, since they may vanish (docs/maths.md, section 11.17).
     pub shrinking: Vec<Shrinking>,
     /// Variables that objective and rows know by their sines and cosines alone, with the change that is a radian: a step
     /// turns them by little (docs/maths.md, section 11.15).
@@ -151,10 +151,11 @@ pub struct Definition {
     pub variable: u32,
 }
 
-/// A row that holds derivatives by a time whose scale is a variable: `c = 0` with terms over powers of it.
+/// A duration in a row that holds derivatives by a time of which the duration is the scale: terms are over powers of it. A row with
+/// two durations has two entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shrinking {
-    /// The row, of bounds 0.
+    /// The row, with one bound or two that are equal.
     pub row: u32,
     /// The duration, above 0 by its bounds.
     pub variable: u32,
@@ -162,6 +163,8 @@ pub struct Shrinking {
     pub order: u8,
     /// The duration below which the row is posed times this power, and above which it is posed as it is.
     pub small: f64,
+    /// Whether the row holds all along the duration: what it is missed by counts as what it adds up to.
+    pub is_along: bool,
 }
 
 /// A number of an evaluation, by its indices.

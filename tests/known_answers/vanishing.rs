@@ -67,6 +67,63 @@ fn the_multipliers_of_what_is_posed_otherwise_are_those_of_the_equation() {
     }
 }
 
+/// Limits on rates in phases whose lengths nobody limits, in units and on meshes: the same few iterations for all of them.
+const SPLITS: [(&str, &str, usize); 4] = [("m", "s", 4), ("nm", "us", 8), ("Mm", "day", 20), ("mm", "h", 15)];
+
+#[test]
+fn a_cruise_by_limits_on_an_acceleration_vanishes_or_does_not() {
+    for (length, clock, intervals) in SPLITS {
+        let open = ["0 ..".to_owned(), "0 ..".to_owned(), "0 ..".to_owned()];
+        let bounded = [format!("0 .. 20 [{clock}]"), "0 ..".to_owned(), "0 ..".to_owned()];
+        let long = ["0 ..".to_owned(), format!("0 .. 1000 [{clock}]"), "0 ..".to_owned()];
+        for [up, cruise, down] in [&open, &bounded, &long] {
+            for (most, least) in [(10.0, 7.0_f64.sqrt()), (1.0, 43.0 / 12.0)] {
+                let report = Shipped::text(&format!(
+                    "problem Cruise {{
+                        output x [{length}]: spline(order = 3, intervals = {intervals});
+                        phase up {{ duration in {up};  trajectory {{ der(x, 2) in 0 .. 2 [{length}/{clock}^2]; }} }}
+                        phase cruise after up {{ duration in {cruise};  trajectory {{ der(x, 2) == 0; }} }}
+                        phase down after cruise {{
+                            duration in {down};  trajectory {{ der(x, 2) in -1.5 [{length}/{clock}^2] .. 0; }}
+                        }}
+                        initial {{ x == 0;  der(x) == 0; }}
+                        final {{ x == 3 [{length}];  der(x) == 0; }}
+                        trajectory {{ der(x) <= {most} [{length}/{clock}]; }}
+                        minimize end(down) / 1 [{clock}];
+                    }}"
+                ))
+                .solve();
+                assert!(report.is_solved() && report.iterations <= 150, "{length}, {up}, {cruise}, {most}: {report}");
+                close(report.objective, least, 1e-5);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_way_that_two_phases_share_as_they_like_takes_as_long_as_one_phase() {
+    for (length, clock, intervals) in SPLITS {
+        for other in ["0 ..".to_owned(), format!("0 .. 20 [{clock}]"), format!("0 .. 1000 [{clock}]")] {
+            for (order, [first, second]) in [(3, ["0 ..", &other]), (5, [&other, "0 .."]), (5, ["0 ..", &other])] {
+                let report = Shipped::text(&format!(
+                    "problem Split {{
+                        output x [{length}]: spline(order = {order}, intervals = {intervals});
+                        phase a {{ duration in {first}; }}
+                        phase b after a {{ duration in {second}; }}
+                        initial {{ x == 0; }}
+                        final {{ x == 3 [{length}]; }}
+                        trajectory {{ abs(der(x)) <= 2 [{length}/{clock}]; }}
+                        minimize end(b) / 1 [{clock}];
+                    }}"
+                ))
+                .solve();
+                assert!(report.is_solved() && report.iterations <= 60, "{length}, {first}, {second}: {report}");
+                close(report.objective, 1.5, 1e-6);
+            }
+        }
+    }
+}
+
 #[test]
 fn the_hanging_chain_does_not_run_off() {
     // The penalty function falls without limit where the chain is long and low. 5.0685 is the published optimum (COPS).

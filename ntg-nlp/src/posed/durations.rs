@@ -1,22 +1,38 @@
-//! Equations over a duration that may vanish, posed times a power of it (docs/maths.md, section 11.17).
+//! Rows over durations that may vanish, posed times powers of them (docs/maths.md, section 11.17).
 //!
 //! A derivative by time is one by scaled time over the duration `T`. Where `T` falls by much, as that of a phase that is of no
 //! use does, `x' / T - f` is nothing like its tangent, and its slopes grow without limit; `x' - T f` is nearly its
-//! tangent. A row of [`Limits::shrinking`] is posed as `phi c` with `phi = (T / (T + small))^k`, which is the one where
-//! `T` is small and the other where it is not. The row has the solutions of `c = 0`; the slope of one by the other is `phi`.
+//! tangent. A row `c` of [`Limits::shrinking`] whose only bound is `b` is posed as `phi (c - b)` with the bound 0, where `phi` is
+//! the product of `(T / (T + small))^k` over its durations: the second form where a duration is small and the first where
+//! none is. The row has the solutions of the program's own; the slope of one by the other is `phi`.
 
 use super::sole_rows;
-use crate::contract::{Block, BlockValues, Evaluation, Nlp, Shrinking};
+use crate::contract::{Block, BlockValues, Evaluation, Limits, Nlp, Shrinking};
+use crate::outcome::Outcome;
+use crate::residuals::{ACCEPTABLE, violation};
+use std::collections::BTreeSet;
 
-/// `phi` and its first two derivatives.
-fn power(of: &Shrinking, duration: f64) -> [f64; 3] {
-    let Shrinking { order, small, .. } = *of;
-    let k = f64::from(order);
-    let sum = duration + small;
-    let part = duration / sum;
-    let (first, second) = (small / (sum * sum), -2.0 * small / (sum * sum * sum));
-    let [below, far_below] = [1, 2].map(|less| part.powi(i32::from(order) - less));
-    [part * below, k * below * first, k * ((k - 1.0) * far_below * first * first + below * second)]
+/// A factor of `phi` at a duration.
+struct Power {
+    value: f64,
+    /// The first derivative and the second one, as parts of the value.
+    first: f64,
+    second: f64,
+}
+
+impl Power {
+    fn at(of: &Shrinking, x: &[f64]) -> Self {
+        let (k, duration) = (f64::from(of.order), x[of.variable as usize]);
+        let sum = duration + of.small;
+        let first = of.small / (duration * sum);
+        let value = (duration / sum).powi(i32::from(of.order));
+        Self { value, first: k * first, second: k * first * ((k - 1.0) * first - 2.0 / sum) }
+    }
+}
+
+/// The product of the factors.
+fn product(factors: &[Shrinking], x: &[f64]) -> f64 {
+    factors.iter().map(|factor| Power::at(factor, x).value).product()
 }
 
 /// A row that is posed.
@@ -24,7 +40,10 @@ fn power(of: &Shrinking, duration: f64) -> [f64; 3] {
 struct Row {
     row: usize,
     element: usize,
-    shrinking: Shrinking,
+    /// One a duration of the pattern.
+    factors: Vec<Shrinking>,
+    /// The bound of the row, as its element's value.
+    bound: f64,
 }
 
 /// A function of a block of which some elements are posed, and where derivatives stand.
@@ -35,15 +54,16 @@ struct Pattern {
     rows: Vec<Row>,
     /// The entries of the block's Jacobian that are its own.
     jacobian: Vec<usize>,
-    /// The one that is by the duration.
-    by_duration: usize,
-    /// Entries of the block's Hessian by a slot and the duration, each with the entry of the Jacobian by that slot.
-    mixed: Vec<(usize, usize)>,
-    /// The entry of the Hessian that is by the duration twice.
-    twice: usize,
+    /// The one that is by each duration.
+    by_durations: Vec<usize>,
+    /// Entries of the block's Hessian by a duration, whose number comes first, and a slot, each with the entry of the Jacobian by
+    /// that slot. By the duration itself an entry stands for two terms, so that it is listed twice.
+    mixed: Vec<(usize, usize, usize)>,
+    /// The entries of the Hessian by two durations, which may be one.
+    pairs: Vec<(usize, usize, usize)>,
 }
 
-/// The equations that are posed times a power of a duration.
+/// The rows that are posed times powers of durations.
 #[derive(Debug, Default)]
 pub(super) struct Durations {
     patterns: Vec<Pattern>,
@@ -52,19 +72,20 @@ pub(super) struct Durations {
 }
 
 impl Durations {
-    /// The equations of a program that are the value of one function of one element, in which the duration is a slot by itself;
-    /// `blocks` get the entries of Hessians that products need.
-    pub(super) fn of<N: Nlp>(nlp: &N, blocks: &mut Vec<Block>) -> Self {
+    /// The rows of a program that are the value of one function of one element, in which durations are slots by themselves, and
+    /// that are not among `norms`, which are posed otherwise; `blocks` get the entries of Hessians that products need.
+    pub(super) fn of<N: Nlp>(nlp: &N, norms: &BTreeSet<usize>, blocks: &mut Vec<Block>) -> Self {
         let limits = nlp.limits();
         if limits.shrinking.is_empty() {
             return Self::default();
         }
         let sole = sole_rows(nlp);
-        let mut posed = vec![None; nlp.rows()];
+        let mut factors = vec![vec![]; nlp.rows()];
         for shrinking in &limits.shrinking {
             let row = shrinking.row as usize;
-            let is_equation = limits.row_lower[row] == 0.0 && limits.row_upper[row] == 0.0;
-            posed[row] = Some(*shrinking).filter(|_| is_equation && sole[row]);
+            if sole[row] && !norms.contains(&row) {
+                factors[row].push(*shrinking);
+            }
         }
         *blocks = nlp.blocks().to_vec();
         let own = blocks.iter().map(|block| block.hessian.len()).collect();
@@ -74,8 +95,10 @@ impl Durations {
                 let lanes = function * block.elements..(function + 1) * block.elements;
                 let rows: Vec<Row> = lanes
                     .filter_map(|lane| {
-                        let row = block.target[lane].row()?;
-                        Some(Row { row, element: lane % block.elements, shrinking: posed[row]? })
+                        let row = block.target[lane].row().filter(|row| !factors[*row].is_empty())?;
+                        let bound = only_bound(limits.row_lower[row], limits.row_upper[row])? / block.weight[lane];
+                        let factors = std::mem::take(&mut factors[row]);
+                        Some(Row { row, element: lane % block.elements, factors, bound })
                     })
                     .collect();
                 patterns.extend(pattern(block, (number, function), rows));
@@ -84,24 +107,73 @@ impl Durations {
         Self { patterns, own }
     }
 
+    fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.patterns.iter().flat_map(|pattern| &pattern.rows)
+    }
+
+    /// The bounds of posed rows in the place of their own.
+    pub(super) fn bound(&self, limits: &mut Limits) {
+        for Row { row, .. } in self.rows() {
+            for bound in [&mut limits.row_lower[*row], &mut limits.row_upper[*row]] {
+                if bound.is_finite() {
+                    *bound = 0.0;
+                }
+            }
+        }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.patterns.is_empty()
     }
 
     /// How posed rows grow with those of the program, by row.
     pub(super) fn slopes<'s>(&'s self, x: &'s [f64]) -> impl Iterator<Item = (usize, f64)> + 's {
-        let rows = self.patterns.iter().flat_map(|pattern| &pattern.rows);
-        rows.map(|Row { row, shrinking, .. }| (*row, power(shrinking, x[shrinking.variable as usize])[0]))
+        self.rows().map(|Row { row, factors, .. }| (*row, product(factors, x)))
+    }
+
+    /// The only bound of each posed row in the program, and how it grows with the program's own at a point, by row.
+    pub(super) fn bounds<'s>(
+        &'s self,
+        limits: &'s Limits,
+        x: &'s [f64],
+    ) -> impl Iterator<Item = (usize, f64, f64)> + 's {
+        let bound = |row: usize| only_bound(limits.row_lower[row], limits.row_upper[row]).unwrap_or_default();
+        self.slopes(x).map(move |(row, slope)| (row, slope, bound(row)))
+    }
+
+    /// The factors of rows at an end: those of an outcome, times the parts that durations are of what they were at the start where a
+    /// row holds along them. What a rate is missed by counts as what it leaves at the end of the phase.
+    pub(super) fn factors(&self, outcome: &Outcome, start: &[f64]) -> Vec<(usize, f64)> {
+        let part = |factor: &Shrinking| {
+            let variable = factor.variable as usize;
+            if factor.is_along { (outcome.x[variable] / start[variable]).min(1.0) } else { 1.0 }
+        };
+        let own = |row: &Row| outcome.row_factors[row.row] * row.factors.iter().map(part).product::<f64>();
+        self.rows().map(|row| (row.row, own(row))).collect()
+    }
+
+    /// Whether rows of these factors hold at a point.
+    pub(super) fn hold<N: Nlp>(&self, nlp: &N, x: &[f64], factors: &[(usize, f64)]) -> bool {
+        let ((mut work, mut at), limits) = (nlp.workspace(), nlp.limits());
+        let has_values = nlp.values(x, &mut work, &mut at).is_ok();
+        let missed = |row: usize| violation(at.rows[row], limits.row_lower[row], limits.row_upper[row]);
+        !has_values || factors.iter().all(|(row, factor)| factor * missed(*row) <= ACCEPTABLE)
+    }
+
+    /// Takes durations for small from what they are at a point, where that is less.
+    pub(super) fn shorten(&mut self, x: &[f64]) {
+        let factors = self.patterns.iter_mut().flat_map(|pattern| &mut pattern.rows).flat_map(|row| &mut row.factors);
+        factors.for_each(|factor| factor.small = factor.small.min(x[factor.variable as usize]));
     }
 
     /// Multiplies the values of an evaluation, and adds them up again.
     pub(super) fn pose_values(&self, blocks: &[Block], x: &[f64], out: &mut Evaluation) {
         for Pattern { block: number, function, rows, .. } in &self.patterns {
             let block = &blocks[*number];
-            for Row { row, element, shrinking } in rows {
+            for Row { row, element, factors, bound } in rows {
                 let lane = function * block.elements + element;
                 let value = &mut out.blocks[*number].values[lane];
-                *value *= power(shrinking, x[shrinking.variable as usize])[0];
+                *value = product(factors, x) * (*value - bound);
                 out.rows[*row] = block.weight[lane] * *value;
             }
         }
@@ -119,40 +191,55 @@ impl Durations {
         }
     }
 
-    /// The derivatives of `phi c` from those of `c`: second ones are there for the multiplier `phi` times that of the posed row,
-    /// `multipliers` are those of posed rows, and values are those of `c`.
+    /// The derivatives of `phi (c - b)` from those of `c`: second ones are there for the multiplier `phi` times that of the posed
+    /// row, `multipliers` are those of posed rows, and values are those of `c`.
     pub(super) fn pose_derivatives(&self, blocks: &[Block], x: &[f64], multipliers: &[f64], out: &mut Evaluation) {
         for pattern in &self.patterns {
             let block = &blocks[pattern.block];
             let BlockValues { values, jacobian, hessian } = &mut out.blocks[pattern.block];
-            for Row { row, element, shrinking } in &pattern.rows {
+            for Row { row, element, factors, bound } in &pattern.rows {
                 let at = |entry: usize| entry * block.elements + element;
+                let power = |duration: usize| Power::at(&factors[duration], x);
                 let lane = at(pattern.function);
-                let [phi, first, second] = power(shrinking, x[shrinking.variable as usize]);
-                let weight = block.weight[lane] * multipliers[*row];
-                for (place, entry) in &pattern.mixed {
-                    hessian[at(*place)] += weight * first * jacobian[at(*entry)];
+                let (phi, value) = (product(factors, x), values[lane] - bound);
+                let weight = block.weight[lane] * multipliers[*row] * phi;
+                for (duration, place, entry) in &pattern.mixed {
+                    hessian[at(*place)] += weight * power(*duration).first * jacobian[at(*entry)];
                 }
-                let by_duration = jacobian[at(pattern.by_duration)];
-                hessian[at(pattern.twice)] += weight * (2.0 * first * by_duration + second * values[lane]);
+                for (a, b, place) in &pattern.pairs {
+                    let second = if a == b { power(*a).second } else { power(*a).first * power(*b).first };
+                    hessian[at(*place)] += weight * second * value;
+                }
                 pattern.jacobian.iter().for_each(|entry| jacobian[at(*entry)] *= phi);
-                jacobian[at(pattern.by_duration)] += first * values[lane];
+                for (duration, entry) in pattern.by_durations.iter().enumerate() {
+                    jacobian[at(*entry)] += phi * power(duration).first * value;
+                }
             }
         }
     }
 }
 
+/// The bound of a row that has one, or two that are equal.
+fn only_bound(lower: f64, upper: f64) -> Option<f64> {
+    match (lower.is_finite(), upper.is_finite()) {
+        (true, false) => Some(lower),
+        (false, true) => Some(upper),
+        (true, true) => (lower == upper).then_some(lower),
+        (false, false) => None,
+    }
+}
+
 /// The pattern of a function, with new entries of the block's Hessian where there are none; nothing where no row is posed or the
-/// durations of its rows are not one slot.
+/// durations of its rows are not the same slots.
 fn pattern(block: &mut Block, (number, function): (usize, usize), rows: Vec<Row>) -> Option<Pattern> {
-    let first = rows.first()?;
-    let slot = slot_of(block, first)?;
-    if rows.iter().any(|row| slot_of(block, row) != Some(slot)) {
+    let durations = slots_of(block, rows.first()?)?;
+    if rows.iter().any(|row| slots_of(block, row).as_ref() != Some(&durations)) {
         return None;
     }
     let own = block.jacobian.iter().enumerate().filter(|(_, (row, _))| *row == function);
     let slots: Vec<(usize, usize)> = own.map(|(entry, (_, slot))| (entry, *slot)).collect();
-    let by_duration = slots.iter().find(|(_, own)| *own == slot)?.0;
+    let by = |duration: &usize| slots.iter().find(|(_, own)| own == duration).map(|(entry, _)| *entry);
+    let by_durations = durations.iter().map(by).collect::<Option<Vec<usize>>>()?;
     let mut place = |a: usize, b: usize| {
         let pair = (a.max(b), a.min(b));
         block.hessian.iter().position(|own| *own == pair).unwrap_or_else(|| {
@@ -160,23 +247,34 @@ fn pattern(block: &mut Block, (number, function): (usize, usize), rows: Vec<Row>
             block.hessian.len() - 1
         })
     };
-    let others = slots.iter().filter(|(_, own)| *own != slot);
-    let mixed = others.map(|(entry, own)| (place(*own, slot), *entry)).collect();
-    let twice = place(slot, slot);
+    let (mut mixed, mut pairs) = (vec![], vec![]);
+    for (number, duration) in durations.iter().enumerate() {
+        for (entry, slot) in &slots {
+            let times = if slot == duration { 2 } else { 1 };
+            mixed.extend(std::iter::repeat_n((number, place(*duration, *slot), *entry), times));
+        }
+        let earlier = durations[..=number].iter().enumerate();
+        pairs.extend(earlier.map(|(other, slot)| (number, other, place(*duration, *slot))));
+    }
     let jacobian = slots.iter().map(|(entry, _)| *entry).collect();
-    Some(Pattern { block: number, function, rows, jacobian, by_duration, mixed, twice })
+    Some(Pattern { block: number, function, rows, jacobian, by_durations, mixed, pairs })
 }
 
-/// The slot of an element that is the duration of a row and nothing else.
-fn slot_of(block: &Block, row: &Row) -> Option<usize> {
-    let variables = block.variables(row.element);
-    let column = variables.iter().position(|variable| *variable == row.shrinking.variable)?;
-    let is_duration = |slot: &[f64], offset: f64| {
+/// The slots of an element that are the durations of a row and nothing else.
+fn slots_of(block: &Block, row: &Row) -> Option<Vec<usize>> {
+    row.factors.iter().map(|factor| slot_of(block, row.element, factor.variable)).collect()
+}
+
+/// The slot of an element that is a variable and nothing else.
+fn slot_of(block: &Block, element: usize, variable: u32) -> Option<usize> {
+    let variables = block.variables(element);
+    let column = variables.iter().position(|own| *own == variable)?;
+    let is_variable = |slot: &[f64], offset: f64| {
         offset == 0.0 && slot.iter().enumerate().all(|(at, entry)| *entry == if at == column { 1.0 } else { 0.0 })
     };
-    let map = block.map(row.element);
-    let offset = |slot: usize| block.offset[slot * block.elements + row.element];
-    (0..block.slots).find(|slot| is_duration(&map[slot * variables.len()..][..variables.len()], offset(*slot)))
+    let map = block.map(element);
+    let offset = |slot: usize| block.offset[slot * block.elements + element];
+    (0..block.slots).find(|slot| is_variable(&map[slot * variables.len()..][..variables.len()], offset(*slot)))
 }
 
 #[cfg(test)]
@@ -187,57 +285,80 @@ mod tests {
     use crate::erased::{Erased, Own};
 
     const FREE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+    /// The upper bound of the second row.
+    const MOST: f64 = 0.7;
 
-    /// The objective `p v` and the row `p / T^2 - v^2 = 0` of the variables `p`, `v`, `T`.
+    /// The objective `p v` and the rows `p / T^2 - v^2 = 0` and `p^2 / T - v / S <= MOST` of the variables `p`, `v`, `T`, `S`.
     fn program() -> Program {
-        let mut program = Program::dense(&[FREE, FREE, (1e-6, 10.0)], &[(0.0, 0.0)], |x, out: &mut Functions| {
-            let (p, v, t) = (x[0], x[1], x[2]);
+        let bounds = [FREE, FREE, (1e-6, 10.0), (1e-6, 10.0)];
+        let rows = [(0.0, 0.0), (f64::NEG_INFINITY, MOST)];
+        let mut program = Program::dense(&bounds, &rows, |x, out: &mut Functions| {
+            let (p, v, t, s) = (x[0], x[1], x[2], x[3]);
             out.set_value(0, p * v);
-            out.set_gradient(0, &[v, p, 0.0]);
-            out.set_hessian(0, &[0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            out.set_gradient(0, &[v, p, 0.0, 0.0]);
+            out.set_hessian(0, &[0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
             let (second, third) = (t.powi(-2), -2.0 * t.powi(-3));
             out.set_value(1, p * second - v * v);
-            out.set_gradient(1, &[second, -2.0 * v, p * third]);
-            out.set_hessian(1, &[0.0, 0.0, third, 0.0, -2.0, 0.0, third, 0.0, 6.0 * p * t.powi(-4)]);
+            out.set_gradient(1, &[second, -2.0 * v, p * third, 0.0]);
+            let twice = 6.0 * p * t.powi(-4);
+            out.set_hessian(
+                1,
+                &[0.0, 0.0, third, 0.0, 0.0, -2.0, 0.0, 0.0, third, 0.0, twice, 0.0, 0.0, 0.0, 0.0, 0.0],
+            );
+            out.set_value(2, p * p / t - v / s);
+            out.set_gradient(2, &[2.0 * p / t, -1.0 / s, -p * p / (t * t), v / (s * s)]);
+            let (pp, pt, tt) = (2.0 / t, -2.0 * p / (t * t), 2.0 * p * p * t.powi(-3));
+            let (vs, ss) = (1.0 / (s * s), -2.0 * v * s.powi(-3));
+            out.set_hessian(2, &[pp, 0.0, pt, 0.0, 0.0, 0.0, 0.0, vs, pt, 0.0, tt, 0.0, 0.0, vs, 0.0, ss]);
         });
-        program.limits.shrinking = vec![Shrinking { row: 0, variable: 2, order: 2, small: 0.1 }];
+        let shrinking = |row, variable, order, small| Shrinking { row, variable, order, small, is_along: true };
+        program.limits.shrinking = vec![shrinking(0, 2, 2, 0.1), shrinking(1, 2, 1, 0.1), shrinking(1, 3, 1, 0.5)];
         program
     }
 
     /// The lower triangle of a matrix: its entries by row and column.
     type Triangle = Vec<((usize, usize), f64)>;
 
-    /// The row's value, the Lagrangian's gradient and the lower triangle of its Hessian.
-    fn lagrangian<N: Nlp>(nlp: &N, x: &[f64], multiplier: f64) -> (f64, Vec<f64>, Triangle) {
+    /// The multipliers of the rows.
+    const MULTIPLIERS: [f64; 2] = [-0.7, 0.4];
+
+    /// The rows' values, the Lagrangian's gradient and the lower triangle of its Hessian.
+    fn lagrangian<N: Nlp>(nlp: &N, x: &[f64]) -> (Vec<f64>, Vec<f64>, Triangle) {
         let (mut work, mut at) = nlp.workspace();
-        nlp.derivatives(x, 1.0, &[multiplier], &mut work, &mut at).expect("finite");
+        nlp.derivatives(x, 1.0, &MULTIPLIERS, &mut work, &mut at).expect("finite");
         let (block, values) = (&nlp.blocks()[0], &at.blocks[0]);
-        let mut gradient = vec![0.0; 3];
+        let mut gradient = vec![0.0; x.len()];
         for ((row, slot), entry) in block.jacobian.iter().zip(&values.jacobian) {
-            gradient[*slot] += if *row == 0 { 1.0 } else { multiplier } * entry;
+            gradient[*slot] += if *row == 0 { 1.0 } else { MULTIPLIERS[*row - 1] } * entry;
         }
-        (at.rows[0], gradient, block.hessian.iter().copied().zip(values.hessian.iter().copied()).collect())
+        (at.rows.clone(), gradient, block.hessian.iter().copied().zip(values.hessian.iter().copied()).collect())
     }
 
     #[test]
     fn derivatives_of_posed_rows_are_those_of_their_values() {
         let program = program();
-        for x in [[0.3, 1.2, 0.02], [-2.0, 0.7, 0.1], [1.0, -0.4, 3.0]] {
+        for x in [[0.3, 1.2, 0.02, 0.3], [-2.0, 0.7, 0.1, 0.01], [1.0, -0.4, 3.0, 2.0]] {
             let own = Own(&program);
             let erased = Erased::of(&own);
-            let posed = Posed::of(&erased, &x).expect("the row is posed");
+            let posed = Posed::of(&erased, &x).expect("the rows are posed");
             let posed = Erased::of(&posed);
-            let (value, gradient, hessian) = lagrangian(&posed, &x, -0.7);
-            let factor = (x[2] / (x[2] + 0.1)).powi(2);
-            let own = lagrangian(&program, &x, -0.7).0;
-            assert!((value - factor * own).abs() < 1e-12 * own.abs(), "{value} for {}", factor * own);
-            for j in 0..3 {
+            assert_eq!(posed.limits().row_upper, [0.0, 0.0]);
+            let (values, gradient, hessian) = lagrangian(&posed, &x);
+            let own = lagrangian(&program, &x).0;
+            let part = |small: f64, duration: f64| duration / (duration + small);
+            let factors = [part(0.1, x[2]).powi(2), part(0.1, x[2]) * part(0.5, x[3])];
+            let expected = [factors[0] * own[0], factors[1] * (own[1] - MOST)];
+            for (value, expected) in values.iter().zip(expected) {
+                assert!((value - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{value} for {expected}");
+            }
+            for j in 0..x.len() {
                 let step = 1e-5 * x[j].abs();
                 let [low, high] = [-step, step].map(|step| {
                     let mut beside = x;
                     beside[j] += step;
-                    let (row, gradient, _) = lagrangian(&posed, &beside, -0.7);
-                    (beside[0] * beside[1] - 0.7 * row, gradient)
+                    let (rows, gradient, _) = lagrangian(&posed, &beside);
+                    let value: f64 = rows.iter().zip(MULTIPLIERS).map(|(row, multiplier)| row * multiplier).sum();
+                    (beside[0] * beside[1] + value, gradient)
                 });
                 let slope = (high.0 - low.0) / (2.0 * step);
                 assert!((slope - gradient[j]).abs() < 1e-6 * (1.0 + slope.abs()), "{j}: {} for {slope}", gradient[j]);

@@ -52,8 +52,10 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>,
 fn solve_erased(nlp: &Erased<'_>, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
     match Posed::of(nlp, start) {
         Some(posed) => {
-            let (from, as_posed) = (from.map_or(Start::Cold, Start::Warm), Erased::of(&posed));
-            posed.solve(start, from, |from| solve_posed(&as_posed, start, from.multipliers(&as_posed), options))
+            let from = from.map_or(Start::Cold, Start::Warm);
+            posed.solve(start, from, options, |posed, start, from, options| {
+                solve_posed(posed, start, from.multipliers(posed), options)
+            })
         }
         None => solve_posed(nlp, start, from, options),
     }

@@ -18,7 +18,7 @@ fn way(is_known: bool, least: f64) -> Program {
             out.set_hessian(1, &[0.0, 0.0, mixed, 0.0, 0.0, 0.0, mixed, 0.0, 2.0 * p / (t * t * t)]);
         });
     program.limits.shrinking =
-        if is_known { vec![Shrinking { row: 0, variable: 2, order: 1, small: 1.0 }] } else { vec![] };
+        if is_known { vec![Shrinking { row: 0, variable: 2, order: 1, small: 1.0, is_along: true }] } else { vec![] };
     program
 }
 
@@ -59,4 +59,27 @@ fn a_duration_that_vanishes_is_found_in_few_iterations() {
         assert_eq!(found.status, Status::Solved, "from {start}");
         assert!(found.x[2] < 1e-5 && found.iterations <= 40, "{:?} in {}", found.x, found.iterations);
     }
+}
+
+/// Least `T` with `p = 1e-8` and an acceleration `p / T^2` of at most 1: 1e-4. Times `T^2` the limit is kept to 1e-8 by any shorter
+/// duration.
+#[test]
+fn what_a_short_duration_hides_is_found() {
+    let free = (f64::NEG_INFINITY, f64::INFINITY);
+    let rows = [(1e-8, 1e-8), (f64::NEG_INFINITY, 1.0)];
+    let mut program = Program::dense(&[free, (1e-6, 10.0)], &rows, |x, out: &mut Functions| {
+        let (p, t) = (x[0], x[1]);
+        out.set_value(0, t);
+        out.set_gradient(0, &[0.0, 1.0]);
+        out.set_value(1, p);
+        out.set_gradient(1, &[1.0, 0.0]);
+        out.set_value(2, p / (t * t));
+        out.set_gradient(2, &[t.powi(-2), -2.0 * p * t.powi(-3)]);
+        let mixed = -2.0 * t.powi(-3);
+        out.set_hessian(2, &[0.0, mixed, mixed, 6.0 * p * t.powi(-4)]);
+    });
+    program.limits.shrinking = vec![Shrinking { row: 1, variable: 1, order: 2, small: 10.0, is_along: true }];
+    let found = solve(&program, &[0.0, 5.0], &Options::default());
+    assert_eq!(found.status, Status::Solved);
+    assert!((found.x[1] - 1e-4).abs() < 1e-6, "{:?}", found.x);
 }

@@ -36,7 +36,7 @@ impl Report {
         let terms = Plan::new(&nlp, samples)?.evaluate(&nlp, (&inner.x, Wanted::Violated), |checked| {
             // Those of helpers come last, and have no report.
             let Some(own) = own.get_mut(checked.constraint) else { return };
-            means.add(&nlp, checked, || all_sizes.between(&nlp, checked.constraint, checked.indices));
+            means.add(&nlp, checked, || all_sizes.between(&nlp, checked.constraint, checked.indices).size);
             let sizes = (|| all_sizes.between(&nlp, checked.constraint, checked.indices), own.unit.factor);
             let value = (checked.value, checked.bounds, sizes);
             let indices = nlp.model.structure.constraints[checked.constraint].shown_indices(checked.indices);

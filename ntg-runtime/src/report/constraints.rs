@@ -5,7 +5,7 @@ use super::fine::{Checked, Plan, Wanted};
 use super::foreseen::Foreseen;
 use super::jumped::{Jumped, is_continuous, is_of_states};
 use super::sides::Sides;
-use super::sizes::{Sizes, with_side};
+use super::sizes::{Measure, Sizes, with_side};
 use super::{ConstraintReport, Worst, multipliers};
 use crate::transcribe::points::Point;
 use crate::transcribe::rows::{RowKind, bound_size, constraint_name};
@@ -64,14 +64,14 @@ pub(super) fn constraints(
     let mut sides = Sides::default();
     let terms = fine.evaluate(nlp, (&outcome.x, Wanted::Violated), |checked| {
         let report = &mut reports[checked.constraint];
-        means.add(nlp, checked, || all_sizes.between(nlp, checked.constraint, checked.indices));
+        means.add(nlp, checked, || all_sizes.between(nlp, checked.constraint, checked.indices).size);
         foreseen.add(nlp, checked);
         report.is_equation &= checked.bounds.0 == checked.bounds.1;
         let sizes = (|| all_sizes.between(nlp, checked.constraint, checked.indices), report.unit.factor);
         let indices = structure.constraints[checked.constraint].shown_indices(checked.indices);
         let (measured, unit) = (measure_between(checked.value, checked.bounds, sizes.0), sizes.1);
         if measured.relative > LEAST_MISSED {
-            sides.add(checked, all_sizes.between(nlp, checked.constraint, checked.indices));
+            sides.add(checked, all_sizes.between(nlp, checked.constraint, checked.indices).size);
         }
         if (measured.relative > LEAST_MISSED || measured.is_much_of(checked.bounds)) && jumped.is_jump(checked) {
             let worst = jumps.entry(checked.constraint).or_default();
@@ -82,7 +82,10 @@ pub(super) fn constraints(
     let in_mean = means.write(nlp, &mut reports);
     sides.visit(nlp, (fine, &outcome.x), |place, side| {
         let (constraint, indices, _) = &place.key;
-        let size = || with_side(all_sizes.between(nlp, *constraint, indices), side);
+        let size = || {
+            let between = all_sizes.between(nlp, *constraint, indices);
+            Measure { size: with_side(between.size, side), ..between }
+        };
         let report = &mut reports[*constraint];
         let shown = structure.constraints[*constraint].shown_indices(indices);
         let measured = measure(place.value, place.bounds, size);
@@ -189,22 +192,24 @@ impl Measured {
     }
 }
 
-fn measure(value: f64, (lower, upper): (f64, f64), size: impl Fn() -> f64) -> Measured {
+fn measure(value: f64, (lower, upper): (f64, f64), size: impl Fn() -> Measure) -> Measured {
     if lower <= value && value <= upper {
         return Measured { value, missed: 0.0, relative: 0.0 }; // As nearly all are.
     }
     let missed = crate::math::max(crate::math::max(lower - value, value - upper), 0.0);
-    Measured { value, missed, relative: missed / scale(lower, upper, size()) }
+    let Measure { size, rounding } = size();
+    Measured { value, missed, relative: crate::math::max(missed - rounding, 0.0) / scale(lower, upper, size) }
 }
 
 /// As [`measure`]; of two bounds the one that is not missed counts for no more than what the limit varies by: `u in 0 .. 1e9`.
-fn measure_between(value: f64, bounds: (f64, f64), size: impl Fn() -> f64) -> Measured {
+fn measure_between(value: f64, bounds: (f64, f64), size: impl Fn() -> Measure) -> Measured {
     let measured = measure(value, bounds, &size);
     if measured.missed == 0.0 || bounds.0 == bounds.1 {
         return measured;
     }
     let bound = if value < bounds.0 { bounds.0 } else { bounds.1 };
-    let own = measured.missed / bound.abs().max(size());
+    let Measure { size, rounding } = size();
+    let own = crate::math::max(measured.missed - rounding, 0.0) / bound.abs().max(size);
     Measured { relative: crate::math::max(measured.relative, own), ..measured }
 }
 
@@ -213,7 +218,7 @@ pub(super) fn keep(
     nlp: &Transcription,
     x: &[f64],
     worst: &mut Option<Worst>,
-    (value, bounds, (size, unit)): (f64, (f64, f64), (impl Fn() -> f64, f64)),
+    (value, bounds, (size, unit)): (f64, (f64, f64), (impl Fn() -> Measure, f64)),
     place: (&Point, &[i64]),
 ) {
     hold(nlp, x, worst, (measure(value, bounds, size), unit), place);

@@ -407,7 +407,7 @@ pub(crate) fn violations(
     let x = report.solution.coefficients();
     Plan::new(nlp, samples)?.evaluate(nlp, (x, Wanted::Violated), |checked| {
         let (lower, upper) = checked.bounds;
-        let size = report.sizes.between(nlp, checked.constraint, checked.indices);
+        let size = report.sizes.between(nlp, checked.constraint, checked.indices).size;
         let missed = ntg_nlp::residuals::violation(checked.value, lower, upper);
         let relative = missed / constraints::scale(lower, upper, size);
         if let Some(phase) = checked.point.phase.filter(|_| relative > 0.0) {

@@ -45,6 +45,15 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 struct Size {
     at_points: f64,
     between: f64,
+    rounding: f64,
+}
+
+/// What violations of a member of a constraint are relative to, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Measure {
+    pub(crate) size: f64,
+    /// What rounding leaves of it: no less is missed.
+    pub(crate) rounding: f64,
 }
 
 /// What violations are relative to, SI, by constraint and the indices of its member.
@@ -60,6 +69,8 @@ struct Terms {
     rate: f64,
     /// What a rate is at least.
     least: f64,
+    /// The largest sum of terms that a rate is the difference of.
+    cancelled: f64,
     /// The largest variation of a term in which a slot stands linearly.
     variation: f64,
     /// The same with terms whose slope is the same at all points, in a block with rows in which their slot is curved.
@@ -80,7 +91,7 @@ impl Terms {
     fn size(&self) -> Option<Size> {
         let at_points = [self.largest, self.slope].into_iter().find(|size| *size > 0.0)?;
         if self.value > ROUNDING * at_points {
-            return Some(Size { at_points: self.value, between: self.value });
+            return Some(Size { at_points: self.value, between: self.value, rounding: 0.0 });
         }
         // Of a sine of a thousand turns the slope times the angle says nothing, nor an offset of a temperature.
         let mut seen = self.rate.max(self.variation);
@@ -99,7 +110,7 @@ impl Terms {
         };
         let bound = self.limited.map_or(0.0, |_| self.bound.min(at_points));
         let between = if bound > 0.0 { bound.max(LEAST_BOUND * between) } else { between };
-        Some(Size { at_points, between })
+        Some(Size { at_points, between, rounding: ROUNDING * self.cancelled })
     }
 }
 
@@ -193,6 +204,26 @@ impl Ranges {
     }
 }
 
+/// A slot at a point.
+#[derive(Clone, Copy)]
+struct SlotValue {
+    value: f64,
+    /// The typical size of the variable that it is made of.
+    typical: f64,
+    /// The part of it that a rate is at least, where the phase is so short that a smaller one changes rates of lower order.
+    most: f64,
+    /// The sum of the terms that it is the difference of.
+    cancelled: f64,
+}
+
+/// Which part of its mission each phase is.
+fn parts(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
+    let layout = &nlp.model.layout;
+    let durations: Vec<f64> = (0..layout.phases.len()).map(|phase| layout.duration(phase, x)).collect();
+    let whole = |agent: usize| layout.agents[agent].phases.clone().map(|phase| durations[phase]).sum::<f64>();
+    layout.phases.iter().zip(&durations).map(|(phase, duration)| duration / whole(phase.agent)).collect()
+}
+
 impl Sizes {
     /// The sizes of the members of all trajectory constraints along the solution; where all terms are 0, and elsewhere than
     /// along a trajectory, the largest slope of the member's rows. `at` holds first derivatives where they are finite, and
@@ -204,6 +235,7 @@ impl Sizes {
         let (groups, shown) = (&nlp.model.structure.groups, nlp.model.structure.constraints_shown());
         let mut is_posed = vec![false; relations.count()];
         relations.of_constraints().for_each(|(c, _, relation)| is_posed[relation] = shown.get(c) == Some(&true));
+        let parts = parts(nlp, &outcome.x);
         let blocks = nlp.elements.batches.iter().zip(nlp.elements.blocks.iter().zip(&at.blocks));
         for (batch, (block, values)) in blocks {
             let group = &groups[batch.group];
@@ -211,7 +243,11 @@ impl Sizes {
                 add_values(nlp, (outcome, at), block, &mut terms);
                 continue;
             }
-            let is_rate = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Flat { derivative: 1.., .. }));
+            let order = |slot: usize| match group.call.slots.get(slot) {
+                Some(Slot::Flat { derivative, .. }) => *derivative,
+                _ => 0,
+            };
+            let is_rate = |slot: usize| order(slot) > 0;
             let is_linear = |slot: usize| block.hessian.iter().all(|(i, j)| *i != slot && *j != slot);
             let is_variable = |slot: usize| matches!(group.call.slots.get(slot), Some(Slot::Variable { .. }));
             let is_input = |slot: usize| match group.call.slots.get(slot) {
@@ -239,11 +275,16 @@ impl Sizes {
             let (mut slots, mut rest) = (vec![], vec![0.0; block.rows]);
             for e in 0..block.elements {
                 let variables = block.variables(e);
+                let part = batch.batch.sites[e].point.phase.map_or(1.0, |phase| parts[phase]);
                 slots.clear();
-                slots.extend(block.map(e).chunks_exact(variables.len().max(1)).map(|map| {
-                    let value: f64 = variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]).sum();
+                slots.extend(block.map(e).chunks_exact(variables.len().max(1)).enumerate().map(|(slot, map)| {
+                    let parts = || variables.iter().zip(map).map(|(j, c)| c * outcome.x[*j as usize]);
+                    let (value, cancelled): (f64, f64) = (parts().sum(), parts().map(f64::abs).sum());
                     let typical = variables.iter().zip(map).find(|(_, c)| **c != 0.0);
-                    (value, typical.map_or(0.0, |(j, _)| scale[*j as usize]))
+                    // No rate is noise that changes the rate of the next lower order, of which the mission tells a size.
+                    let most = part.powi(i32::try_from(order(slot).saturating_sub(1)).unwrap_or(0));
+                    let typical = typical.map_or(0.0, |(j, _)| scale[*j as usize]);
+                    SlotValue { value, typical, most, cancelled }
                 }));
                 for (row, rest) in rest.iter_mut().enumerate() {
                     let lane = row * block.elements + e;
@@ -254,8 +295,8 @@ impl Sizes {
                     let Target::Row(target) = block.target[lane] else { continue };
                     let relation = relations.of_row[target as usize] as usize;
                     let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
-                    let (value, typical) = slots[slot];
-                    let term = (slope * value.abs().max(SMALL * typical)).abs();
+                    let SlotValue { value, typical, most, cancelled } = slots[slot];
+                    let term = (slope * value.abs().max(SMALL.min(most) * typical)).abs();
                     if !term.is_finite() {
                         continue;
                     }
@@ -264,7 +305,8 @@ impl Sizes {
                     match kinds[slot] {
                         Kind { is_rate: true, .. } => {
                             own.rate = own.rate.max(term);
-                            own.least = own.least.max((slope * LEAST_RATE * typical).abs());
+                            own.cancelled = own.cancelled.max((slope * cancelled).abs());
+                            own.least = own.least.max((slope * LEAST_RATE.min(most) * typical).abs());
                         }
                         Kind { is_linear: true, .. } => {
                             ranges.add((relation, entry), (slope, value));
@@ -302,17 +344,19 @@ impl Sizes {
     }
 
     /// The size of a member of a constraint at the points; the constraint's unit where none is known.
-    pub(super) fn at_points(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> f64 {
+    pub(super) fn at_points(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> Measure {
         self.of(nlp, constraint, indices, |size| size.at_points)
     }
 
     /// The size between the points.
-    pub(super) fn between(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> f64 {
+    pub(super) fn between(&self, nlp: &Transcription, constraint: usize, indices: &[i64]) -> Measure {
         self.of(nlp, constraint, indices, |size| size.between)
     }
 
-    fn of(&self, nlp: &Transcription, constraint: usize, indices: &[i64], which: impl Fn(&Size) -> f64) -> f64 {
-        let size = self.0.get(&(constraint, indices.to_vec())).map(which);
-        size.unwrap_or(nlp.model.structure.constraints[constraint].unit.factor)
+    fn of(&self, nlp: &Transcription, constraint: usize, indices: &[i64], which: impl Fn(&Size) -> f64) -> Measure {
+        let known = self.0.get(&(constraint, indices.to_vec()));
+        let measure = known.map(|size| Measure { size: which(size), rounding: size.rounding });
+        let unit = || nlp.model.structure.constraints[constraint].unit.factor;
+        measure.unwrap_or_else(|| Measure { size: unit(), rounding: 0.0 })
     }
 }

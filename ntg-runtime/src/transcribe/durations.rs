@@ -3,6 +3,7 @@
 //! Takes bounds, boundary conditions and slopes; gives a guess of each free duration. Of a bound that is far beyond what
 //! balances the equations nothing is known but that somebody wrote it.
 
+use super::layout::Time;
 use super::rows::shortest_duration;
 use super::{Transcription, Workspace, defaults};
 use ntg_nlp::{Evaluation, Limits, Nlp};
@@ -103,11 +104,15 @@ impl Transcription<'_> {
             durations.push(FreeDuration { variable, guess, reach: upper, is_guarded });
         }
         self.durations = durations;
-        let typical = self.typical_duration();
+        let (typical, others) = (self.typical_duration(), self.longest_by_bounds());
         for i in 0..self.durations.len() {
             let known = self.durations[i];
             let is_open = known.reach.is_infinite();
-            let guess = typical.map_or(known.guess, |(typical, _)| self.duration_near(&known, typical));
+            let guess = match typical {
+                Some((typical, _)) => self.duration_near(&known, typical),
+                None if is_open => others.map_or(known.guess, |others| self.duration_near(&known, others)),
+                None => known.guess,
+            };
             let far = if typical.is_some_and(|(_, by_rates)| by_rates) { FAR_BY_RATES } else { 10f64.powi(FAR) };
             let is_far = |bound: f64| bound > far * guess;
             if guess == known.guess && !is_open || !is_far(known.reach) {
@@ -125,10 +130,24 @@ impl Transcription<'_> {
         }
     }
 
+    /// The longest duration that is given or guessed by an upper bound.
+    fn longest_by_bounds(&self) -> Option<f64> {
+        let fixed = self.model.layout.phases.iter().filter_map(|phase| match phase.duration {
+            Time::Fixed(duration) => Some(duration),
+            Time::Free(_) => None,
+        });
+        let bounded = self.durations.iter().filter(|duration| duration.reach.is_finite());
+        fixed.chain(bounded.map(|duration| duration.guess)).reduce(f64::max)
+    }
+
+    /// How short a duration may be by what somebody wrote.
+    fn least(&self, duration: &FreeDuration) -> f64 {
+        if duration.is_guarded { 0.0 } else { self.limits.lower[duration.variable as usize] }
+    }
+
     /// What is guessed of a duration where `typical` is the time in which something happens.
     fn duration_near(&self, duration: &FreeDuration, typical: f64) -> f64 {
-        let lower = if duration.is_guarded { 0.0 } else { self.limits.lower[duration.variable as usize] };
-        let wanted = typical.max(lower);
+        let wanted = typical.max(self.least(duration));
         if duration.reach.is_infinite() { wanted } else { wanted.min(duration.guess) }
     }
 
@@ -136,8 +155,7 @@ impl Transcription<'_> {
     fn typical_duration(&self) -> Option<(f64, bool)> {
         let first = self.durations.iter().map(|duration| duration.guess).reduce(f64::max)?;
         let has_room = |duration: &FreeDuration| {
-            let lower = if duration.is_guarded { 0.0 } else { self.limits.lower[duration.variable as usize] };
-            duration.reach.is_infinite() || duration.guess > 10f64.powi(FAR) * lower
+            duration.reach.is_infinite() || duration.guess > 10f64.powi(FAR) * self.least(duration)
         };
         if !self.durations.iter().any(has_room) {
             return None;
@@ -152,12 +170,15 @@ impl Transcription<'_> {
         let groups = self.output_groups();
         let room = self.room((&mut x, first), (&mut work, &mut at));
         let room = room.unwrap_or_else(|| vec![0.0; self.elements.rows.len()]);
+        let is_open = self.durations.iter().any(|duration| duration.reach.is_infinite());
         let mut trial = |rule: Rule, tenths: i32| {
             let typical = first * 10f64.powf(f64::from(tenths) / f64::from(PARTS));
-            self.durations.iter().for_each(|d| x[d.variable as usize] = self.duration_near(d, typical));
+            // Beside one without an upper bound all are as long: phases that meet have rates of one size.
+            let own =
+                |d: &FreeDuration| if is_open { typical.max(self.least(d)) } else { self.duration_near(d, typical) };
+            self.durations.iter().for_each(|d| x[d.variable as usize] = own(d));
             self.imbalance((&x, &groups, &room), rule.by_rates, (&mut work, &mut at))
         };
-        let is_open = self.durations.iter().any(|duration| duration.reach.is_infinite());
         let mut by = |rule: Rule, find: Find| find(&mut |tenths| trial(rule, tenths), rule);
         let both_ways: Find = |trial, rule| search((trial, rule), &[-PARTS, PARTS]);
         let downwards: Find = |trial, rule| search((trial, rule), &[-PARTS]);

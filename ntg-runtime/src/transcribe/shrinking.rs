@@ -1,48 +1,75 @@
-//! Equations over durations that may all but vanish (docs/maths.md, section 11.17).
+//! Rows over durations that may all but vanish (docs/maths.md, section 11.17).
 
 use super::Transcription;
-use super::elements::Elements;
 use super::layout::{Time, narrow};
 use super::rows::{RowInfo, RowKind};
+use super::slots::Source;
 use ntg_nlp::Shrinking;
-use ntg_structure::{At, Slot, Structure};
+use ntg_structure::{Domain, Slot};
+use std::collections::BTreeMap;
 
 /// A phase may vanish whose least duration is below this part of its greatest. A choice: nobody means to fly a thousandth of
 /// what he allows.
 const VANISHES: f64 = 1e-3;
 /// A duration is small below this part of its upper bound. A choice: at a tenth and at a thousandth, phases that vanish are
 /// found as soon, and phases that do not later.
-const SMALL: f64 = 1e-2;
+const SMALL: f64 = 0.1;
 
 impl Transcription<'_> {
-    /// The equations along phases that may vanish and stand beside others. A mission of one phase does not vanish.
+    /// The rows with rates of phases that may vanish and stand beside others. A mission of one phase does not vanish.
     pub(super) fn shrinking(&self) -> Vec<Shrinking> {
-        let Self { elements, model, limits, durations, .. } = self;
+        let small = self.vanishing();
+        if small.is_empty() {
+            return vec![];
+        }
         let own = |(number, row): (usize, &RowInfo)| {
-            let (RowKind::Constraint(_), Some(phase)) = (row.kind, row.point.phase) else { return None };
-            let is_equation = (elements.lower[number], elements.upper[number]) == (0.0, 0.0);
-            let phase = &model.layout.phases[phase];
+            let orders = if matches!(row.kind, RowKind::Constraint(_)) { self.orders(row) } else { BTreeMap::new() };
+            orders.into_iter().map(move |(phase, order)| (number, phase, order))
+        };
+        let orders = self.elements.rows.iter().enumerate().flat_map(own);
+        let shrinking = |(number, phase, order): (usize, usize, u8)| {
+            let (variable, small) = *small.get(&phase)?;
+            let is_along = self.is_along(&self.elements.rows[number]);
+            Some(Shrinking { row: narrow(number), variable, order, small, is_along })
+        };
+        orders.filter_map(shrinking).collect()
+    }
+
+    /// The phases that may vanish, each with its duration and what is small beside that.
+    fn vanishing(&self) -> BTreeMap<usize, (u32, f64)> {
+        let Self { model, limits, durations, .. } = self;
+        let phases = model.layout.phases.iter().enumerate();
+        let own = phases.filter_map(|(number, phase)| {
             let Time::Free(variable) = phase.duration else { return None };
             let reach = durations.iter().find(|duration| duration.variable == variable)?.reach;
             let is_short = reach.is_finite() && limits.lower[variable as usize] < VANISHES * reach;
-            if !(is_equation && is_short && model.layout.agents[phase.agent].phases.len() > 1) {
-                return None;
-            }
-            let order = order(&model.structure, elements, row)?;
-            Some(Shrinking { row: narrow(number), variable, order, small: SMALL * reach })
-        };
-        elements.rows.iter().enumerate().filter_map(own).collect()
+            let stands_beside = model.layout.agents[phase.agent].phases.len() > 1;
+            (is_short && stands_beside).then_some((number, (variable, SMALL * reach)))
+        });
+        own.collect()
     }
-}
 
-/// The highest derivative by time in a row; none where it has none.
-fn order(structure: &Structure, elements: &Elements, row: &RowInfo) -> Option<u8> {
-    let (block, _, function) = row.maker;
-    let slots = &structure.groups[elements.batches.get(block)?.group].call.slots;
-    let own = elements.blocks[block].jacobian.iter().filter(|(of, _)| *of == function);
-    let orders = own.filter_map(|(_, slot)| match slots.get(*slot) {
-        Some(Slot::Flat { at: At::Here, derivative, .. }) => u8::try_from(*derivative).ok(),
-        _ => None,
-    });
-    orders.max().filter(|order| *order > 0)
+    fn is_along(&self, row: &RowInfo) -> bool {
+        let group = self.elements.batches.get(row.maker.0).map(|batch| &self.model.structure.groups[batch.group]);
+        group.is_some_and(|group| matches!(group.domain, Domain::Path { .. }))
+    }
+
+    /// The highest derivative by time in a row, by phase.
+    fn orders(&self, row: &RowInfo) -> BTreeMap<usize, u8> {
+        let mut orders = BTreeMap::new();
+        let (block, element, function) = row.maker;
+        let Some(batch) = self.elements.batches.get(block) else { return orders };
+        let slots = &self.model.structure.groups[batch.group].call.slots;
+        let frame = self.model.frame(self.problem);
+        for (_, slot) in self.elements.blocks[block].jacobian.iter().filter(|(of, _)| *of == function) {
+            let Some(slot @ Slot::Flat { derivative: 1.., .. }) = slots.get(*slot) else { continue };
+            if let Ok(Source::Flat { phase, derivative, .. }) = frame.source(slot, &batch.batch.sites[element])
+                && let Ok(order) = u8::try_from(derivative)
+            {
+                let highest = orders.entry(phase).or_insert(order);
+                *highest = order.max(*highest);
+            }
+        }
+        orders
+    }
 }
