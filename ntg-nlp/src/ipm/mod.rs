@@ -121,8 +121,7 @@ fn solve_erased(
     options: &Options,
 ) -> Outcome {
     match Posed::of(nlp, start) {
-        Some(posed) => posed
-            .solve(start, from, options, |posed, start, from, options| solve_posed(kept, posed, start, from, options)),
+        Some(posed) => posed.solve(start, from, |posed, from| solve_posed(kept, posed, start, from, options)),
         None => solve_posed(kept, nlp, start, from, options),
     }
 }

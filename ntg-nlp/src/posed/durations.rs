@@ -8,8 +8,6 @@
 
 use super::sole_rows;
 use crate::contract::{Block, BlockValues, Evaluation, Limits, Nlp, Shrinking};
-use crate::outcome::Outcome;
-use crate::residuals::{ACCEPTABLE, violation};
 use std::collections::BTreeSet;
 
 /// A factor of `phi` at a duration.
@@ -141,29 +139,17 @@ impl Durations {
         self.slopes(x).map(move |(row, slope)| (row, slope, bound(row)))
     }
 
-    /// The factors of rows at an end: those of an outcome, times the parts that durations are of what they were at the start where a
-    /// row holds along them. What a rate is missed by counts as what it leaves at the end of the phase.
-    pub(super) fn factors(&self, outcome: &Outcome, start: &[f64]) -> Vec<(usize, f64)> {
+    /// How much more than by its slope a miss of each row counts at a point, by row: as at the start, and of a row that holds along
+    /// durations by the parts that these are of what they were there. What a rate misses is what it leaves at the end of the phase.
+    pub(super) fn counted<'s>(&'s self, start: &'s [f64], x: &'s [f64]) -> impl Iterator<Item = (usize, f64)> + 's {
         let part = |factor: &Shrinking| {
             let variable = factor.variable as usize;
-            if factor.is_along { (outcome.x[variable] / start[variable]).min(1.0) } else { 1.0 }
+            if factor.is_along { (x[variable] / start[variable]).min(1.0) } else { 1.0 }
         };
-        let own = |row: &Row| outcome.row_factors[row.row] * row.factors.iter().map(part).product::<f64>();
-        self.rows().map(|row| (row.row, own(row))).collect()
-    }
-
-    /// Whether rows of these factors hold at a point.
-    pub(super) fn hold<N: Nlp>(&self, nlp: &N, x: &[f64], factors: &[(usize, f64)]) -> bool {
-        let ((mut work, mut at), limits) = (nlp.workspace(), nlp.limits());
-        let has_values = nlp.values(x, &mut work, &mut at).is_ok();
-        let missed = |row: usize| violation(at.rows[row], limits.row_lower[row], limits.row_upper[row]);
-        !has_values || factors.iter().all(|(row, factor)| factor * missed(*row) <= ACCEPTABLE)
-    }
-
-    /// Takes durations for small from what they are at a point, where that is less.
-    pub(super) fn shorten(&mut self, x: &[f64]) {
-        let factors = self.patterns.iter_mut().flat_map(|pattern| &mut pattern.rows).flat_map(|row| &mut row.factors);
-        factors.for_each(|factor| factor.small = factor.small.min(x[factor.variable as usize]));
+        self.rows().map(move |Row { row, factors, .. }| {
+            let parts: f64 = factors.iter().map(part).product();
+            (*row, parts * product(factors, start) / product(factors, x))
+        })
     }
 
     /// Multiplies the values of an evaluation, and adds them up again.

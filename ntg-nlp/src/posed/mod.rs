@@ -11,19 +11,11 @@ mod squares;
 
 use crate::contract::{Block, Evaluation, Limits, Nlp, NotFinite};
 use crate::erased::{Buffers, Erased, Program};
-use crate::options::Options;
 use crate::outcome::{Multipliers, Outcome, Start};
-use crate::scaling::row_factors;
 use crate::status::{Bounded, Status};
 use durations::Durations;
 use squares::{Squares, root};
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
-
-/// How often a program is posed again with shorter durations. A choice.
-const SHORTER: usize = 3;
-/// How long each such solve may take. A choice: it begins at a solution but for some rows.
-const AGAIN: usize = 100;
 
 /// The program with rows in other forms.
 pub(crate) struct Posed<'a> {
@@ -33,8 +25,6 @@ pub(crate) struct Posed<'a> {
     blocks: Vec<Block>,
     squares: Squares,
     durations: Durations,
-    /// How rows over durations grew with those of the program at the start.
-    begun: Vec<(usize, f64)>,
     /// The multipliers of the program's rows in an evaluation.
     multipliers: Mutex<Vec<f64>>,
 }
@@ -53,63 +43,16 @@ impl<'a> Posed<'a> {
         limits.row_scale.resize(nlp.rows(), 1.0);
         squares.bound(&mut limits);
         durations.bound(&mut limits);
-        let (begun, multipliers) = (vec![], Mutex::new(vec![0.0; nlp.rows()]));
-        Some(Self { nlp, limits, blocks, squares, durations, begun, multipliers })
-    }
-
-    /// Solves the posed program by `with`, and again where a duration has become so short that its rows do not hold by the
-    /// slopes that they have themselves. The outcome is that of the program itself.
-    pub(crate) fn solve(
-        mut self,
-        start: &[f64],
-        from: Start<'_>,
-        options: &Options,
-        mut with: impl FnMut(&Erased<'_>, &[f64], Start<'_>, &Options) -> Outcome,
-    ) -> Outcome {
-        let began = Instant::now();
-        let mut outcome = self.solve_once(start, from, |posed, from| with(posed, start, from, options));
-        for round in 0..=SHORTER {
-            let factors = self.durations.factors(&outcome, start);
-            factors.iter().for_each(|(row, factor)| outcome.row_factors[*row] = *factor);
-            let is_end = round == SHORTER || !outcome.status.has_solution();
-            if is_end || self.durations.hold(self.nlp, &outcome.x, &factors) {
-                break;
-            }
-            self.durations.shorten(&outcome.x);
-            self.weigh(&outcome.x, &factors);
-            let (left, from) = (options.after(began.elapsed()), Start::Warm(outcome.multipliers()));
-            let most = options.max_iterations.saturating_sub(outcome.iterations).min(AGAIN);
-            let left = Options { max_iterations: most, ..left };
-            let next = self.solve_once(&outcome.x, from, |posed, from| with(posed, &outcome.x, from, &left));
-            let (iterations, is_better) = (outcome.iterations + next.iterations, next.status.has_solution());
-            outcome = if is_better { next } else { outcome };
-            (outcome.iterations, outcome.seconds) = (iterations, began.elapsed().as_secs_f64());
-            if !is_better {
-                break;
-            }
-        }
-        outcome
-    }
-
-    /// Weighs rows over durations so that they have these factors in a solve from `x`.
-    fn weigh(&mut self, x: &[f64], factors: &[(usize, f64)]) {
-        let mut weights = std::mem::take(&mut self.limits.row_weight);
-        weights.resize(self.nlp.rows(), 1.0);
-        let own = row_factors(&Erased::of(&*self), x);
-        for ((row, factor), (_, slope)) in factors.iter().zip(self.durations.slopes(x)) {
-            weights[*row] = factor / (slope * own[*row]);
-        }
-        self.limits.row_weight = weights;
+        Some(Self { nlp, limits, blocks, squares, durations, multipliers: Mutex::new(vec![0.0; nlp.rows()]) })
     }
 
     /// What a start knows, of the posed rows; `with` solves from there. The outcome is that of the program itself.
-    fn solve_once(
-        &mut self,
+    pub(crate) fn solve(
+        &self,
         start: &[f64],
         from: Start<'_>,
         with: impl FnOnce(&Erased<'_>, Start<'_>) -> Outcome,
     ) -> Outcome {
-        self.begun = self.durations.slopes(start).collect();
         let mut rows: Vec<f64>;
         let from = match from {
             Start::Warm(multipliers) if multipliers.rows.len() == self.nlp.rows() => {
@@ -120,7 +63,7 @@ impl<'a> Posed<'a> {
             from => from,
         };
         let outcome = with(&Erased::of(self), from);
-        self.unposed(outcome)
+        self.unposed(start, outcome)
     }
 
     /// How posed rows grow with those of the program at a point; norms not at all where that has no values.
@@ -132,16 +75,14 @@ impl<'a> Posed<'a> {
         self.durations.slopes(x).for_each(|(row, slope)| each(row, slope));
     }
 
-    fn unposed(&self, mut outcome: Outcome) -> Outcome {
+    fn unposed(&self, start: &[f64], mut outcome: Outcome) -> Outcome {
         let Outcome { x, row_multipliers, row_factors, status, .. } = &mut outcome;
         self.slopes(x, |row, slope| {
             row_multipliers[row] *= slope;
             row_factors[row] *= slope;
         });
         // What a row over durations that have become short is missed by counts as it did at the start.
-        for ((row, begun), (_, slope)) in self.begun.iter().zip(self.durations.slopes(x)) {
-            row_factors[*row] *= begun / slope;
-        }
+        self.durations.counted(start, x).for_each(|(row, counted)| row_factors[row] *= counted);
         let is_norm = |of: Bounded| self.squares.norms.iter().any(|norm| of == Bounded::Row(norm.row));
         match status {
             Status::Infeasible { rows } => {

@@ -53,9 +53,7 @@ fn solve_erased(nlp: &Erased<'_>, start: &[f64], from: Option<Multipliers<'_>>, 
     match Posed::of(nlp, start) {
         Some(posed) => {
             let from = from.map_or(Start::Cold, Start::Warm);
-            posed.solve(start, from, options, |posed, start, from, options| {
-                solve_posed(posed, start, from.multipliers(posed), options)
-            })
+            posed.solve(start, from, |posed, from| solve_posed(posed, start, from.multipliers(posed), options))
         }
         None => solve_posed(nlp, start, from, options),
     }
