@@ -338,3 +338,35 @@ fn without_an_objective_a_constrained_motion_is_its_simulation() {
     let last = report.solution.output("x").expect("it is a state").at(bottom);
     assert!(last.abs() < 1e-6, "{last}");
 }
+
+/// A pendulum in x and y, in units in which its tension is next to nothing beside its speed, or all: as in others.
+#[test]
+fn units_do_not_matter_to_what_a_tension_keeps() {
+    for length in ["nm", "um", "mm", "m", "Mm"] {
+        for (clock, weight) in [("s", 9.81), ("us", 9.81e-12), ("day", 9.81 * 86400.0 * 86400.0)] {
+            let weight = format!("{weight:e} [{length}/{clock}^2]");
+            let second = match clock {
+                "s" => 1.0,
+                "us" => 1e6,
+                _ => 1.0 / 86400.0,
+            };
+            let spec = Shipped::text(&format!(
+                "problem Pendulum {{
+                    duration T = {} [{clock}];
+                    state x, y [{length}];  input tension [1/{clock}^2];
+                    collocation gauss(points = 3, intervals = 40);
+                    dynamics {{ der(x, 2) == -tension * x;  der(y, 2) == -tension * y - {weight}; }}
+                    trajectory {{ x^2 + y^2 == 1 [{length}^2]; }}
+                    initial {{ x == 0.8 [{length}];  der(x) == 0; }}
+                    guess {{ x = 0.8 [{length}];  y = -0.6 [{length}]; }}
+                    minimize final(x) / 1 [{length}];
+                }}",
+                2.0 * second
+            ));
+            let report = spec.solve();
+            assert!(report.is_solved() && report.iterations <= 20, "{length}, {clock}: {report}");
+            // By the angle, to ten digits.
+            close(report.objective, 0.765_39, 1e-4);
+        }
+    }
+}

@@ -13,7 +13,7 @@ use super::sample::{Budget, Draw, Point, State};
 use super::surface::{self, Row};
 use super::{Candidate, Invariant, Joined, LEAST_TOLD, ORDINARY, draws};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Map, Node, NodeId, kinks};
+use crate::expr::{Binary, Map, Node, NodeId, Scalar, kinks};
 use crate::model::elaborator::Elaborator;
 use crate::model::epigraph::loops_within;
 use crate::model::problem::{
@@ -26,6 +26,8 @@ use ntg_structure::TableMethod;
 const MOST: usize = 6;
 /// The step of central differences, relative to what is moved: as long as that they are far from rounding, beside large terms too.
 const DIFFERENCE: f64 = 1e-3;
+/// How many times longer steps are where rounding hides what they change. Choices: units of inputs are as far apart.
+const FARTHER: [f64; 4] = [1.0, 1e9, 1e18, 1e27];
 /// The most members of reduced equations of a phase. A choice: each is sampled.
 const MOST_ROWS: usize = 512;
 
@@ -237,13 +239,13 @@ impl Elaborator<'_> {
             members.iter().for_each(|k| seen[*k] = true);
             let chosen = |is: &[bool]| members.iter().filter(|k| is[**k]).map(|k| &rows[*k]).collect();
             let [own, tops]: [Vec<&Row>; 2] = [chosen(&is_first), chosen(&is_top)];
-            // Where tables take part no step leads to the equations, and slopes by states say nothing.
+            // Where tables take part no step leads to the equations.
             let formulas: Vec<NodeId> = own.iter().chain(&tops).flat_map(|row| [row.body, row.rate]).collect();
-            let beside = if self.has_tables(&formulas) { &[] } else { states.as_slice() };
+            let has_tables = self.has_tables(&formulas);
             let is_decided = |draw: Draw, budget: &mut Budget| {
                 let mut point = Point::new(&self.problem, motion, draw, budget);
-                let is_there = beside.is_empty() || surface::reach(&own, &states, &mut point, surface::STEPS);
-                is_there && are_decided(&tops, beside, &mut point) == Some(true)
+                let is_there = has_tables || surface::reach(&own, &states, &mut point, surface::STEPS);
+                is_there && are_decided(&tops, &mut point) == Some(true)
             };
             if !draws(200, motion.has_branches).any(|draw| is_decided(draw, budget)) {
                 dependent.extend(own.iter().map(|row| row.equation));
@@ -376,30 +378,65 @@ fn parts(at_start: &Imposed, loops: &[Loop]) -> Vec<(Vec<Loop>, Part)> {
     }
 }
 
-/// Whether what is free decides all rows: their slopes by it are independent beside those by states. None where a row has no
-/// value.
-fn are_decided(rows: &[&Row], states: &[State], point: &mut Point<'_>) -> Option<bool> {
+/// Whether what is free decides all rows: their slopes by it are independent. None where a row has no value.
+fn are_decided(rows: &[&Row], point: &mut Point<'_>) -> Option<bool> {
     point.free = Some(vec![]);
     values(rows, point)?;
     let mut free = point.free.replace(vec![])?;
     free.sort_unstable();
     free.dedup();
-    let all: Vec<State> = free.iter().chain(states).copied().collect();
-    let sizes: Vec<f64> = all.iter().map(|state| surface::size(point.state(state))).collect();
-    let mut slopes = surface::differences(&|point| values(rows, point), &all, point, DIFFERENCE)?;
-    for row in &mut slopes {
-        row.iter_mut().zip(&sizes).for_each(|(slope, size)| *slope *= size);
-        let most = |slopes: &[f64]| slopes.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        let (largest, own) = (most(row), most(&row[..free.len()]));
-        if own <= surface::DEPENDENT * largest {
-            return Some(false);
-        }
-        row.truncate(free.len());
-        row.iter_mut().for_each(|slope| *slope /= own);
-    }
+    let columns: Vec<Vec<f64>> = free.iter().map(|state| slopes(rows, *state, point)).collect();
+    let mut slopes: Vec<Vec<f64>> = (0..rows.len()).map(|row| columns.iter().map(|own| own[row]).collect()).collect();
+    balance(&mut slopes);
     Some(surface::rank(slopes) == rows.len())
 }
 
-fn values(rows: &[&Row], point: &mut Point<'_>) -> Option<Vec<f64>> {
-    rows.iter().map(|row| point.value(row.rate, &row.indices).map(|number| number.value)).collect()
+/// The slopes of rows by something free; 0 where rounding leaves nothing else, however far it moves. Beside other terms an input may
+/// be next to nothing: a tension in the units of a pendulum of a nanometre.
+fn slopes(rows: &[&Row], state: State, point: &mut Point<'_>) -> Vec<f64> {
+    let at = point.state(&state);
+    let mut known: Vec<Option<f64>> = vec![None; rows.len()];
+    for farther in FARTHER {
+        let step = DIFFERENCE * surface::size(at) * farther;
+        point.put(state, at + step);
+        let above = values(rows, point);
+        point.put(state, at - step);
+        let below = values(rows, point);
+        point.put(state, at);
+        let Some((above, below)) = above.zip(below) else { break };
+        for (slope, (above, below)) in known.iter_mut().zip(above.iter().zip(&below)) {
+            let change = Number::binary(Binary::Sub, above, below);
+            if slope.is_none() && !change.is_rounding() {
+                *slope = Some(change.value / (2.0 * step));
+            }
+        }
+        if !known.contains(&None) {
+            break;
+        }
+    }
+    known.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// Scales rows, columns and rows again by their largest entries: units make no difference.
+fn balance(slopes: &mut [Vec<f64>]) {
+    let largest = |entries: &mut dyn Iterator<Item = &f64>| {
+        let most = entries.fold(0.0_f64, |most, slope| most.max(slope.abs()));
+        if most > 0.0 { most } else { 1.0 }
+    };
+    let rows = |slopes: &mut [Vec<f64>]| {
+        for row in slopes {
+            let most = largest(&mut row.iter());
+            row.iter_mut().for_each(|slope| *slope /= most);
+        }
+    };
+    rows(slopes);
+    for column in 0..slopes.first().map_or(0, Vec::len) {
+        let most = largest(&mut slopes.iter().map(|row| &row[column]));
+        slopes.iter_mut().for_each(|row| row[column] /= most);
+    }
+    rows(slopes);
+}
+
+fn values(rows: &[&Row], point: &mut Point<'_>) -> Option<Vec<Number>> {
+    rows.iter().map(|row| point.value(row.rate, &row.indices)).collect()
 }
