@@ -97,6 +97,7 @@ mod size;
 mod smoothed;
 mod soft;
 mod steps;
+mod straight;
 mod suggest;
 mod table_data;
 mod table_report;
