@@ -26,7 +26,7 @@ impl<F: Fn(f64, &[f64], &mut Linear)> Motion for Closure<F> {
 
     fn evaluate(&mut self, values: &[Vec<f64>], out: &mut [Linear]) -> Option<()> {
         for ((at, values), out) in self.at.iter().zip(values).zip(out) {
-            out.jacobian.fill(0.0);
+            out.jacobian.clear();
             (self.function)(at.tau, values, out);
         }
         Some(())
@@ -42,7 +42,7 @@ fn track(orders: &[usize], initial: &[f64], function: impl Fn(f64, &[f64], &mut 
 
 fn set(out: &mut Linear, row: usize, residual: f64, derivatives: &[(usize, f64)]) {
     out.residual[row] = residual;
-    derivatives.iter().for_each(|(column, value)| out.jacobian[(row, *column)] = *value);
+    derivatives.iter().for_each(|(column, value)| out.jacobian.add(row, *column, *value));
 }
 
 fn close(found: f64, expected: f64, tolerance: f64) {
