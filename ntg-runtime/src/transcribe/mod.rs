@@ -34,7 +34,7 @@ mod measured;
 pub(crate) mod names;
 pub(crate) mod node;
 mod norm_slopes;
-pub(crate) mod own_bounds;
+mod own_bounds;
 pub(crate) mod points;
 mod range_maps;
 mod reduce;
@@ -72,9 +72,10 @@ use linear::LinearSystem;
 use ntg_nlp::Limits;
 use ntg_splines::Table;
 use ntg_structure::{Angle, Degree, Place, Row, Structure, Unit};
+use own_bounds::OwnBounds;
 use rows::{RowInfo, RowKind};
 pub(crate) use scale::{Quantity, is_beside_offset};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use times::Clock;
 
 /// A problem with everything that its parameters decide, without its formulas.
@@ -100,6 +101,8 @@ pub struct Transcription<'p> {
     pub(crate) linear: LinearSystem,
     /// Durations that are variables, in their order.
     pub(crate) durations: Vec<FreeDuration>,
+    /// Made when it is first asked for.
+    own_bounds: OnceLock<OwnBounds>,
 }
 
 /// A transcription without its problem, to be kept until the problem is solved again.
@@ -127,8 +130,8 @@ impl Kept {
     /// The transcription again; `problem` is the one that it had, or one that differs in parameters.
     pub(crate) fn of(self, problem: &dyn Problem) -> Transcription<'_> {
         let Self { model, elements, limits, linear, durations } = self;
-        let (origin, has_named_size) = (vec![], vec![]);
-        Transcription { problem, model, elements, limits, origin, has_named_size, linear, durations }
+        let (origin, has_named_size, own_bounds) = (vec![], vec![], OnceLock::new());
+        Transcription { problem, model, elements, limits, origin, has_named_size, linear, durations, own_bounds }
     }
 }
 
@@ -153,7 +156,9 @@ impl<'p> Transcription<'p> {
         limits.angles = angles(&model.structure, &model.layout);
         limits.definitions = elements.definitions(&model.layout, &limits);
         let (model, origin, has_named_size, durations) = (Arc::new(model), vec![], vec![], vec![]);
-        let mut transcription = Self { problem, model, elements, limits, origin, has_named_size, linear, durations };
+        let own_bounds = OnceLock::new();
+        let mut transcription =
+            Self { problem, model, elements, limits, origin, has_named_size, linear, durations, own_bounds };
         transcription.limits.alike = transcription.alike();
         transcription.find_durations(&longest);
         transcription.limits.shrinking = transcription.shrinking();
@@ -165,6 +170,11 @@ impl<'p> Transcription<'p> {
         let member = &self.model.layout.phases[phase];
         let declared = (member.phase, member.outputs[output].output);
         self.model.structure.angles.iter().find(|angle| (angle.phase, angle.output) == declared)
+    }
+
+    /// Bounds along a phase on single outputs, looked for once.
+    pub(crate) fn own_bounds(&self) -> &OwnBounds {
+        self.own_bounds.get_or_init(|| OwnBounds::of(self))
     }
 
     /// Changes to another structure of the same problem, and makes anew only what differs.
@@ -198,6 +208,7 @@ impl<'p> Transcription<'p> {
         self.limits = Limits { alike, angles, ..limits(&model.structure, &self.elements, (&bounds, &decided.met)) };
         self.limits.definitions = self.elements.definitions(&self.model.layout, &self.limits);
         self.model = Arc::new(model);
+        self.own_bounds = OnceLock::new();
         self.find_durations(&decided.longest);
         self.limits.shrinking = self.shrinking();
         Ok(Change::Data)
