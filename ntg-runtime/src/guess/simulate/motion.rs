@@ -4,6 +4,7 @@ use super::call::AtPlaces;
 use super::elimination::Rows;
 use super::radau::{Instant, Linear, Motion};
 use crate::transcribe::batch::batches;
+use crate::transcribe::deadline::Deadline;
 use crate::transcribe::elements::domain_sites;
 use crate::transcribe::frame::Frame;
 use crate::transcribe::node::Site;
@@ -70,6 +71,7 @@ pub(super) struct Equations<'a> {
     /// Where the value of a derivative of a member of the phase stands among all values.
     pub(super) columns: BTreeMap<(usize, usize), usize>,
     calls: Vec<AtPlaces>,
+    until: Deadline,
 }
 
 /// What holds all along each phase: groups, and where each is, in their order.
@@ -136,7 +138,7 @@ impl<'a> Equations<'a> {
         };
         let sizes = orders.keys().map(size).collect();
         let (outputs, orders) = orders.into_iter().unzip();
-        Some(Self { frame, x, phase, members, outputs, orders, sizes, columns, calls: vec![] })
+        Some(Self { frame, x, phase, members, outputs, orders, sizes, columns, calls: vec![], until: nlp.until })
     }
 
     /// Whether the equations decide the highest derivatives for these values at the start: where they do not, as equations
@@ -172,6 +174,10 @@ impl Motion for Equations<'_> {
 
     fn sizes(&self) -> &[f64] {
         &self.sizes
+    }
+
+    fn is_late(&self) -> bool {
+        self.until.is_over()
     }
 
     fn place(&mut self, at: &[Instant]) -> Option<()> {

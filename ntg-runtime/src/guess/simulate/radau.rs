@@ -41,6 +41,10 @@ pub(super) trait Motion {
     fn orders(&self) -> &[usize];
     /// Sizes of the outputs.
     fn sizes(&self) -> &[f64];
+    /// Whether there is no time left.
+    fn is_late(&self) -> bool {
+        false
+    }
     /// Where the next evaluations are. None where the equations have no meaning there.
     fn place(&mut self, at: &[Instant]) -> Option<()>;
     /// Residuals and their derivatives by all values at each place: there, the derivatives 0 to `k` of the first output, of
@@ -173,7 +177,7 @@ pub(super) fn integrate(motion: &mut impl Motion, initial: Vec<f64>, breaks: &[f
             // No last step of rounding's width.
             let last = width >= rest * (1.0 - 1e-9);
             let h = if last { rest } else { width.min(0.5 * rest) };
-            if steps.len() == STEPS || h < 1e-12 {
+            if steps.len() == STEPS || h < 1e-12 || integration.motion.is_late() {
                 return None;
             }
             let end = if last { pair[1] } else { tau + h };
