@@ -70,7 +70,7 @@ impl Rows {
     }
 
     /// Whether the least pivot is above this part of the largest, where the largest coefficient of each equation is 1.
-    pub(super) fn is_regular(mut self, least: f64) -> bool {
+    pub(super) fn has_full_rank(mut self, least: f64) -> bool {
         for row in &mut self.0 {
             let largest = row.iter().map(|(_, value)| value.abs()).fold(f64::MIN_POSITIVE, f64::max);
             row.iter_mut().for_each(|(_, value)| *value /= largest);
@@ -203,7 +203,7 @@ mod tests {
             let mut number = numbers();
             let right = DVector::from_fn(count, |_, _| number());
             let full = matrix.clone().lu().solve(&right).expect("regular");
-            assert!(rows(&matrix).full().is_none() && rows(&matrix).is_regular(1e-12));
+            assert!(rows(&matrix).full().is_none() && rows(&matrix).has_full_rank(1e-12));
             let found = rows(&matrix).solve(&right).expect("regular");
             let (missed, size) = ((&matrix * &found - &right).amax(), found.amax());
             assert!(missed <= 1e-12 * size, "{count}: {missed} of {size}");
@@ -230,9 +230,9 @@ mod tests {
     fn singular_equations_have_no_solution() {
         let mut matrix = chain(100, false);
         matrix.row_mut(3).fill(0.0);
-        assert!(rows(&matrix).solve(&DVector::zeros(100)).is_none() && !rows(&matrix).is_regular(1e-12));
+        assert!(rows(&matrix).solve(&DVector::zeros(100)).is_none() && !rows(&matrix).has_full_rank(1e-12));
         let mut twice = DMatrix::<f64>::identity(100, 100);
         (twice[(3, 3)], twice[(3, 4)]) = (0.0, 1.0);
-        assert!(rows(&twice).solve(&DVector::zeros(100)).is_none() && !rows(&twice).is_regular(1e-12));
+        assert!(rows(&twice).solve(&DVector::zeros(100)).is_none() && !rows(&twice).has_full_rank(1e-12));
     }
 }

@@ -155,7 +155,7 @@ impl<'a> Equations<'a> {
         }
         let highest = self.outputs.iter().zip(&self.orders).map(|(output, order)| self.columns[&(*output, *order)]);
         let columns: Vec<usize> = highest.collect();
-        out[0].of(&columns).is_regular(SINGULAR)
+        out[0].of(&columns).has_full_rank(SINGULAR)
     }
 
     /// What the guess says about all values at the start.
