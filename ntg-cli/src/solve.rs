@@ -24,6 +24,7 @@ use ntg_runtime::refine::{Refined, Refinement};
 use ntg_runtime::report::{Report, Resolution};
 use ntg_runtime::sensitivity::{Sensitivity, SensitivityError};
 use ntg_runtime::settings::{Between, InertiaCorrection, Method, Settings, Violations};
+use ntg_runtime::transcribe::SetupError;
 use ntg_runtime::{Error, solve_from, status::Status};
 
 use crate::arguments::{self, Format};
@@ -96,6 +97,10 @@ fn solve(arguments: &arguments::Solve, printer: &Printer) -> Result<Exit, String
             report.map(|report| Found::One(Box::new(options::in_options(report))))
         }
     };
+    if let Err(Error::Setup(error @ SetupError::TimeLimit)) = &found {
+        tell!("{}: {error}; allow more time (`--time-limit`)", source.name);
+        return Ok(Exit::NotSolved);
+    }
     let found = found.map_err(|error| setup::words(&error, &source))?;
     let (report, starts) = match &found {
         Found::One(report) => (&**report, None),

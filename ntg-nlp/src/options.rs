@@ -4,7 +4,7 @@
 
 use std::fmt;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// What the callback answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,6 +168,13 @@ impl Options {
     /// Whether the solution serves as a guess only and is not polished.
     pub(crate) fn is_rough(&self) -> bool {
         self.tolerance.min(self.constraint_tolerance) >= ROUGH_TOLERANCE
+    }
+
+    /// Whether the time limit was reached by more than a person notices, before the first iteration.
+    pub(crate) fn is_overdue(&self, begin: Instant) -> bool {
+        /// So long after its limit the first point may be looked at. A choice.
+        const GRACE: Duration = Duration::from_millis(100);
+        self.time_limit.is_some_and(|limit| begin.elapsed() >= limit.saturating_add(GRACE))
     }
 
     /// The same with what is left of the time limit after some time.

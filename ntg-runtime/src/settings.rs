@@ -58,7 +58,7 @@ pub struct Settings {
     /// Most iterations of everything that a solve does: starts on coarser knots, steps of a continuation, further
     /// attempts where one fails, of at most 500 iterations each; at least 1. Default 2000.
     pub max_iterations: usize,
-    /// Most wall-clock time, checked once an iteration; greater than zero. Default none.
+    /// Most wall-clock time, checked once an iteration and while the problem is set up; greater than zero. Default none.
     pub time_limit: Option<Duration>,
     /// Called once an iteration; may cancel. Default none.
     pub on_iteration: Option<OnIteration>,

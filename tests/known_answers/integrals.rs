@@ -124,3 +124,28 @@ fn a_function_of_an_integral_may_be_steep_in_si() {
         }
     }
 }
+
+/// The mean of what time does is a number, whose slope by a free duration is rounding of 0: what the end misses is measured by the
+/// end, not by that. The state moves by 1/2 or 1, at a steady rate: `u = d / T`, cost `d^2 / T + (T - 2)^2`.
+#[test]
+fn an_end_beside_a_mean_is_measured_by_the_end() {
+    for (mean, moved) in [("integral(t) / T^2", 0.5_f64), ("integral(der(t^2)) / T^2", 1.0)] {
+        let report = Shipped::text(&format!(
+            "problem Mean {{
+                duration T in 0.5 .. 3;
+                state x; input u;
+                collocation gauss(points = 3, intervals = 4);
+                dynamics {{ der(x) == u; }}
+                minimize integral(u^2) + (T - 2)^2;
+                initial {{ x == 1; }}
+                final {{ x == 1 + {mean}; }}
+            }}"
+        ));
+        let report = report.solve();
+        assert_eq!(report.status, Status::Solved, "{mean}: {report}");
+        assert!(report.violation.points < 1e-12 && report.warnings().is_empty(), "{mean}: {report}");
+        let best = |t: f64| moved * moved / t + (t - 2.0).powi(2);
+        let least = (0..=100_000).map(|k| best(2.0 + 2e-6 * f64::from(k))).fold(f64::INFINITY, f64::min);
+        close(report.objective, least, 1e-8);
+    }
+}

@@ -174,3 +174,37 @@ fn a_limit_on_one_element_is_none_on_the_others() {
     );
     close(objective, 58.0 * 58.0 / 24.0 - 62.25, 1e-6);
 }
+
+/// A table whose nodes lie on one line has no corner where its ends are not reached, or go on: its value in an equation was
+/// refused before the solve (E057), as if the line had to be 0. With `q` at the end, 7/4, the value is 2.3 q, the rate of its
+/// sine 2.3 cos(2.3 q).
+#[test]
+fn a_straight_table_is_its_line_in_equations() {
+    let ends = "linear(extrapolate = linear) { -5: -11.5; 0: 0; 10: 23; }";
+    let within = "linear { -5: -11.5; 0: 0; 10: 23; }";
+    let level = "linear { -5: 3; 0: 3; 10: 3; }";
+    let line: f64 = 2.3 * 1.75;
+    for (table, said, known) in [
+        (ends, "final(a, tab(t))", line),
+        (ends, "final(a, der(sin(tab(t))))", 2.3 * line.cos()),
+        (ends, "at(a, start(a) + 0.25 * duration(a), exp(0.1) * (tab(t) + t))", 0.1_f64.exp() * 0.25 * (line + 1.75)),
+        (ends, "tab(r) + partial(tab(r), r)", 6.9),
+        (within, "tab(r) + partial(tab(r), r)", 6.9),
+        (level, "final(a, tab(t) + der(tab(t)))", 3.0),
+        ("linear(extrapolate = linear) { 0: 0; 5: 11.5; 10: 25; }", "final(a, tab(t))", line),
+    ] {
+        let report = Shipped::text(&format!(
+            "problem Straight {{
+                table tab(z) = {table}
+                state x: spline(order = 4, intervals = 1);
+                dynamics {{ der(x) == 0.5 + 0.6 * t - 0.3 * t^2; }}
+                phase a {{ duration A in 0.5 .. 3;  final {{ q == t; }} }}
+                variable q, r in 0 .. 4, s;
+                temporal {{ q == 1.75;  r == 2;  s == {said}; }}
+            }}"
+        ));
+        let report = report.solver().solve().unwrap_or_else(|error| panic!("{table} {said}: {error}"));
+        assert_eq!(report.status, Status::Solved, "{table} {said}: {report}");
+        close(report.solution.variable("s").expect("s"), known, 1e-8);
+    }
+}

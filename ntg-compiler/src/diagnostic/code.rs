@@ -149,6 +149,7 @@ codes! {
     SoftName "N011" "a constraint named `soft` that has no price";
     Invariant "N012" "an equation that follows from the equations of motion";
     Reduced "N013" "an equation between states that inputs keep";
+    KnotsApart "N014" "an equation between splines on different knots";
 }
 
 impl Code {

@@ -56,7 +56,7 @@ impl Elaborator<'_> {
         let smooth = if growing { dag.sub(bound, distance) } else { dag.add(bound, distance) };
         self.origin(smooth, span);
         let own = &mut self.problem.constraints[number];
-        (own.body, own.written) = (smooth, Some(body));
+        (own.body, own.written) = (smooth, own.written.or(Some(body)));
         if !pass.signs.is_positive(&self.problem, width) {
             let own = &self.problem.constraints[number];
             let (domain, loops) = (own.domain.clone(), own.loops.clone());

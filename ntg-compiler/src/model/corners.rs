@@ -79,6 +79,7 @@ impl Elaborator<'_> {
         if self.has_failed() {
             return;
         }
+        let straight = self.straighten_tables();
         let parted = self.part_clamps();
         let paired = self.pair_corners();
         let terms = self.problem.objective.iter().map(|term| term.body);
@@ -113,13 +114,14 @@ impl Elaborator<'_> {
             if smooth != body {
                 self.origin(smooth, self.problem.objective[term].span);
                 let own = &mut self.problem.objective[term];
-                (own.body, own.written) = (smooth, Some(body));
+                (own.body, own.written) = (smooth, own.written.or(Some(body)));
             }
         }
         self.corners_relaxed(&mut pass);
         self.weights_held(&pass);
         let (left, smoothed) = self.corners_left(&pass.tips);
         let is_gone = |(_, one): &&(NodeId, NodeId)| !left.contains(one);
+        pass.treated.extend(straight);
         pass.treated.extend(paired.iter().chain(&parted).filter(is_gone).map(|(corner, _)| *corner));
         self.unnoted((&pass, &smoothed), &left);
         let mut spans: Vec<Span> = left.iter().filter_map(|node| self.problem.origin.get(node).copied()).collect();

@@ -49,6 +49,7 @@ mod impulses;
 mod independent;
 mod invariants;
 mod kinds;
+mod knots_apart;
 mod known_shapes;
 mod library;
 mod listed;
@@ -97,6 +98,7 @@ mod size;
 mod smoothed;
 mod soft;
 mod steps;
+mod straight;
 mod suggest;
 mod table_data;
 mod table_report;
@@ -257,6 +259,7 @@ impl<'a> Elaborator<'a> {
         self.jumps_noted();
         self.check();
         self.always_holding();
+        self.knots_apart();
         self.invariants();
         self.corners();
     }

@@ -25,7 +25,7 @@ const MOST_LINES: usize = 1000;
 /// `value + slope * (argument - node)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line {
-    slope: f64,
+    pub(super) slope: f64,
     node: f64,
     value: f64,
 }
@@ -53,6 +53,22 @@ impl Lines {
             lines.into_iter().map(own).collect()
         });
         (largest.is_some() || least.is_some()).then_some(Self { largest, least })
+    }
+}
+
+impl Lines {
+    /// The line that a table is over the range of its argument, where it has no corner there; of a constant one anywhere.
+    pub(super) fn only(table: &Table, range: Option<(f64, f64)>) -> Option<Line> {
+        let one =
+            |lines: Option<Vec<Line>>| lines.filter(|lines| lines.len() == 1).and_then(|lines| lines.first().copied());
+        let own = points(table)?;
+        let (node, value) = *own.first()?;
+        if own.iter().all(|point| point.1 == value) {
+            return Some(Line { slope: 0.0, node, value });
+        }
+        let lines = Self::of(table, range)?;
+        one(lines.least)?;
+        one(lines.largest)
     }
 }
 
@@ -156,21 +172,20 @@ impl Elaborator<'_> {
         if lines.len() > MOST_LINES {
             return None;
         }
-        let dag = &mut self.problem.dag;
-        let along: Vec<NodeId> = lines
-            .iter()
-            .map(|line| {
-                let (slope, node, value) =
-                    (dag.constant(line.slope), dag.constant(line.node), dag.constant(line.value));
-                let beyond = dag.sub(argument, node);
-                let rise = dag.mul(slope, beyond);
-                dag.add(rise, value)
-            })
-            .collect();
+        let along: Vec<NodeId> = lines.iter().map(|line| self.on_line(argument, *line)).collect();
         if pass.has_corners(argument) {
             along.iter().for_each(|line| self.corners_found(pass, *line));
         }
         Some(along)
+    }
+
+    /// The value of a line at an argument.
+    pub(super) fn on_line(&mut self, argument: NodeId, line: Line) -> NodeId {
+        let dag = &mut self.problem.dag;
+        let (slope, node, value) = (dag.constant(line.slope), dag.constant(line.node), dag.constant(line.value));
+        let beyond = dag.sub(argument, node);
+        let rise = dag.mul(slope, beyond);
+        dag.add(rise, value)
     }
 
     /// Whether a node is the value of a piecewise linear table, or its slope, at what is solved for.
@@ -298,6 +313,23 @@ mod tests {
             let largest = largest.fold(f64::NEG_INFINITY, f64::max);
             assert!((largest - y).abs() <= 2e-6, "{x}: {largest} for {y}");
         }
+    }
+
+    #[test]
+    fn a_straight_table_is_one_line_where_its_ends_are_not_reached_or_go_on() {
+        let mut straight = table(&[(-5.0, -11.5), (0.0, 0.0), (10.0, 23.0)]);
+        let slope = |table: &Table, range| Lines::only(table, range).map(|line| line.slope);
+        assert_eq!(slope(&straight, Some((-5.0, 10.0))), Some(2.3));
+        assert_eq!(slope(&straight, Some((11.0, 12.0))), Some(0.0));
+        assert_eq!(slope(&straight, Some((-5.0, 11.0))), None);
+        assert_eq!(slope(&straight, None), None);
+        straight.extrapolation = TableExtrapolation::Linear;
+        assert_eq!(slope(&straight, None), Some(2.3));
+        straight.values[1] = 1e-6;
+        assert_eq!(slope(&straight, None), None);
+        let mut constant = table(&[(0.0, 3.0), (1.0, 3.0), (4.0, 3.0)]);
+        constant.axes[0].symmetry = TableSymmetry::Periodic;
+        assert_eq!(slope(&constant, None), Some(0.0));
     }
 
     #[test]

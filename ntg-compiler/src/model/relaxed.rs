@@ -86,7 +86,7 @@ impl Elaborator<'_> {
         let as_written = Constraint { name: None, block: Block::Corner, written: None, ..own.clone() };
         self.problem.constraints.push(as_written);
         let equation = &mut self.problem.constraints[number];
-        (equation.body, equation.written) = (relaxed, Some(own.body));
+        (equation.body, equation.written) = (relaxed, own.written.or(Some(own.body)));
         self.problem.relaxations.push(Relaxation {
             equation: number,
             other,

@@ -73,7 +73,7 @@ impl Elaborator<'_> {
         }
         self.origin(smooth, pass.span);
         let own = &mut self.problem.constraints[number];
-        (own.body, own.written) = (smooth, Some(body));
+        (own.body, own.written) = (smooth, own.written.or(Some(body)));
         true
     }
 

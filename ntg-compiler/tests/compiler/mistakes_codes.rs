@@ -119,6 +119,10 @@ pub(crate) const NOTES: Section = (
             "problem Bead { duration T = 1; state x, y; input u, force; collocation gauss(points = 3, intervals = 4); minimize integral(u^2); dynamics { der(x, 2) == u - force; der(y, 2) == force; } initial { x == 0; } trajectory { x == y; } }",
             "N013",
         ),
+        (
+            "problem Knots { duration T = 1; state x; output v: spline(order = 4, intervals = 5); collocation gauss(points = 4, intervals = 4); minimize integral(der(v)^2); dynamics { der(x) == v; } initial { x == 0; } }",
+            "N014",
+        ),
     ],
 );
 

@@ -58,6 +58,9 @@ impl<'a, N: Nlp> State<'a, N> {
         x.push(0.0);
         let inside = if matches!(from, Start::Cold) { INSIDE } else { warm::INSIDE };
         push_inside_bounds(&mut x, nlp.limits(), &sizes, inside);
+        if options.is_overdue(begin) {
+            return Err(Status::TimeLimit);
+        }
         if let Err(what) = system.choose_scales(nlp, &x, options.scaling) {
             return Err(Status::NotFinite { what, x: system.last_point().to_vec() });
         }
@@ -108,6 +111,9 @@ impl<'a, N: Nlp> State<'a, N> {
             slacks,
             system,
         };
+        if options.is_overdue(begin) {
+            return Err(Status::TimeLimit);
+        }
         match state.initialise(from) {
             Ok(()) => Ok(state),
             Err(what) => Err(state.not_finite(what)),

@@ -8,7 +8,6 @@ use super::heading;
 use super::program::{Base, Guess};
 use super::statements::Statements;
 use crate::transcribe::layout::{Layout, Time};
-use crate::transcribe::own_bounds::OwnBounds;
 use crate::transcribe::rows::RowKind;
 use crate::transcribe::{SetupError, Transcription, defaults};
 use ntg_nlp::{Nlp, Target};
@@ -219,7 +218,7 @@ fn move_inside(nlp: &Transcription, curves: &[Curve], x: &mut [f64]) {
     if curves.is_empty() {
         return;
     }
-    let bounds = OwnBounds::of(nlp);
+    let bounds = nlp.own_bounds();
     for Curve { phase, output, .. } in curves {
         let coefficients = &nlp.model.layout.phases[*phase].outputs[*output].coefficients;
         let largest = coefficients.iter().map(|v| x[*v as usize].abs()).fold(0.0, f64::max);

@@ -8,7 +8,6 @@
 use crate::guess::Guess;
 use crate::transcribe::instances::{index_at, members};
 use crate::transcribe::layout::Layout;
-use crate::transcribe::own_bounds::OwnBounds;
 use crate::transcribe::slots::AffineMap;
 use crate::transcribe::{Transcription, names};
 use ntg_splines::Side;
@@ -107,7 +106,7 @@ impl Vehicle {
                 held.iter_mut().zip(at).for_each(|(h, v)| *h = (h.0.min(v), h.1.max(v)));
             }
         }
-        let own = OwnBounds::of(nlp);
+        let own = nlp.own_bounds();
         let bounds: Vec<_> = self.members[0].iter().map(|o| own.all(nlp, (phases.start, *o))).collect();
         let sides = held.iter().zip(&bounds).map(|(h, bound)| {
             let confined = bound.map_or(0.0, |(lower, upper)| upper - lower);
@@ -232,7 +231,7 @@ fn candidates(nlp: &Transcription, agent: usize) -> Vec<Candidate> {
     let phases = layout.agents[agent].phases.clone();
     let (Some(first), Some(last)) = (phases.clone().next(), phases.last()) else { return vec![] };
     let declared = &nlp.model.structure.phases[layout.phases[first].phase].outputs;
-    let bounds = OwnBounds::of(nlp);
+    let bounds = nlp.own_bounds();
     let mut found = vec![];
     for (output, member) in layout.phases[first].outputs.iter().enumerate() {
         let own = &declared[member.output];

@@ -3,7 +3,7 @@
 use super::jumped::may_jump;
 use crate::transcribe::Transcription;
 use ntg_nlp::{Block, Evaluation, Outcome, Target};
-use ntg_structure::{Domain, Slot};
+use ntg_structure::{Domain, Row, Slot};
 use std::collections::BTreeMap;
 
 /// What is below this part of its typical size all along the solution is noise, and no size. A law: what the tolerance of
@@ -226,7 +226,7 @@ fn parts(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
 
 impl Sizes {
     /// The sizes of the members of all trajectory constraints along the solution; where all terms are 0, and elsewhere than
-    /// along a trajectory, the largest slope of the member's rows. `at` holds first derivatives where they are finite, and
+    /// along a trajectory, of what integrals are in too, the largest slope of the member's rows. `at` holds first derivatives where they are finite, and
     /// zeros elsewhere.
     pub(super) fn at(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation)) -> Self {
         let relations = &nlp.elements.relations;
@@ -270,8 +270,10 @@ impl Sizes {
                     .iter()
                     .any(|(of, slot)| *of == row && !kinds[*slot].is_rate && kinds[*slot].is_linear == linear)
             };
-            let two_sided: Vec<bool> =
-                (0..block.rows).map(|row| has_slots(row, true) && has_slots(row, false)).collect();
+            // A part of an integral is no term of the row that it adds to, which holds at no point.
+            let is_term = |row: usize| matches!(group.rows[row], Row::Constraint { .. });
+            let is_two_sided = |row: usize| is_term(row) && has_slots(row, true) && has_slots(row, false);
+            let two_sided: Vec<bool> = (0..block.rows).map(is_two_sided).collect();
             let (mut slots, mut rest) = (vec![], vec![0.0; block.rows]);
             for e in 0..block.elements {
                 let variables = block.variables(e);
@@ -293,6 +295,9 @@ impl Sizes {
                 for (entry, &(row, slot)) in block.jacobian.iter().enumerate() {
                     let lane = row * block.elements + e;
                     let Target::Row(target) = block.target[lane] else { continue };
+                    if !is_term(row) {
+                        continue;
+                    }
                     let relation = relations.of_row[target as usize] as usize;
                     let slope = block.weight[lane] * values.jacobian[entry * block.elements + e];
                     let SlotValue { value, typical, most, cancelled } = slots[slot];

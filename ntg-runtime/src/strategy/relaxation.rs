@@ -10,6 +10,7 @@ use crate::problem::Problem;
 use crate::report::Report;
 use crate::settings::Settings;
 use crate::status::Status;
+use crate::transcribe::deadline::Deadline;
 use ntg_structure::Structure;
 use std::time::Instant;
 
@@ -54,6 +55,7 @@ impl Session {
     /// Solves a problem from a guess, with helpers beside the corners of its equations as long as they end at them.
     pub(crate) fn solve(&mut self, task: Task<'_>, settings: &Settings) -> Result<Report, Error> {
         let began = Instant::now();
+        self.until = Deadline::of(settings.time_limit);
         let structure = self.structure_of(task.problem);
         if structure.relaxations.is_empty() {
             return Ok(self.solve_posed(task, structure, settings)?.0);

@@ -12,6 +12,7 @@ use crate::report::status::of_outcome;
 use crate::report::{Report, StepReport, user};
 use crate::settings::{Method, Settings};
 use crate::solution::{Inner, Solution, Value};
+use crate::transcribe::deadline::Deadline;
 use crate::transcribe::shifted::Shifted;
 use crate::transcribe::{Change, Kept, Model, SetupError, Singular, Transcription, Workspace, singular};
 use ntg_nlp::{Evaluation, Nlp, Outcome, Start, Status, ipm, is_solution_by, method};
@@ -32,6 +33,8 @@ pub(crate) struct Session {
     /// The problem's own structure, brought up to date in every solve.
     pub(super) structure: Option<Structure>,
     pub(crate) kept: Option<Kept>,
+    /// When the present set-up is to have ended.
+    pub(super) until: Deadline,
     /// The interior-point method's analysis of this program.
     analysis: ipm::Analysis<Workspace>,
     fine: Option<Fine>,
@@ -86,6 +89,7 @@ impl Session {
             return Ok((first.x.clone(), first.singular.clone()));
         }
         let x = start(nlp, guess)?;
+        nlp.until.check()?;
         let singular = singular(nlp, &x);
         if guess.is_none() {
             self.first = Some(First { model: Arc::clone(&nlp.model), x: x.clone(), singular: singular.clone() });
@@ -108,9 +112,10 @@ impl Session {
     ) -> Result<Transcription<'p>, SetupError> {
         let Some(kept) = self.kept.take() else {
             self.analysis.program_changed();
-            return Transcription::with(problem, structure.clone());
+            return Transcription::within(problem, structure.clone(), self.until);
         };
         let mut nlp = kept.of(problem);
+        nlp.until = self.until;
         let change = nlp.take(structure)?;
         if change != Change::Nothing {
             self.analysis.program_changed();

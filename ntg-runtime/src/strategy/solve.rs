@@ -13,6 +13,7 @@ use crate::report::{Report, StepReport, user};
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::status::Status as InWords;
+use crate::transcribe::deadline::Deadline;
 use crate::transcribe::{SetupError, Transcription};
 use ntg_nlp::{Multipliers, Nlp, Outcome, Start, Status};
 use ntg_structure::Structure;
@@ -74,6 +75,7 @@ impl Session {
             };
             // The guess beside a solution on coarser knots, and a saved solution that is begun near.
             let (mut guessed, mut again) = (None, None);
+            nlp.until.check()?;
             let simulated = match i {
                 0 => self.solve_simulated(&mut nlp, (task, &first), settings, &mut budget)?,
                 _ => None,
@@ -106,6 +108,11 @@ impl Session {
             if let Some(last) = last.as_ref().filter(|last| last.status.has_solution()) {
                 from = Start::Warm(last.multipliers());
             }
+            if !is_simulated && guessed.is_none() {
+                nlp.until.check()?;
+            }
+            // From here on there is something to tell of.
+            self.until = Deadline::default();
             let first_point = (FirstPoint { x: &first, from }, guessed.as_deref().or(again.as_deref()));
             let mut is_guess_better = false;
             let mut outcome = match simulated {

@@ -2,11 +2,9 @@
 
 use super::Transcription;
 use super::measured::Measured;
-use super::own_bounds::OwnBounds;
 use super::slots::AffineMap;
 use ntg_splines::{Knots, Sampled, Side, fit_all, fit_places};
 use ntg_structure::Block;
-use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -76,7 +74,6 @@ fn middle((mut lower, mut upper): (f64, f64), unit: f64) -> f64 {
 pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
     let layout = &nlp.model.layout;
     let mut met = HashMap::new(); // Looked up, never iterated.
-    let bounds = OnceCell::new();
     let measured = Measured::of(nlp);
     let moving: Vec<[bool; 2]> =
         (0..layout.phases.len()).map(|phase| ENDS.map(|end| is_moving(nlp, phase, end))).collect();
@@ -94,9 +91,7 @@ pub(crate) fn outputs(nlp: &Transcription, x: &mut [f64]) {
                 let way = &all[&(phase, output)];
                 // What members of a scenario share is looked at once.
                 let constant = match way.known.is_empty() {
-                    true => *met
-                        .entry(member.coefficients[0])
-                        .or_insert_with(|| constant(nlp, bounds.get_or_init(|| OwnBounds::of(nlp)), (phase, output))),
+                    true => *met.entry(member.coefficients[0]).or_insert_with(|| constant(nlp, (phase, output))),
                     false => 0.0,
                 };
                 let (start, duration) = (starts[phase], layout.duration(phase, x));
@@ -128,7 +123,8 @@ fn fitted(knots: &Knots, value: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// The middle of constant bounds, else 0. What is bounded from below alone, and by nothing but what the compiler knows of the
 /// width of a cone, is one of its unit: at 0 is the tip (docs/maths.md, section 18).
-fn constant(nlp: &Transcription, bounds: &OwnBounds, (phase, output): (usize, usize)) -> f64 {
+fn constant(nlp: &Transcription, (phase, output): (usize, usize)) -> f64 {
+    let bounds = nlp.own_bounds();
     let is_written = |constraint: usize| nlp.model.structure.constraints[constraint].block != Block::Corner;
     let layout = &nlp.model.layout.phases[phase];
     let unit = nlp.model.structure.phases[layout.phase].outputs[layout.outputs[output].output].unit.factor;

@@ -5,6 +5,7 @@
 //! target; the last block, if integrals are variables, holds their identities.
 
 use super::batch::{Batch, batches};
+use super::deadline::Deadline;
 use super::error::SetupError;
 use super::frame::Frame;
 use super::instances::members;
@@ -44,8 +45,8 @@ pub(crate) struct Elements {
     integral_rows: Vec<u32>,
 }
 
-/// Builds all elements.
-pub(crate) fn elements(frame: &Frame) -> Result<Elements, SetupError> {
+/// Builds all elements, where that does not take longer.
+pub(crate) fn elements(frame: &Frame, until: Deadline) -> Result<Elements, SetupError> {
     let mut all = Elements::default();
     for (index, group) in frame.structure.groups.iter().enumerate() {
         let kernel = frame.structure.kernels.get(group.call.kernel);
@@ -53,8 +54,10 @@ pub(crate) fn elements(frame: &Frame) -> Result<Elements, SetupError> {
             return Err(SetupError::malformed("a group has not one meaning for each row of its kernel"));
         }
         let sites = without_repetitions(frame, group, sites(frame, group, point_set)?)?;
+        until.check()?;
         for batch in batches(frame, &group.call, sites)? {
             all.add(frame, index, group, batch)?;
+            until.check()?;
         }
     }
     all.add_identities(frame);

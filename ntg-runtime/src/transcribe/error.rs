@@ -92,6 +92,8 @@ pub enum SetupError {
         /// What is wrong, and what could be meant.
         message: String,
     },
+    /// `Settings::time_limit` was reached before the problem was set up.
+    TimeLimit,
     /// The structure contradicts itself: a defect of the back end that made it.
     Malformed {
         /// What does not fit.
@@ -120,7 +122,7 @@ impl SetupError {
             Self::Duration { .. } => Some("E060"),
             Self::Guess { .. } => Some("E065"),
             Self::Table { .. } => Some("E073"),
-            Self::Malformed { .. } => None,
+            Self::TimeLimit | Self::Malformed { .. } => None,
         }
     }
 
@@ -131,6 +133,7 @@ impl SetupError {
             Self::CrossingBounds { .. } => Some("change the parameters that stand in its bounds"),
             Self::Contradiction { .. } => Some("loosen the bound, or change what is fixed"),
             Self::Duration { .. } => Some("change the parameters that decide how long it lasts"),
+            Self::TimeLimit => Some("allow more time (`time_limit`)"),
             _ => None,
         }
     }
@@ -164,6 +167,7 @@ impl SetupError {
             Self::Knots { output, error, .. } => format!("the spline of {output}: {error}"),
             Self::Table { table, message } => format!("table `{table}`: {message}"),
             Self::Guess { message } => message.clone(),
+            Self::TimeLimit => "the time limit was reached before the problem was set up".to_owned(),
             Self::Malformed { message } => format!("the compiled problem contradicts itself: {message}"),
         }
     }
@@ -177,7 +181,7 @@ impl SetupError {
             | Self::IndexOutOfRange { place, .. }
             | Self::Duration { place, .. }
             | Self::Knots { place, .. } => place,
-            Self::Table { .. } | Self::Guess { .. } | Self::Malformed { .. } => return None,
+            Self::Table { .. } | Self::Guess { .. } | Self::TimeLimit | Self::Malformed { .. } => return None,
         };
         (place.line > 0).then_some(place)
     }

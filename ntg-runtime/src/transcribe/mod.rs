@@ -17,6 +17,7 @@ pub(crate) mod compose;
 mod contradictions;
 pub(crate) mod crossed;
 mod curvatures;
+pub(crate) mod deadline;
 pub(crate) mod defaults;
 mod durations;
 pub(crate) mod elements;
@@ -34,7 +35,7 @@ mod measured;
 pub(crate) mod names;
 pub(crate) mod node;
 mod norm_slopes;
-pub(crate) mod own_bounds;
+mod own_bounds;
 pub(crate) mod points;
 mod range_maps;
 mod reduce;
@@ -64,6 +65,7 @@ pub use tables::interpolants;
 use crate::problem::Problem;
 use crate::status::NotFinite;
 use contradictions::Decided;
+use deadline::Deadline;
 use durations::FreeDuration;
 use elements::Elements;
 use frame::Frame;
@@ -72,9 +74,10 @@ use linear::LinearSystem;
 use ntg_nlp::Limits;
 use ntg_splines::Table;
 use ntg_structure::{Angle, Degree, Place, Row, Structure, Unit};
+use own_bounds::OwnBounds;
 use rows::{RowInfo, RowKind};
 pub(crate) use scale::{Quantity, is_beside_offset};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use times::Clock;
 
 /// A problem with everything that its parameters decide, without its formulas.
@@ -100,6 +103,10 @@ pub struct Transcription<'p> {
     pub(crate) linear: LinearSystem,
     /// Durations that are variables, in their order.
     pub(crate) durations: Vec<FreeDuration>,
+    /// Made when it is first asked for.
+    own_bounds: OnceLock<OwnBounds>,
+    /// When all that is to be known before the first iteration is to be known.
+    pub(crate) until: Deadline,
 }
 
 /// A transcription without its problem, to be kept until the problem is solved again.
@@ -127,8 +134,18 @@ impl Kept {
     /// The transcription again; `problem` is the one that it had, or one that differs in parameters.
     pub(crate) fn of(self, problem: &dyn Problem) -> Transcription<'_> {
         let Self { model, elements, limits, linear, durations } = self;
-        let (origin, has_named_size) = (vec![], vec![]);
-        Transcription { problem, model, elements, limits, origin, has_named_size, linear, durations }
+        Transcription {
+            problem,
+            model,
+            elements,
+            limits,
+            origin: vec![],
+            has_named_size: vec![],
+            linear,
+            durations,
+            own_bounds: OnceLock::new(),
+            until: Deadline::default(),
+        }
     }
 }
 
@@ -143,19 +160,29 @@ impl<'p> Transcription<'p> {
 
     /// Transcribes a problem with parameters as in `structure` (one step of a continuation).
     pub(crate) fn with(problem: &'p dyn Problem, structure: Structure) -> Result<Self, SetupError> {
+        Self::within(problem, structure, Deadline::default())
+    }
+
+    /// As [`Transcription::with`], where it does not take longer.
+    pub(crate) fn within(problem: &'p dyn Problem, structure: Structure, until: Deadline) -> Result<Self, SetupError> {
         let tables = interpolants(&structure.tables)?.into();
+        until.check()?;
         let model = Model::new(problem, structure, tables)?;
+        until.check()?;
         let frame = model.frame(problem);
         let mut bounds = rows::variable_bounds(&frame)?;
-        let elements = elements::elements(&frame)?;
+        let elements = elements::elements(&frame, until)?;
         let Decided { system: linear, met, longest } = contradictions::decided(&frame, &elements, &mut bounds)?;
+        until.check()?;
         let mut limits = limits(&model.structure, &elements, (&bounds, &met));
         limits.angles = angles(&model.structure, &model.layout);
         limits.definitions = elements.definitions(&model.layout, &limits);
-        let (model, origin, has_named_size, durations) = (Arc::new(model), vec![], vec![], vec![]);
-        let mut transcription = Self { problem, model, elements, limits, origin, has_named_size, linear, durations };
+        let kept = Kept { model: Arc::new(model), elements, limits, linear, durations: vec![] };
+        let mut transcription = Self { until, ..kept.of(problem) };
         transcription.limits.alike = transcription.alike();
+        until.check()?;
         transcription.find_durations(&longest);
+        until.check()?;
         transcription.limits.shrinking = transcription.shrinking();
         Ok(transcription)
     }
@@ -165,6 +192,11 @@ impl<'p> Transcription<'p> {
         let member = &self.model.layout.phases[phase];
         let declared = (member.phase, member.outputs[output].output);
         self.model.structure.angles.iter().find(|angle| (angle.phase, angle.output) == declared)
+    }
+
+    /// Bounds along a phase on single outputs, looked for once.
+    pub(crate) fn own_bounds(&self) -> &OwnBounds {
+        self.own_bounds.get_or_init(|| OwnBounds::of(self))
     }
 
     /// Changes to another structure of the same problem, and makes anew only what differs.
@@ -198,6 +230,7 @@ impl<'p> Transcription<'p> {
         self.limits = Limits { alike, angles, ..limits(&model.structure, &self.elements, (&bounds, &decided.met)) };
         self.limits.definitions = self.elements.definitions(&self.model.layout, &self.limits);
         self.model = Arc::new(model);
+        self.own_bounds = OnceLock::new();
         self.find_durations(&decided.longest);
         self.limits.shrinking = self.shrinking();
         Ok(Change::Data)

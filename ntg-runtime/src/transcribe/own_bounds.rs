@@ -2,13 +2,13 @@
 //!
 //! Takes a transcription; looks through its rows once and keeps which of them are about nothing but the value of one
 //! output, each member of an array by its own: rows of one slot whose coefficients are one multiple of the B-splines'
-//! values, which add up to 1.
+//! values, which add up to 1. A transcription keeps them ([`Transcription::own_bounds`]).
 
 use super::Transcription;
 use ntg_nlp::{Block, Target};
 use ntg_structure::{Degree, Domain, Row};
-use std::cell::OnceCell;
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// The rows that bound single outputs.
 #[derive(Debug)]
@@ -16,7 +16,7 @@ pub(crate) struct OwnBounds {
     /// By phases and outputs.
     rows: HashMap<(usize, usize), Vec<Bounding>>, // Looked up, never iterated.
     /// The rows as lines in all elements, by batches and rows; evaluated when one is asked for.
-    lines: HashMap<(usize, usize), OnceCell<Lines>>, // Looked up, never iterated.
+    lines: HashMap<(usize, usize), OnceLock<Lines>>, // Looked up, never iterated.
 }
 
 /// A row as `slope * slot + offset` in each element.
@@ -34,7 +34,7 @@ struct Bounding {
 }
 
 impl OwnBounds {
-    pub(crate) fn of(nlp: &Transcription) -> Self {
+    pub(super) fn of(nlp: &Transcription) -> Self {
         let owners = owners(nlp);
         let (mut rows, mut lines): (HashMap<(usize, usize), Vec<Bounding>>, _) = (HashMap::new(), HashMap::new());
         for (number, (batch, block)) in nlp.elements.batches.iter().zip(&nlp.elements.blocks).enumerate() {

@@ -158,7 +158,8 @@ impl Transcription<'_> {
         let largest = |quantity: &Quantity, of: &[f64]| {
             quantity.coefficients.iter().map(|v| of[*v as usize].abs()).fold(0.0, f64::max)
         };
-        let mut guessed: Vec<f64> = quantities.iter().map(|one| largest(one, &from_origin(&guess))).collect();
+        let beside = from_origin(&guess);
+        let mut guessed: Vec<f64> = quantities.iter().map(|one| largest(one, &beside)).collect();
         let kinds = Kinds::of(quantities.iter().zip(guessed.iter().copied()));
         for (quantity, guessed) in quantities.iter().zip(&mut guessed) {
             if kinds.range(quantity).is_some_and(|(_, most)| ROUNDING.contains(&(*guessed / most))) {

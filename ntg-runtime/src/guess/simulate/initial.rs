@@ -10,6 +10,8 @@ use ntg_structure::{At, Domain};
 
 /// Most Newton iterations. A choice: linear conditions take one.
 const ITERATIONS: usize = 10;
+/// Conditions times unknowns; with more a simulation begins where the guess does. A choice: a thousand of each take seconds.
+const LARGEST: usize = 1_000_000;
 /// Residuals beside the sizes of what they are made of. A choice: that of a guess.
 const EXACT: f64 = 1e-10;
 
@@ -67,7 +69,8 @@ pub(super) fn initial(nlp: &Transcription, equations: &Equations, x: &[f64], siz
         }
     }
     let count: usize = conditions.iter().map(|(member, _)| member.rows.len()).sum();
-    for _ in 0..if count == 0 { 0 } else { ITERATIONS } {
+    let is_small = (1..=LARGEST).contains(&(count * unknown.len()));
+    for _ in 0..if is_small { ITERATIONS } else { 0 } {
         let mut residual = DVector::zeros(count);
         let mut jacobian = DMatrix::zeros(count, unknown.len());
         let mut equation = 0;

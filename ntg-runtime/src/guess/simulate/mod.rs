@@ -12,6 +12,7 @@
 
 mod call;
 mod defect;
+mod elimination;
 mod initial;
 mod motion;
 mod radau;

@@ -1,8 +1,10 @@
 //! The equations of motion of one phase: the equalities that hold all along it.
 
 use super::call::AtPlaces;
+use super::elimination::Rows;
 use super::radau::{Instant, Linear, Motion};
 use crate::transcribe::batch::batches;
+use crate::transcribe::deadline::Deadline;
 use crate::transcribe::elements::domain_sites;
 use crate::transcribe::frame::Frame;
 use crate::transcribe::node::Site;
@@ -11,7 +13,7 @@ use crate::transcribe::rows::group_bounds;
 use crate::transcribe::shape::trace;
 use crate::transcribe::slots::Source;
 use crate::transcribe::{Model, Transcription};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use ntg_structure::{At, Domain, Group, Points, Row};
 use std::collections::BTreeMap;
 
@@ -69,6 +71,7 @@ pub(super) struct Equations<'a> {
     /// Where the value of a derivative of a member of the phase stands among all values.
     pub(super) columns: BTreeMap<(usize, usize), usize>,
     calls: Vec<AtPlaces>,
+    until: Deadline,
 }
 
 /// What holds all along each phase: groups, and where each is, in their order.
@@ -135,7 +138,7 @@ impl<'a> Equations<'a> {
         };
         let sizes = orders.keys().map(size).collect();
         let (outputs, orders) = orders.into_iter().unzip();
-        Some(Self { frame, x, phase, members, outputs, orders, sizes, columns, calls: vec![] })
+        Some(Self { frame, x, phase, members, outputs, orders, sizes, columns, calls: vec![], until: nlp.until })
     }
 
     /// Whether the equations decide the highest derivatives for these values at the start: where they do not, as equations
@@ -145,20 +148,14 @@ impl<'a> Equations<'a> {
         const SINGULAR: f64 = 1e-12;
         let count = self.outputs.len();
         let start = Point::start(self.phase);
-        let mut out = [Linear { residual: DVector::zeros(count), jacobian: DMatrix::zeros(count, self.columns.len()) }];
+        let mut out = [Linear { residual: DVector::zeros(count), jacobian: Rows::new(count) }];
         let placed = self.place(&[Instant { tau: start.tau, side: start.side }]);
         if placed.and_then(|()| self.evaluate(&[values.to_vec()], &mut out)).is_none() {
             return false;
         }
         let highest = self.outputs.iter().zip(&self.orders).map(|(output, order)| self.columns[&(*output, *order)]);
         let columns: Vec<usize> = highest.collect();
-        let mut matrix = out[0].jacobian.select_columns(&columns);
-        for mut row in matrix.row_iter_mut() {
-            let largest = row.amax();
-            row /= largest.max(f64::MIN_POSITIVE);
-        }
-        let pivots = matrix.full_piv_lu().u().diagonal();
-        pivots.amin() > SINGULAR * pivots.amax()
+        out[0].of(&columns).has_full_rank(SINGULAR)
     }
 
     /// What the guess says about all values at the start.
@@ -179,6 +176,10 @@ impl Motion for Equations<'_> {
         &self.sizes
     }
 
+    fn is_late(&self) -> bool {
+        self.until.is_over()
+    }
+
     fn place(&mut self, at: &[Instant]) -> Option<()> {
         self.calls.clear();
         for member in &self.members {
@@ -192,7 +193,7 @@ impl Motion for Equations<'_> {
 
     fn evaluate(&mut self, values: &[Vec<f64>], out: &mut [Linear]) -> Option<()> {
         let mut equation = 0;
-        out.iter_mut().for_each(|linear| linear.jacobian.fill(0.0));
+        out.iter_mut().for_each(|linear| linear.jacobian.clear());
         for (member, call) in self.members.iter().zip(&mut self.calls) {
             let places = call.places();
             let column = |source: &Source| match source {
@@ -217,13 +218,12 @@ impl Motion for Equations<'_> {
                 for (entry, (_, slot)) in call.pattern.iter().enumerate().filter(|(_, (r, _))| r == row) {
                     let Some(column) = column(&member.sources[*slot]) else { continue };
                     for (place, linear) in out.iter_mut().enumerate() {
-                        linear.jacobian[(equation, *column)] += call.out.jacobian[entry * places + place];
+                        linear.jacobian.add(equation, *column, call.out.jacobian[entry * places + place]);
                     }
                 }
                 equation += 1;
             }
         }
-        let all_finite = out.iter().all(|linear| linear.jacobian.iter().all(|value| value.is_finite()));
-        all_finite.then_some(())
+        out.iter().all(|linear| linear.jacobian.is_finite()).then_some(())
     }
 }

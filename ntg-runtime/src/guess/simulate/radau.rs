@@ -5,8 +5,10 @@
 //! out does not become negative and leave the branch of the solution (Hairer and Wanner, *Solving Ordinary Differential
 //! Equations II*, 1996, section IV.8).
 
-use nalgebra::{DMatrix, DVector};
+use super::elimination::Rows;
+use nalgebra::DVector;
 use ntg_splines::Side;
+use std::collections::BTreeMap;
 
 /// Stages of a step.
 const STAGES: usize = 3;
@@ -39,6 +41,10 @@ pub(super) trait Motion {
     fn orders(&self) -> &[usize];
     /// Sizes of the outputs.
     fn sizes(&self) -> &[f64];
+    /// Whether there is no time left.
+    fn is_late(&self) -> bool {
+        false
+    }
     /// Where the next evaluations are. None where the equations have no meaning there.
     fn place(&mut self, at: &[Instant]) -> Option<()>;
     /// Residuals and their derivatives by all values at each place: there, the derivatives 0 to `k` of the first output, of
@@ -50,7 +56,22 @@ pub(super) trait Motion {
 #[derive(Clone, Debug)]
 pub(super) struct Linear {
     pub(super) residual: DVector<f64>,
-    pub(super) jacobian: DMatrix<f64>,
+    pub(super) jacobian: Rows,
+}
+
+impl Linear {
+    /// The derivatives by some of the values, in their order.
+    pub(super) fn of(&self, columns: &[usize]) -> Rows {
+        let places: BTreeMap<usize, usize> =
+            columns.iter().enumerate().map(|(place, column)| (*column, place)).collect();
+        let count = self.residual.len();
+        let mut rows = Rows::new(count);
+        for row in 0..count {
+            let own = self.jacobian.row(row).iter().filter_map(|(column, value)| Some((*places.get(column)?, *value)));
+            own.for_each(|(place, value)| rows.add(row, place, value));
+        }
+        rows
+    }
 }
 
 /// Outputs over one step: their values at the step's start and at the stages.
@@ -156,7 +177,7 @@ pub(super) fn integrate(motion: &mut impl Motion, initial: Vec<f64>, breaks: &[f
             // No last step of rounding's width.
             let last = width >= rest * (1.0 - 1e-9);
             let h = if last { rest } else { width.min(0.5 * rest) };
-            if steps.len() == STEPS || h < 1e-12 {
+            if steps.len() == STEPS || h < 1e-12 || integration.motion.is_late() {
                 return None;
             }
             let end = if last { pair[1] } else { tau + h };
@@ -193,8 +214,7 @@ struct Integration<'m, M> {
 impl<M: Motion> Integration<'_, M> {
     fn empty(&self, places: usize) -> Vec<Linear> {
         let rows = self.orders.len();
-        let columns = self.offsets.last().map_or(0, |first| first + self.orders[rows - 1] + 1);
-        vec![Linear { residual: DVector::zeros(rows), jacobian: DMatrix::zeros(rows, columns) }; places]
+        vec![Linear { residual: DVector::zeros(rows), jacobian: Rows::new(rows) }; places]
     }
 
     /// What counts as exact of one value.
@@ -210,8 +230,7 @@ impl<M: Motion> Integration<'_, M> {
         let highest: Vec<usize> = self.offsets.iter().zip(&self.orders).map(|(first, order)| first + order).collect();
         for _ in 0..2 * NEWTON {
             self.motion.evaluate(&values, &mut linear)?;
-            let matrix = linear[0].jacobian.select_columns(&highest);
-            let step = matrix.lu().solve(&linear[0].residual)?;
+            let step = linear[0].of(&highest).solve(&linear[0].residual)?;
             let mut is_exact = true;
             for (output, (&at, step)) in highest.iter().zip(step.iter()).enumerate() {
                 values[0][at] -= step;
@@ -292,24 +311,31 @@ impl<M: Motion> Integration<'_, M> {
     /// Newton's correction of the highest derivatives: those of the first stage, of the second, and so on.
     fn correction(&self, h: f64, linear: &[Linear]) -> Option<DVector<f64>> {
         let outputs = self.orders.len();
-        let mut matrix = DMatrix::zeros(STAGES * outputs, STAGES * outputs);
+        let mut matrix = Rows::new(STAGES * outputs);
+        let columns = self.columns();
         let mut residual = DVector::zeros(STAGES * outputs);
         for (stage, linear) in linear.iter().enumerate() {
             residual.rows_mut(stage * outputs, outputs).copy_from(&linear.residual);
-            for (output, (&first, &order)) in self.offsets.iter().zip(&self.orders).enumerate() {
-                for by in 0..STAGES {
-                    let whole = &mut matrix.column_mut(by * outputs + output);
-                    let mut column = whole.rows_mut(stage * outputs, outputs);
-                    let mut width = 1.0;
-                    for below in 0..=order {
+            for equation in 0..outputs {
+                for (column, value) in linear.jacobian.row(equation) {
+                    let (output, below) = columns[*column];
+                    let width = (0..below).fold(1.0, |width, _| width * h);
+                    for by in 0..STAGES {
                         let weight = width * self.method.powers[below][stage][by];
-                        column.axpy(weight, &linear.jacobian.column(first + order - below), 1.0);
-                        width *= h;
+                        if weight != 0.0 {
+                            matrix.add(stage * outputs + equation, by * outputs + output, weight * value);
+                        }
                     }
                 }
             }
         }
-        matrix.lu().solve(&residual)
+        matrix.solve(&residual)
+    }
+
+    /// The output of each value, and by how many derivatives it is below the highest.
+    fn columns(&self) -> Vec<(usize, usize)> {
+        let of_output = |(output, order): (usize, &usize)| (0..=*order).rev().map(move |below| (output, below));
+        self.orders.iter().enumerate().flat_map(of_output).collect()
     }
 
     /// The largest error of a value, in tolerances: by how much the derivative at the start differs from what those of the

@@ -8,6 +8,8 @@ struct Closure<F> {
     sizes: Vec<f64>,
     at: Vec<Instant>,
     function: F,
+    /// Whether there is no time left.
+    is_late: bool,
 }
 
 impl<F: Fn(f64, &[f64], &mut Linear)> Motion for Closure<F> {
@@ -19,6 +21,10 @@ impl<F: Fn(f64, &[f64], &mut Linear)> Motion for Closure<F> {
         &self.sizes
     }
 
+    fn is_late(&self) -> bool {
+        self.is_late
+    }
+
     fn place(&mut self, at: &[Instant]) -> Option<()> {
         self.at = at.to_vec();
         Some(())
@@ -26,7 +32,7 @@ impl<F: Fn(f64, &[f64], &mut Linear)> Motion for Closure<F> {
 
     fn evaluate(&mut self, values: &[Vec<f64>], out: &mut [Linear]) -> Option<()> {
         for ((at, values), out) in self.at.iter().zip(values).zip(out) {
-            out.jacobian.fill(0.0);
+            out.jacobian.clear();
             (self.function)(at.tau, values, out);
         }
         Some(())
@@ -36,13 +42,13 @@ impl<F: Fn(f64, &[f64], &mut Linear)> Motion for Closure<F> {
 /// Integrates from these values; `breaks` are 0 and 1.
 fn track(orders: &[usize], initial: &[f64], function: impl Fn(f64, &[f64], &mut Linear)) -> Option<Track> {
     let sizes = vec![1.0; orders.len()];
-    let mut motion = Closure { orders: orders.to_vec(), sizes, at: vec![], function };
+    let mut motion = Closure { orders: orders.to_vec(), sizes, at: vec![], function, is_late: false };
     integrate(&mut motion, initial.to_vec(), &[0.0, 1.0])
 }
 
 fn set(out: &mut Linear, row: usize, residual: f64, derivatives: &[(usize, f64)]) {
     out.residual[row] = residual;
-    derivatives.iter().for_each(|(column, value)| out.jacobian[(row, *column)] = *value);
+    derivatives.iter().for_each(|(column, value)| out.jacobian.add(row, *column, *value));
 }
 
 fn close(found: f64, expected: f64, tolerance: f64) {
@@ -123,4 +129,13 @@ fn what_has_no_end_has_no_simulation() {
     assert!(track(&[1], &[2.0, 0.0], escape).is_none());
     // Nothing says what z' is.
     assert!(track(&[1], &[2.0, 0.0], |_, v, out| set(out, 0, v[0] - 2.0, &[(0, 1.0)])).is_none());
+}
+
+#[test]
+fn a_motion_without_time_is_not_followed() {
+    let decay = |_: f64, z: &[f64], out: &mut Linear| set(out, 0, z[1] + z[0], &[(0, 1.0), (1, 1.0)]);
+    for is_late in [false, true] {
+        let mut motion = Closure { orders: vec![1], sizes: vec![1.0], at: vec![], function: decay, is_late };
+        assert_eq!(integrate(&mut motion, vec![1.0, -1.0], &[0.0, 1.0]).is_none(), is_late);
+    }
 }
