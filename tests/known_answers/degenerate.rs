@@ -379,3 +379,26 @@ fn a_least_value_of_0_is_found_beside_variables_that_nothing_holds() {
         }
     }
 }
+
+/// From rest to rest with the least jerk, 720 w^2 / T^5: in whatever order the ends are written, and however short the time is.
+#[test]
+fn the_order_of_conditions_at_an_end_does_not_matter() {
+    let conditions = ["der(x) == 0;", "der(x, 2) == 0;", "x == 1.613 [m];"];
+    for [a, b, c] in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        for (clock, time, order) in [("us", 0.7996, 6), ("us", 0.33, 7), ("ns", 1.1, 6), ("s", 0.7996, 6)] {
+            let report = Shipped::text(&format!(
+                "problem Rest {{
+                    duration T = {time} [{clock}];
+                    output x [m]: spline(order = {order}, intervals = 1);
+                    minimize integral(der(x, 3)^2) / 1 [m^2/{clock}^5];
+                    initial {{ x == 0;  der(x) == 0;  der(x, 2) == 0; }}
+                    final {{ {} {} {} }}
+                }}",
+                conditions[a], conditions[b], conditions[c]
+            ))
+            .solve();
+            assert!(report.is_solved(), "{a}, {b}, {c}, {time} {clock}: {report}");
+            close(report.objective, 720.0 * 1.613 * 1.613 / f64::powi(time, 5), 1e-6);
+        }
+    }
+}

@@ -28,6 +28,13 @@ struct Coefficient {
     size: f64,
 }
 
+impl Coefficient {
+    /// Whether it is more than rounding.
+    fn is_something(&self) -> bool {
+        self.value.abs() > NEGLIGIBLE * self.size
+    }
+}
+
 /// Equations in echelon form: no equation holds the pivot of one before it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LinearSystem {
@@ -152,14 +159,14 @@ impl LinearSystem {
         let mut due = numbers(&row);
         while let Some(number) = due.pop_first() {
             let (pivot, equation) = &self.equations[number];
-            if let Some(c) = row.terms.remove(pivot) {
+            if let Some(c) = row.terms.remove(pivot).filter(Coefficient::is_something) {
                 let times = -c.value / equation.terms[pivot].value;
                 row.add_scaled(times, equation);
                 row.terms.remove(pivot);
                 due.extend(numbers(equation).range(number + 1..));
             }
         }
-        row.terms.retain(|_, c| c.value.abs() > NEGLIGIBLE * c.size);
+        row.terms.retain(|_, c| c.is_something());
         row
     }
 }
@@ -180,6 +187,17 @@ mod tests {
         system.add(&row(&[(0, 3.0), (1, -1.0)], -1.0)).expect("x = 1, y = 2 solves both");
         let sum = system.known(&row(&[(0, 1.0), (1, 1.0)], 0.5)).expect("both are determined");
         assert!((sum.constant - 3.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_left_of_a_coefficient_by_rounding_says_nothing() {
+        // Rest in x[1] - x[0] and in x[2] - 2 x[1] + x[0], which are steep, and only then the place x[2] that all of them have.
+        let mut system = LinearSystem::default();
+        let curved = row(&[(0, 0.3e13), (1, -0.6e13), (2, 0.3e13)], 0.0);
+        let all = [row(&[(1, -0.1e7 * 7.0), (2, 0.7e6)], 0.0), curved.clone(), row(&[(2, 1.0)], -1.613)];
+        assert!(all.iter().all(|row| system.add(row).is_ok()));
+        let known = system.known(&curved).expect("all three are determined");
+        assert!(known.constant.abs() <= known.tolerance(), "{known:?}");
     }
 
     #[test]
