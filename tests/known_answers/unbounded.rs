@@ -161,3 +161,28 @@ fn growth_that_no_input_can_turn_is_feasible_and_bounded() {
         close(report.objective, known, 1e-3);
     }
 }
+
+/// An input that is free and paid for, beside a motion that has an optimum: unbounded on every mesh. By the sizes of what has run
+/// off the straight line of the guess was a solution that misses its equation by all of it.
+#[test]
+fn what_runs_off_beside_a_motion_tells_no_sizes_for_it() {
+    for (points, intervals, time) in
+        [(3, 12, 6.2143), (2, 12, 6.2143), (3, 5, 1.0), (4, 20, 15.0), (3, 12, 0.5), (3, 9, 6.0)]
+    {
+        for (output, unit) in [("x, y", "m"), ("x, y", "km")] {
+            let spec = Shipped::text(&format!(
+                "problem Paid {{
+                    duration T = {time} [s];
+                    state {output} [{unit}];  input u, w [{unit}/s];
+                    collocation gauss(points = {points}, intervals = {intervals});
+                    minimize integral(u^2) - 1 [{unit}/s] * integral(w);
+                    dynamics {{ der(x) == u;  der(y) == w; }}
+                    initial {{ x == 0;  y == 0; }}
+                    final {{ x == 1 [{unit}]; }}
+                }}"
+            ));
+            let report = solve(spec.problem(), &Settings::default()).expect("it can be set up");
+            assert_eq!(report.status, Status::Unbounded, "{points}, {intervals}, {unit}: {report}");
+        }
+    }
+}

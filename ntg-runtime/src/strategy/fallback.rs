@@ -91,8 +91,8 @@ impl Attempt {
     fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
         match status {
             Status::Acceptable => matches!(self, Self::Rays | Self::SizesAnew | Self::OtherWays),
-            // It does not tell a saddle from a minimum.
-            Status::Unbounded if matches!(self, Self::Rays | Self::Sqp) => false,
+            // Those do not tell a saddle from a minimum; what runs off has no size, and by its last one any point is a solution.
+            Status::Unbounded if matches!(self, Self::Rays | Self::Sqp | Self::SizesAnew) => false,
             Status::Infeasible { .. } if self == Self::Rays => false,
             Status::IterationLimit | Status::StepTooSmall if self == Self::Onwards => true,
             _ if self == Self::Onwards => false,
@@ -213,7 +213,10 @@ impl Session {
                     return Ok(None);
                 }
                 nlp.set_scales(&failed.x, &settings)?;
-                self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &settings)
+                let next = self.solve_measured(nlp, FirstPoint { x, from: Start::Cold }, &settings);
+                // By its own sizes the first point was no solution: that larger ones make it one says nothing.
+                let is_start = next.iterations == 0 && next.status.has_solution();
+                if is_start { Outcome { status: Status::StepTooSmall, ..next } } else { next }
             }
             Attempt::Bent => {
                 let x = bent(nlp, x)?;
