@@ -370,3 +370,39 @@ fn units_do_not_matter_to_what_a_tension_keeps() {
         }
     }
 }
+
+/// A rod in free flight: its middle goes straight, and it turns evenly. What of its start is not given follows from the length and
+/// its rate, whatever the guess says, so that the simulation is the motion.
+#[test]
+fn a_rod_in_free_flight_begins_as_its_length_says() {
+    for length in ["nm", "m", "Mm"] {
+        for guess in ["b = (0.5, 0)", "b = (0.4, 0.1)"] {
+            let report = Shipped::text(&format!(
+                "problem Rod {{
+                    duration T = 2 [s];
+                    state a[2], b[2] [{length}];  input tension [1/s^2];
+                    collocation gauss(points = 4, intervals = 20);
+                    dynamics {{ der(a, 2) == tension * (b - a);  der(b, 2) == -tension * (b - a); }}
+                    trajectory {{ dot(b - a, b - a) == 1 [{length}^2]; }}
+                    initial {{
+                        a == (-0.5, 0) [{length}];  der(a) == (0.3, -0.4) [{length}/s];
+                        b[2] == 0;  der(b[2]) == 0.4 [{length}/s];
+                    }}
+                    guess {{ a = (-0.5, 0) [{length}];  {guess} [{length}]; }}
+                    temporal {{ way: final(b[1]) >= -1e3 [{length}]; }}
+                }}"
+            ))
+            .solve();
+            assert!(report.is_solved() && report.iterations <= 10, "{length}, {guess}: {report}");
+            // 0.8 rad/s about a middle that goes 0.3 a second.
+            let end = report
+                .constraint("way")
+                .expect("a row of the spec")
+                .points
+                .as_ref()
+                .expect("it holds at a point")
+                .value;
+            close(end, 0.6 + 0.5 * 1.6_f64.cos(), 1e-4);
+        }
+    }
+}

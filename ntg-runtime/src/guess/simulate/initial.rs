@@ -4,9 +4,10 @@ use super::call::AtPlaces;
 use super::motion::{Equations, Member};
 use crate::transcribe::Transcription;
 use crate::transcribe::elements::domain_sites;
+use crate::transcribe::points::Point;
 use crate::transcribe::slots::Source;
 use nalgebra::{DMatrix, DVector};
-use ntg_structure::{At, Domain};
+use ntg_structure::{At, Domain, Group, Points};
 
 /// Most Newton iterations. A choice: linear conditions take one.
 const ITERATIONS: usize = 10;
@@ -28,12 +29,21 @@ pub(super) fn initial(nlp: &Transcription, equations: &Equations, x: &[f64], siz
         };
         equations.columns.keys().filter(is_below).copied().collect()
     };
+    // Equations of states that hold at the ends of intervals hold at the start.
+    let is_at_start = |group: &Group| match &group.domain {
+        Domain::Start(_) => true,
+        Domain::Path { phase, points, part } => {
+            let points = frame.structure.phases[phase.phase].points.get(*points);
+            part.is_whole() && points == Some(&Points::Breakpoints)
+        }
+        _ => false,
+    };
     // What a slot is: one of the unknown values, known, or something that only comes later.
     let column = |member: &Member, source: Source| match source {
         Source::Flat { phase, at, output, derivative } => {
             let at_start = match at {
                 At::Start => true,
-                At::Here => matches!(member.group.domain, Domain::Start(_)),
+                At::Here => is_at_start(member.group),
                 _ => false,
             };
             match phase == equations.phase {
@@ -47,10 +57,13 @@ pub(super) fn initial(nlp: &Transcription, equations: &Equations, x: &[f64], siz
     };
     let mut conditions = vec![];
     for group in &frame.structure.groups {
-        if matches!(group.domain, Domain::Path { .. }) {
-            continue;
-        }
-        let Ok(sites) = domain_sites(&frame, &group.loops, &group.domain, |_, _, _| vec![]) else { continue };
+        let starts = match &group.domain {
+            Domain::Path { .. } if !is_at_start(group) => continue,
+            Domain::Path { .. } => vec![Point::start(equations.phase)],
+            _ => vec![],
+        };
+        let start = |_: &_, _: &[f64], of: usize| if of == equations.phase { starts.clone() } else { vec![] };
+        let Ok(sites) = domain_sites(&frame, &group.loops, &group.domain, start) else { continue };
         for site in sites {
             let Some(mut member) = Member::new(&frame, group, site) else { continue };
             let rows = std::mem::take(&mut member.rows);
