@@ -163,8 +163,8 @@ pub struct Shrinking {
     pub order: u8,
     /// The duration below which the row is posed times this power, and above which it is posed as it is.
     pub small: f64,
-    /// Whether the row holds all along the duration: what it is missed by counts as what it adds up to.
-    pub is_along: bool,
+    /// Whether no other duration stands in the row.
+    pub is_only: bool,
 }
 
 /// A number of an evaluation, by its indices.

@@ -93,7 +93,7 @@ fn a_cruise_by_limits_on_an_acceleration_vanishes_or_does_not() {
                     }}"
                 ))
                 .solve();
-                assert!(report.is_solved() && report.iterations <= 150, "{length}, {up}, {cruise}, {most}: {report}");
+                assert!(report.is_solved() && report.iterations <= 400, "{length}, {up}, {cruise}, {most}: {report}");
                 close(report.objective, least, 1e-5);
             }
         }
@@ -117,10 +117,84 @@ fn a_way_that_two_phases_share_as_they_like_takes_as_long_as_one_phase() {
                     }}"
                 ))
                 .solve();
-                assert!(report.is_solved() && report.iterations <= 60, "{length}, {first}, {second}: {report}");
+                assert!(report.is_solved() && report.iterations <= 300, "{length}, {first}, {second}: {report}");
                 close(report.objective, 1.5, 1e-6);
             }
         }
+    }
+}
+
+/// Legs from rest to rest between places, of which two are one, and a price of effort that makes one phase the best: what the form
+/// for phases that vanish leads away from.
+#[test]
+fn legs_of_no_length_and_dear_phases_vanish_too() {
+    for (length, clock, most) in [("nm", "us", 1000), ("km", "ms", 100)] {
+        let report = Shipped::text(&format!(
+            "problem Legs {{
+                param w[4] = (-3.698, -3.698, -2.713, -2.385) [{length}];
+                output x [{length}]: spline(order = 3, intervals = 8, smoothness = 2);
+                phase leg[i in 1 .. 4] {{
+                    duration in 0 .. {most} [{clock}];
+                    trajectory {{ abs(der(x, 2)) <= 1.944 [{length}/{clock}^2]; }}
+                    final {{ x == w[i];  der(x) == 0; }}
+                }}
+                minimize end(leg[4]) / 1 [{clock}];
+                initial {{ x == 0;  der(x) == 0; }}
+            }}"
+        ))
+        .solve();
+        let least = |way: f64| 2.0 * (way / 1.944).sqrt();
+        assert!(report.is_solved() && report.iterations <= 200, "{length}: {report}");
+        close(report.objective, least(3.698) + least(0.985) + least(0.328), 1e-4);
+    }
+    let report = Shipped::text(
+        "problem Effort {
+            output x [mm]: spline(order = 4, intervals = 3);
+            phase p0 { duration in 0 .. 100 [day];  minimize integral(der(x, 2)^2 * 1 [day^3/mm^2] + 1.885 [1/day]); }
+            phase p1 after p0 {
+                duration in 0 .. 100 [day];  continuous x up to 1;
+                minimize 2.79 * integral(der(x, 2)^2 * 1 [day^3/mm^2] + 1.885 [1/day]);
+            }
+            initial { x == 0;  der(x) == 0; }
+            final { x == 7.87 [mm];  der(x) == 0; }
+        }",
+    )
+    .solve();
+    // 12 w^2 / T^3 + c T is least where 36 w^2 = c T^4.
+    let time = (36.0 * 7.87 * 7.87 / 1.885_f64).powf(0.25);
+    assert!(report.is_solved() && report.iterations <= 150, "{report}");
+    close(report.objective, 4.0 / 3.0 * 1.885 * time, 1e-3);
+}
+
+/// Of three phases one is priced, and how long the others take costs nothing: they end anywhere, and the one that is priced at its least.
+#[test]
+fn durations_that_cost_nothing_lead_to_no_worse_minimum() {
+    for (length, clock, intervals, push, speed, way) in
+        [("mm", "h", 4, 1.459, 2.614, 4.796), ("m", "ns", 8, 0.612, 2.486, 0.605), ("mm", "ms", 4, 2.668, 2.591, 3.863)]
+    {
+        let report = Shipped::text(&format!(
+            "problem Dash {{
+                output x [{length}]: spline(order = 3, intervals = {intervals}, smoothness = 2);
+                phase a {{
+                    duration in 0 ..;  trajectory {{ abs(der(x, 2)) <= {push} [{length}/{clock}^2]; }}
+                    final {{ x == {way} [{length}];  der(x) == {speed} [{length}/{clock}]; }}
+                }}
+                phase b after a {{
+                    duration in 0 ..;  trajectory {{ der(x) in -{speed} .. {speed} [{length}/{clock}]; }}
+                    final {{ x == {} [{length}]; }}
+                }}
+                phase c after b {{
+                    duration in 0 ..;  trajectory {{ abs(der(x, 2)) <= {push} [{length}/{clock}^2]; }}
+                    final {{ der(x) == 0; }}
+                }}
+                initial {{ x == 0; }}
+                minimize duration(b) / 1 [{clock}];
+            }}",
+            2.0 * way
+        ))
+        .solve();
+        assert!(report.is_solved(), "{length}, {clock}: {report}");
+        close(report.objective, way / speed, 1e-4);
     }
 }
 

@@ -8,7 +8,36 @@
 
 use super::sole_rows;
 use crate::contract::{Block, BlockValues, Evaluation, Limits, Nlp, Shrinking};
+use crate::residuals::{ACCEPTABLE, violation};
 use std::collections::BTreeSet;
+
+/// Which rows over durations are posed otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// Equations over one duration alone.
+    Equations,
+    /// Limits, and what holds where durations meet, too.
+    All,
+}
+
+impl Form {
+    /// Below which part of what is small a duration is small. A fit: as the second form begins, the first one takes twice as many
+    /// iterations.
+    fn part(self) -> f64 {
+        match self {
+            Self::Equations => 0.1,
+            Self::All => 1.0,
+        }
+    }
+}
+
+impl Shrinking {
+    /// Whether it is the only duration of an equation.
+    fn is_equation_of_one(&self, limits: &Limits) -> bool {
+        let row = self.row as usize;
+        self.is_only && limits.row_lower[row] == 0.0 && limits.row_upper[row] == 0.0
+    }
+}
 
 /// A factor of `phi` at a duration.
 struct Power {
@@ -72,17 +101,17 @@ pub(super) struct Durations {
 impl Durations {
     /// The rows of a program that are the value of one function of one element, in which durations are slots by themselves, and
     /// that are not among `norms`, which are posed otherwise; `blocks` get the entries of Hessians that products need.
-    pub(super) fn of<N: Nlp>(nlp: &N, norms: &BTreeSet<usize>, blocks: &mut Vec<Block>) -> Self {
+    pub(super) fn of<N: Nlp>(nlp: &N, (form, norms): (Form, &BTreeSet<usize>), blocks: &mut Vec<Block>) -> Self {
         let limits = nlp.limits();
         if limits.shrinking.is_empty() {
             return Self::default();
         }
         let sole = sole_rows(nlp);
         let mut factors = vec![vec![]; nlp.rows()];
-        for shrinking in &limits.shrinking {
+        for shrinking in limits.shrinking.iter().filter(|own| form == Form::All || own.is_equation_of_one(limits)) {
             let row = shrinking.row as usize;
             if sole[row] && !norms.contains(&row) {
-                factors[row].push(*shrinking);
+                factors[row].push(Shrinking { small: form.part() * shrinking.small, ..*shrinking });
             }
         }
         *blocks = nlp.blocks().to_vec();
@@ -139,17 +168,17 @@ impl Durations {
         self.slopes(x).map(move |(row, slope)| (row, slope, bound(row)))
     }
 
-    /// How much more than by its slope a miss of each row counts at a point, by row: as at the start, and of a row that holds along
-    /// durations by the parts that these are of what they were there. What a rate misses is what it leaves at the end of the phase.
+    /// How much more than by its slope a miss of each row counts at a point, by row: as at the start.
     pub(super) fn counted<'s>(&'s self, start: &'s [f64], x: &'s [f64]) -> impl Iterator<Item = (usize, f64)> + 's {
-        let part = |factor: &Shrinking| {
-            let variable = factor.variable as usize;
-            if factor.is_along { (x[variable] / start[variable]).min(1.0) } else { 1.0 }
-        };
-        self.rows().map(move |Row { row, factors, .. }| {
-            let parts: f64 = factors.iter().map(part).product();
-            (*row, parts * product(factors, start) / product(factors, x))
-        })
+        self.rows().map(|Row { row, factors, .. }| (*row, product(factors, start) / product(factors, x)))
+    }
+
+    /// Whether rows of these factors hold at a point, which what they are posed as may hide.
+    pub(super) fn hold<N: Nlp>(&self, nlp: &N, x: &[f64], factors: &[f64]) -> bool {
+        let ((mut work, mut at), limits) = (nlp.workspace(), nlp.limits());
+        let has_values = !self.is_empty() && nlp.values(x, &mut work, &mut at).is_ok();
+        let missed = |row: usize| violation(at.rows[row], limits.row_lower[row], limits.row_upper[row]);
+        !has_values || self.rows().all(|Row { row, .. }| factors[*row] * missed(*row) <= ACCEPTABLE)
     }
 
     /// Multiplies the values of an evaluation, and adds them up again.
@@ -266,6 +295,7 @@ fn slot_of(block: &Block, element: usize, variable: u32) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::super::Posed;
+    use super::Form;
     use crate::closures::{Functions, Program};
     use crate::contract::{Nlp, Shrinking};
     use crate::erased::{Erased, Own};
@@ -297,8 +327,9 @@ mod tests {
             let (vs, ss) = (1.0 / (s * s), -2.0 * v * s.powi(-3));
             out.set_hessian(2, &[pp, 0.0, pt, 0.0, 0.0, 0.0, 0.0, vs, pt, 0.0, tt, 0.0, 0.0, vs, 0.0, ss]);
         });
-        let shrinking = |row, variable, order, small| Shrinking { row, variable, order, small, is_along: true };
-        program.limits.shrinking = vec![shrinking(0, 2, 2, 0.1), shrinking(1, 2, 1, 0.1), shrinking(1, 3, 1, 0.5)];
+        let shrinking = |row, variable, order, small, is_only| Shrinking { row, variable, order, small, is_only };
+        program.limits.shrinking =
+            vec![shrinking(0, 2, 2, 0.1, true), shrinking(1, 2, 1, 0.1, false), shrinking(1, 3, 1, 0.5, false)];
         program
     }
 
@@ -326,7 +357,7 @@ mod tests {
         for x in [[0.3, 1.2, 0.02, 0.3], [-2.0, 0.7, 0.1, 0.01], [1.0, -0.4, 3.0, 2.0]] {
             let own = Own(&program);
             let erased = Erased::of(&own);
-            let posed = Posed::of(&erased, &x).expect("the rows are posed");
+            let posed = Posed::of(&erased, &x, Form::All).expect("the rows are posed");
             let posed = Erased::of(&posed);
             assert_eq!(posed.limits().row_upper, [0.0, 0.0]);
             let (values, gradient, hessian) = lagrangian(&posed, &x);

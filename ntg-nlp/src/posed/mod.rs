@@ -14,6 +14,7 @@ use crate::erased::{Buffers, Erased, Program};
 use crate::outcome::{Multipliers, Outcome, Start};
 use crate::status::{Bounded, Status};
 use durations::Durations;
+pub(crate) use durations::Form;
 use squares::{Squares, root};
 use std::sync::{Mutex, PoisonError};
 
@@ -31,11 +32,11 @@ pub(crate) struct Posed<'a> {
 
 impl<'a> Posed<'a> {
     /// The program in the forms that are meant for a start; none where all rows stay what they are.
-    pub(crate) fn of(nlp: &'a Erased<'a>, start: &[f64]) -> Option<Self> {
+    pub(crate) fn of(nlp: &'a Erased<'a>, start: &[f64], form: Form) -> Option<Self> {
         let mut blocks = vec![];
         let squares = Squares::of(nlp, start);
         let norms = squares.norms.iter().map(|norm| norm.row).collect();
-        let durations = Durations::of(nlp, &norms, &mut blocks);
+        let durations = Durations::of(nlp, (form, &norms), &mut blocks);
         if squares.norms.is_empty() && durations.is_empty() {
             return None;
         }
@@ -83,6 +84,9 @@ impl<'a> Posed<'a> {
         });
         // What a row over durations that have become short is missed by counts as it did at the start.
         self.durations.counted(start, x).for_each(|(row, counted)| row_factors[row] *= counted);
+        if status.has_solution() && !self.durations.hold(self.nlp, x, row_factors) {
+            *status = Status::StepTooSmall;
+        }
         let is_norm = |of: Bounded| self.squares.norms.iter().any(|norm| of == Bounded::Row(norm.row));
         match status {
             Status::Infeasible { rows } => {

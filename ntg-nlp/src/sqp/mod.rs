@@ -29,7 +29,7 @@ use crate::erased::{Erased, Own};
 use crate::ipm::below_saddle;
 use crate::options::Options;
 use crate::outcome::{Multipliers, Outcome, Start};
-use crate::posed::Posed;
+use crate::posed::{Form, Posed};
 use crate::remeasure::{Measure, measure_at_end, until_measured};
 use crate::status::Status;
 use run::Run;
@@ -50,7 +50,7 @@ pub fn solve_from<N: Nlp>(nlp: &N, start: &[f64], from: Option<Multipliers<'_>>,
 
 /// As [`solve_from`].
 fn solve_erased(nlp: &Erased<'_>, start: &[f64], from: Option<Multipliers<'_>>, options: &Options) -> Outcome {
-    match Posed::of(nlp, start) {
+    match Posed::of(nlp, start, Form::Equations) {
         Some(posed) => {
             let from = from.map_or(Start::Cold, Start::Warm);
             posed.solve(start, from, |posed, from| solve_posed(posed, start, from.multipliers(posed), options))

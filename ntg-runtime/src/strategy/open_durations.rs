@@ -9,6 +9,7 @@ use super::budget::Budget;
 use super::session::{FirstPoint, Session, Task};
 use crate::guess::start;
 use crate::transcribe::{SetupError, Transcription};
+use ntg_nlp::residuals::ACCEPTABLE;
 use ntg_nlp::{Outcome, Start, Status};
 
 /// By how much a range is longer than the one before, and a guess of a person's is shorter than its range. That of section 8.1: a
@@ -36,6 +37,8 @@ impl Session {
         }
         let scales = nlp.limits.clone();
         let (guess, mut x, mut found) = (x, x.to_vec(), None);
+        // The best solution that ends at the end of its range: a longer range holds it, and may lead to a worse one.
+        let mut at_end: Option<Outcome> = None;
         for range in 0..RANGES {
             let Some(settings) = budget.range() else { break };
             let longer = LONGER.powi(range as i32);
@@ -69,6 +72,10 @@ impl Session {
                 found = Some(outcome);
                 break;
             }
+            let is_best = at_end.as_ref().is_none_or(|best| outcome.objective < best.objective);
+            if outcome.status == Status::Solved && !outcome.is_saddle && is_best {
+                at_end = Some(outcome);
+            }
         }
         open.iter().for_each(|i| nlp.limits.upper[own(i)] = f64::INFINITY);
         nlp.durations = durations;
@@ -83,6 +90,8 @@ impl Session {
         if outcome.status != Status::Solved {
             return Ok(Some(outcome));
         }
+        let is_better = |best: &Outcome| outcome.objective - best.objective > ACCEPTABLE * best.objective.abs();
+        let outcome = at_end.filter(is_better).unwrap_or(outcome);
         // The barrier of a range moves what is flat: the last steps are those of the program itself.
         let Some(settings) = budget.range() else { return Ok(Some(outcome)) };
         let from = Start::Warm(outcome.multipliers());

@@ -5,7 +5,7 @@ use super::layout::{Time, narrow};
 use super::rows::{RowInfo, RowKind};
 use super::slots::Source;
 use ntg_nlp::Shrinking;
-use ntg_structure::{Domain, Slot};
+use ntg_structure::Slot;
 use std::collections::BTreeMap;
 
 /// A phase may vanish whose least duration is below this part of its greatest. A choice: nobody means to fly a thousandth of
@@ -24,13 +24,13 @@ impl Transcription<'_> {
         }
         let own = |(number, row): (usize, &RowInfo)| {
             let orders = if matches!(row.kind, RowKind::Constraint(_)) { self.orders(row) } else { BTreeMap::new() };
-            orders.into_iter().map(move |(phase, order)| (number, phase, order))
+            let is_only = orders.len() == 1;
+            orders.into_iter().map(move |(phase, order)| (number, phase, order, is_only))
         };
         let orders = self.elements.rows.iter().enumerate().flat_map(own);
-        let shrinking = |(number, phase, order): (usize, usize, u8)| {
+        let shrinking = |(number, phase, order, is_only): (usize, usize, u8, bool)| {
             let (variable, small) = *small.get(&phase)?;
-            let is_along = self.is_along(&self.elements.rows[number]);
-            Some(Shrinking { row: narrow(number), variable, order, small, is_along })
+            Some(Shrinking { row: narrow(number), variable, order, small, is_only })
         };
         orders.filter_map(shrinking).collect()
     }
@@ -47,11 +47,6 @@ impl Transcription<'_> {
             (is_short && stands_beside).then_some((number, (variable, SMALL * reach)))
         });
         own.collect()
-    }
-
-    fn is_along(&self, row: &RowInfo) -> bool {
-        let group = self.elements.batches.get(row.maker.0).map(|batch| &self.model.structure.groups[batch.group]);
-        group.is_some_and(|group| matches!(group.domain, Domain::Path { .. }))
     }
 
     /// The highest derivative by time in a row, by phase.
