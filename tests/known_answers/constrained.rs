@@ -371,6 +371,26 @@ fn units_do_not_matter_to_what_a_tension_keeps() {
     }
 }
 
+/// The same where one coordinate is in millimetres and the other one in nanometres, so that the circle is an ellipse of 1e6 to 1.
+#[test]
+fn coordinates_may_have_units_that_are_far_apart() {
+    let report = Shipped::text(
+        "problem Pendulum {
+            duration T = 2 [s];
+            state x [mm], y [nm];  input tension;
+            collocation gauss(points = 3, intervals = 40);
+            dynamics { der(x, 2) == -tension * x / 1 [s^2];  der(y, 2) == -tension * y / 1 [s^2] - 9.81 [nm/s^2]; }
+            trajectory { (x / 1 [mm])^2 + (y / 1 [nm])^2 == 1; }
+            initial { x == 0.8 [mm];  der(x) == 0; }
+            guess { x = 0.8 [mm];  y = -0.6 [nm]; }
+            minimize final(x) / 1 [mm];
+        }",
+    )
+    .solve();
+    assert!(report.is_solved() && report.iterations <= 20, "{report}");
+    close(report.objective, 0.765_39, 1e-4);
+}
+
 /// A rod in free flight: its middle goes straight, and it turns evenly. What of its start is not given follows from the length and
 /// its rate, whatever the guess says, so that the simulation is the motion.
 #[test]

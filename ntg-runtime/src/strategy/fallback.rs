@@ -91,8 +91,8 @@ impl Attempt {
     fn follows(self, status: &Status, seems_infeasible: bool) -> bool {
         match status {
             Status::Acceptable => matches!(self, Self::Rays | Self::SizesAnew | Self::OtherWays),
-            // Those do not tell a saddle from a minimum; what runs off has no size, and by its last one any point is a solution.
-            Status::Unbounded if matches!(self, Self::Rays | Self::Sqp | Self::SizesAnew) => false,
+            // It does not tell a saddle from a minimum.
+            Status::Unbounded if matches!(self, Self::Rays | Self::Sqp) => false,
             Status::Infeasible { .. } if self == Self::Rays => false,
             Status::IterationLimit | Status::StepTooSmall if self == Self::Onwards => true,
             _ if self == Self::Onwards => false,

@@ -3,7 +3,6 @@
 //! Takes bounds, boundary conditions and slopes; gives a guess of each free duration. Of a bound that is far beyond what
 //! balances the equations nothing is known but that somebody wrote it.
 
-use super::layout::Time;
 use super::rows::shortest_duration;
 use super::{Transcription, Workspace, defaults};
 use ntg_nlp::{Evaluation, Limits, Nlp};
@@ -104,15 +103,11 @@ impl Transcription<'_> {
             durations.push(FreeDuration { variable, guess, reach: upper, is_guarded });
         }
         self.durations = durations;
-        let (typical, others) = (self.typical_duration(), self.longest_by_bounds());
+        let typical = self.typical_duration();
         for i in 0..self.durations.len() {
             let known = self.durations[i];
             let is_open = known.reach.is_infinite();
-            let guess = match typical {
-                Some((typical, _)) => self.duration_near(&known, typical),
-                None if is_open => others.map_or(known.guess, |others| self.duration_near(&known, others)),
-                None => known.guess,
-            };
+            let guess = typical.map_or(known.guess, |(typical, _)| self.duration_near(&known, typical));
             let far = if typical.is_some_and(|(_, by_rates)| by_rates) { FAR_BY_RATES } else { 10f64.powi(FAR) };
             let is_far = |bound: f64| bound > far * guess;
             if guess == known.guess && !is_open || !is_far(known.reach) {
@@ -128,16 +123,6 @@ impl Transcription<'_> {
             };
             self.durations[i] = FreeDuration { guess, reach, ..known };
         }
-    }
-
-    /// The longest duration that is given or guessed by an upper bound.
-    fn longest_by_bounds(&self) -> Option<f64> {
-        let fixed = self.model.layout.phases.iter().filter_map(|phase| match phase.duration {
-            Time::Fixed(duration) => Some(duration),
-            Time::Free(_) => None,
-        });
-        let bounded = self.durations.iter().filter(|duration| duration.reach.is_finite());
-        fixed.chain(bounded.map(|duration| duration.guess)).reduce(f64::max)
     }
 
     /// How short a duration may be by what somebody wrote.

@@ -54,7 +54,7 @@ pub(super) struct Point<'p> {
     indices: Indices,
     /// States that were put elsewhere.
     pub(super) moved: HashMap<State, f64>, // Looked up, never iterated.
-    /// By what states may be off.
+    /// By what states may be off, in the sizes in which they are drawn.
     pub(super) blur: f64,
     /// The states that were met, in order.
     pub(super) met: Vec<State>,
@@ -95,11 +95,18 @@ impl<'p> Point<'p> {
         self.moved.get(state).copied().unwrap_or_else(|| self.drawn_state(state))
     }
 
-    fn drawn_state(&self, (at, order): &State) -> f64 {
+    /// The size in which a state is drawn: one of the unit in which its output is declared, by one of time.
+    pub(super) fn size(&self, (at, order): &State) -> f64 {
+        let unit = self.problem.phases[self.motion.phase].outputs[at.output].unit.factor;
+        unit / self.problem.independent.unit.factor.powi(i32::try_from(*order).unwrap_or(i32::MAX))
+    }
+
+    fn drawn_state(&self, state: &State) -> f64 {
+        let (at, order) = state;
         let name = &self.problem.phases[self.motion.phase].outputs[at.output].name;
         let name = name.bytes().fold(0, |seed, byte| mixed(seed ^ u64::from(byte)));
         let numbers = [at.agent, at.member].map(|number| number.map_or(u64::MAX, i64::cast_unsigned));
-        self.drawn(numbers.into_iter().chain([*order as u64]).fold(name, |seed, n| mixed(seed ^ n)))
+        self.size(state) * self.drawn(numbers.into_iter().chain([*order as u64]).fold(name, |seed, n| mixed(seed ^ n)))
     }
 
     /// The value of what no equation determines.
@@ -174,7 +181,7 @@ impl Point<'_> {
                     return self.freed(state).unwrap_or_else(|| Number::new(self.state(&state)));
                 }
                 self.met.push(state);
-                Number::new(self.state(&state)).blurred(self.blur)
+                Number::new(self.state(&state)).blurred(self.blur * self.size(&state))
             }
             Leaf::Flat { phase, index, .. } => {
                 self.keyed(u64::from(input.0) + 16, &[at(&phase.agent), at(&phase.index), at(index)])
@@ -187,7 +194,10 @@ impl Point<'_> {
             }
             Leaf::Start(phase) => self.keyed(2, &[Some(phase.phase as i64), at(&phase.agent), at(&phase.index)]),
             Leaf::Parameter { parameter, index } => self.parameter(*parameter, at(index)),
-            Leaf::Variable { variable, index } => self.keyed(3, &[Some(*variable as i64), at(index)]),
+            Leaf::Variable { variable, index } => {
+                let drawn = self.keyed(3, &[Some(*variable as i64), at(index)]);
+                Number::new(drawn.value * self.problem.variables[*variable].unit.factor)
+            }
             Leaf::Index(form) => Number::exact(form.at(&self.indices) as f64),
             Leaf::Integral { phase, .. } => self.keyed(u64::from(input.0) + 16, &[at(&phase.agent), at(&phase.index)]),
             Leaf::Symbol(_) => Number::new(NO_NUMBER),

@@ -43,7 +43,7 @@ const DAMPING: f64 = 1e-8;
 pub(super) const DEPENDENT: f64 = 1e-5;
 /// A state that has come to this part of what it was is on its way to 0, where nothing else has a size.
 const NOTHING: f64 = 1e-30;
-/// States are where equations hold within rounding: by so many units of the last digit of the largest.
+/// States are where equations hold within rounding: by so many units of the last digit of the largest, in their sizes.
 const BLUR: f64 = 64.0;
 
 /// What a row is made of; none where it has no value.
@@ -95,15 +95,17 @@ pub(super) fn reach(rows: &[&Row], states: &[State], point: &mut Point<'_>, step
     for _ in 0..steps {
         let Some(missed) = misses(rows, point) else { return false };
         if missed.iter().all(|number| number.is_rounding()) {
-            let largest = states.iter().fold(0.0_f64, |most, state| most.max(point.state(state).abs()));
-            point.blur = BLUR * f64::EPSILON * largest;
+            let scaled = states.iter().map(|state| point.state(state).abs() / point.size(state));
+            point.blur = BLUR * f64::EPSILON * scaled.fold(0.0, f64::max);
             return true;
         }
-        let Some(slopes) = slopes(rows, states, point) else { return false };
+        let Some(mut slopes) = slopes(rows, states, point) else { return false };
+        let sizes: Vec<f64> = states.iter().map(|state| point.size(state)).collect();
+        slopes.iter_mut().for_each(|row| row.iter_mut().zip(&sizes).for_each(|(slope, size)| *slope *= size));
         let missed: Vec<f64> = missed.iter().map(|number| number.value).collect();
         let Some(weights) = weights(&slopes, missed) else { return false };
         for (k, state) in states.iter().enumerate() {
-            let step: f64 = slopes.iter().zip(&weights).map(|(row, weight)| row[k] * weight).sum();
+            let step: f64 = sizes[k] * slopes.iter().zip(&weights).map(|(row, weight)| row[k] * weight).sum::<f64>();
             let next = point.state(state) - step;
             point.put(*state, if next.abs() <= NOTHING * drawn[k].abs() { 0.0 } else { next });
         }
