@@ -158,7 +158,7 @@ fn a_guess_at_which_a_norm_has_no_slope_is_left() {
     };
     for (report, told) in [
         (push("", "", "trajectory { norm(u) <= 1; }"), 0),
-        (push(", m", "der(m) == -norm(u);", "final { m == 0; }"), 1),
+        (push(", m", "der(m) == -norm(u);", "final { m == 0; }"), 0),
     ] {
         close(report.objective, 0.375, 1e-9);
         assert_eq!(report.singular.len(), told, "{:?}", report.singular);

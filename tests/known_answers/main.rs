@@ -52,6 +52,7 @@ mod saddles;
 mod scenarios;
 mod simulations;
 mod sizes;
+mod soft_limits;
 mod support;
 mod through_the_centre;
 mod tips;

@@ -241,3 +241,32 @@ fn norms_of_what_is_no_function_of_time_have_their_own_size() {
         }
     }
 }
+
+/// A helper stands for the norm in the integral, and the norm that is limited is posed as its square: nothing fails where it is 0.
+/// What divides by it does.
+#[test]
+fn a_norm_that_is_integrated_and_limited_is_singular_nowhere() {
+    let told = |objective: &str, rate: &str, limit: &str| {
+        let problem = Shipped::text(&format!(
+            "problem Coast {{
+                duration T = 10;
+                state p[2], v[2], m;
+                input a[2];
+                collocation gauss(points = 3, intervals = 25);
+                {objective};
+                dynamics {{ der(p) == v;  der(v) == a;  der(m) == {rate}; }}
+                initial {{ p == 0;  v == 0;  m == 1; }}
+                final {{ p == (9.6, 12.8);  v == 0; }}
+                trajectory {{ {limit} }}
+            }}"
+        ));
+        let few = ntg::prelude::Settings { max_iterations: 300, ..Default::default() };
+        let report = ntg::prelude::solve(problem.problem(), &few).expect("it can be set up");
+        report.warnings().iter().filter(|warning| warning.message.contains("is singular")).count()
+    };
+    assert_eq!(told("minimize integral(norm(a))", "0", "norm(a) <= 1;"), 0);
+    assert_eq!(told("minimize integral(norm(a))", "0", "2 * norm(a) <= 2; p[1] <= 20;"), 0);
+    assert_eq!(told("maximize final(m)", "-0.01 * norm(a)", "norm(a) <= 1;"), 0);
+    assert!(told("minimize integral(dot(a, a))", "0", "a[1] / norm(a) <= 0.9;") > 0);
+    assert!(told("minimize integral(dot(a, a))", "0", "norm(a) <= 1; sin(norm(a)) <= 0.9;") > 0);
+}

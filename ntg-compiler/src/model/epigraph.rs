@@ -10,9 +10,7 @@ use ntg_structure::{Block, Unit};
 use super::corners::{Corners, Site, squares};
 use super::elaborator::Elaborator;
 use super::monotone::Push;
-use super::problem::{
-    At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, PhaseAt, Variable,
-};
+use super::problem::{At, Bounds, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, PhaseAt, Variable};
 use super::soft::Members;
 use super::unknowns::{is_affine, is_given};
 use crate::expr::{Binary, Fold, Node, NodeId, Unary};
@@ -191,12 +189,8 @@ impl Elaborator<'_> {
             self.problem.variables.push(Variable { name, doc, unit, family, grid: None, bounds, span });
             return Some(self.leaf(Leaf::Variable { variable: place, index }));
         };
-        let order = match self.problem.phases[at.phase].collocation {
-            Collocation::Gauss { points, .. } => points,
-            Collocation::Uniform { .. } => 2,
-        };
         let members = self.members_missed(&own_loops(site), span)?;
-        let spline = self.slack_spline(at.phase, order);
+        let spline = self.slack_spline(at.phase, self.points_within(at.phase));
         let helper = Output { name, doc, unit, family: None, grid: None, vector: None, spline, span };
         Some(self.helper_output(at, members, helper))
     }

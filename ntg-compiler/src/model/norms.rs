@@ -13,7 +13,7 @@ pub(crate) fn norms(problem: &Problem) -> Vec<usize> {
 }
 
 /// Whether a node is the root of a sum of squares, or the product or quotient of one and of a factor without one.
-fn is_norm(problem: &Problem, node: NodeId) -> bool {
+pub(crate) fn is_norm(problem: &Problem, node: NodeId) -> bool {
     let dag = &problem.dag;
     match *dag.node(node) {
         Node::Unary(Unary::Sqrt, sum) => is_sum_of_squares(dag, sum) && varies(problem, sum),

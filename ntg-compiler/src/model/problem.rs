@@ -275,6 +275,8 @@ pub enum Imposed {
     /// At the ends of the intervals of parts of its phase, for the members of the loops beside each: what drifts in between is taken
     /// back there (docs/maths.md, section 4.9).
     AtBreakpoints(Vec<(Vec<Loop>, Part)>),
+    /// At the points of the integrands alone: it is about a number that has its values there and means nothing in between.
+    AtIntegrands,
     /// At none: the phase before ends where it holds.
     Nowhere,
 }

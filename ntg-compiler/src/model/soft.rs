@@ -2,7 +2,8 @@
 //!
 //! Takes the bodies `lo <= g <= hi` of such a constraint, adds what it is missed by, `s >= 0`: an output along the way,
 //! a variable elsewhere; the rows `g + s >= lo` and `g - s <= hi`; and the price, `w s` or `w s^2`, as a term of the
-//! objective, along the way integrated.
+//! objective, along the way integrated. Along the way `s` has a value at each point of the quadrature, and its rows stand at
+//! these points alone, as those of a helper do (docs/maths.md, section 18).
 //! Finds: prices of another unit than the objective's, prices that are not positive.
 
 use ntg_structure::{Spline, Unit};
@@ -11,7 +12,8 @@ use super::constraints::{Body, Site};
 use super::dimension::Dimension;
 use super::elaborator::Elaborator;
 use super::problem::{
-    At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Leaf, Loop, Output, Part, PhaseAt, Term, Variable,
+    At, Bounds, Collocation, Constraint, Domain, Form, Imposed, Instant, Leaf, Loop, Output, Part, PhaseAt, Term,
+    Variable,
 };
 use super::scope::{Allow, Context, Point};
 use super::settle::Use;
@@ -23,9 +25,6 @@ use crate::expr::NodeId;
 use crate::source::Span;
 use crate::syntax::ast::{self, Expr, Softness};
 
-/// The order of what a constraint is missed by: a line that is not negative at both ends is nowhere negative.
-const LINE: usize = 2;
-
 /// By how much constraints of one statement are missed.
 pub(super) struct Slack {
     /// Where the statement stands, in which phase (none: a variable), and the members that are made one by one.
@@ -34,6 +33,8 @@ pub(super) struct Slack {
     firsts: Vec<Option<i64>>,
     /// Index into the outputs of the phase, or into the variables.
     place: usize,
+    /// Index into the terms of the objective: its price.
+    term: usize,
     name: String,
 }
 
@@ -48,6 +49,8 @@ pub(super) struct Members {
 struct Prices {
     linear: Option<NodeId>,
     square: Option<NodeId>,
+    /// By how much it is missed along the way as it is written, where one formula says so.
+    written: Option<NodeId>,
 }
 
 impl<'a> Elaborator<'a> {
@@ -89,15 +92,21 @@ impl<'a> Elaborator<'a> {
         let key = (constraint.span, phase, indices);
         let firsts: Vec<Option<i64>> = members.loops.iter().map(|over| over.first.as_number()).collect();
         let place = match self.slacks.iter().find(|slack| slack.key == key && slack.firsts == firsts) {
-            Some(slack) => slack.place,
+            Some(slack) => {
+                // It is missed in several parts or members: no one formula is that of all.
+                self.problem.objective[slack.term].written = None;
+                slack.place
+            }
             None => {
-                let Some(prices) = self.prices(cx, softness, dimension, phase.is_some()) else { return };
+                let Some(mut prices) = self.prices(cx, softness, dimension, phase.is_some()) else { return };
+                prices.written = self.missed_as_written(cx, &domain, &bodies);
                 let name = self.slack_name(constraint, &key, &firsts);
                 let place = match phase {
                     Some(phase) => self.missed_along((phase, dimension, unit), &members, (&name, constraint), &prices),
                     None => self.missed_once(cx, (site, unit), &members, (&name, constraint), &prices),
                 };
-                self.slacks.push(Slack { key, firsts, place, name });
+                let term = self.problem.objective.len() - 1;
+                self.slacks.push(Slack { key, firsts, place, term, name });
                 place
             }
         };
@@ -108,17 +117,20 @@ impl<'a> Elaborator<'a> {
             }
             None => self.leaf(Leaf::Variable { variable: place, index }),
         };
+        let imposed = if phase.is_some() { Imposed::AtIntegrands } else { Imposed::Everywhere };
         for body in bodies {
             let Bounds { lower, upper } = body.bounds;
+            let dag = &mut self.problem.dag;
+            // What is missed as it is written leaves the bound.
             let above = lower.map(|lower| {
-                let node = self.problem.dag.add(body.value.node, missed);
-                (node, Bounds { lower: Some(lower), upper: None })
+                let (node, written) = (dag.add(body.value.node, missed), dag.max(body.value.node, lower));
+                (node, written, Bounds { lower: Some(lower), upper: None })
             });
             let below = upper.map(|upper| {
-                let node = self.problem.dag.sub(body.value.node, missed);
-                (node, Bounds { lower: None, upper: Some(upper) })
+                let (node, written) = (dag.sub(body.value.node, missed), dag.min(body.value.node, upper));
+                (node, written, Bounds { lower: None, upper: Some(upper) })
             });
-            for (node, bounds) in above.into_iter().chain(below) {
+            for (node, written, bounds) in above.into_iter().chain(below) {
                 let name = self.constraint_name(cx, constraint, site);
                 self.origin(node, constraint.span);
                 self.problem.constraints.push(Constraint {
@@ -128,9 +140,9 @@ impl<'a> Elaborator<'a> {
                     unit: body.unit.clone(),
                     loops: (*cx.loops).clone(),
                     sides: 0,
-                    written: None,
+                    written: phase.map(|_| written),
                     domain: domain.clone(),
-                    imposed: Imposed::Everywhere,
+                    imposed: imposed.clone(),
                     body: node,
                     bounds,
                 });
@@ -193,7 +205,7 @@ impl<'a> Elaborator<'a> {
     ) -> usize {
         let family = members.family.as_ref().map(|(count, _)| (1, *count));
         let place = self.problem.phases[phase].outputs.len();
-        let spline = self.slack_spline(phase, LINE);
+        let spline = self.slack_spline(phase, self.points_within(phase));
         let (doc, span) = (self.slack_doc(constraint), constraint.span);
         let output =
             Output { name: name.to_owned(), doc, unit: unit.clone(), family, grid: None, vector: None, spline, span };
@@ -211,6 +223,7 @@ impl<'a> Elaborator<'a> {
         let body = flat(self, &at, over.as_ref().map(|over| Form::index(over.index)));
         loops.extend(over);
         let zero = self.problem.dag.constant(0.0);
+        let amount = self.problem.dag.max(body, zero);
         self.origin(body, span);
         let agent = self.phases[phase].agent;
         self.problem.constraints.push(Constraint {
@@ -220,27 +233,27 @@ impl<'a> Elaborator<'a> {
             unit,
             loops,
             sides: 0,
-            written: None,
+            written: Some(amount),
             domain: Domain::Path(at.clone(), Part::WHOLE),
-            imposed: Imposed::Everywhere,
+            imposed: Imposed::AtIntegrands,
             body,
             bounds: Bounds { lower: Some(zero), upper: None },
         });
 
         let missed = flat(self, &at, members.family.as_ref().map(|(_, member)| member.clone()));
-        let total = |this: &mut Self, integrand: NodeId| this.leaf(Leaf::Integral { phase: at.clone(), integrand });
-        let linear = prices.linear.map(|price| {
-            let total = total(self, missed);
-            self.problem.dag.mul(price, total)
-        });
-        let square = prices.square.map(|price| {
+        let mut priced = |missed: NodeId| {
             let squared = self.problem.dag.powi(missed, 2);
-            let total = total(self, squared);
-            self.problem.dag.mul(price, total)
-        });
+            let mut part = |price: Option<NodeId>, integrand: NodeId| {
+                let total = self.leaf(Leaf::Integral { phase: at.clone(), integrand });
+                price.map(|price| self.problem.dag.mul(price, total))
+            };
+            let parts = [part(prices.linear, missed), part(prices.square, squared)];
+            parts.into_iter().flatten().collect::<Vec<NodeId>>()
+        };
+        let (parts, written) = (priced(missed), prices.written.map(&mut priced));
         let loops = whole.loops.iter().chain(&members.loops).cloned().collect();
         let label = constraint.name.as_ref().map(|name| self.path_name(agent, Some(phase), &name.text));
-        self.price_term(label, span, loops, linear.into_iter().chain(square).collect());
+        self.price_term((label, span), loops, &parts, written);
         place
     }
 
@@ -267,21 +280,65 @@ impl<'a> Elaborator<'a> {
             self.problem.dag.mul(price, squared)
         });
         let label = self.constraint_name(cx, constraint, site);
-        self.price_term(label, span, (*cx.loops).clone(), linear.into_iter().chain(square).collect());
+        let parts: Vec<NodeId> = linear.into_iter().chain(square).collect();
+        self.price_term((label, span), (*cx.loops).clone(), &parts, None);
         place
     }
 
-    fn price_term(&mut self, name: Option<String>, span: Span, loops: Vec<Loop>, parts: Vec<NodeId>) {
-        let body = self.problem.dag.sum(&parts);
+    fn price_term(
+        &mut self,
+        (name, span): (Option<String>, Span),
+        loops: Vec<Loop>,
+        parts: &[NodeId],
+        written: Option<Vec<NodeId>>,
+    ) {
+        let body = self.problem.dag.sum(parts);
         self.origin(body, span);
+        let written = written.map(|written| self.problem.dag.sum(&written));
         let unit = self.problem.objective_unit.clone();
-        self.problem.objective.push(Term { name, span, unit, loops, body, written: None });
+        self.problem.objective.push(Term { name, span, unit, loops, body, written });
+    }
+
+    /// By how much bodies are missed along the way; none where that is a formula of some members of the phase alone.
+    fn missed_as_written(&mut self, cx: &Context<'a>, domain: &Domain, bodies: &[Body]) -> Option<NodeId> {
+        let Domain::Path(at, part) = domain else { return None };
+        let whole = self.phase_context(at.phase, Allow::All, Point::Path).phase_at(at.phase);
+        if cx.phase_at(at.phase) != whole {
+            return None;
+        }
+        let dag = &mut self.problem.dag;
+        let zero = dag.constant(0.0);
+        let mut missed = zero;
+        for body in bodies {
+            let below = body.bounds.lower.map(|lower| dag.sub(lower, body.value.node));
+            let above = body.bounds.upper.map(|upper| dag.sub(body.value.node, upper));
+            for by in below.into_iter().chain(above) {
+                missed = dag.max(missed, by);
+            }
+        }
+        if part.from == Instant::START && part.to == Instant::END {
+            return Some(missed);
+        }
+        let tau = self.leaf(Leaf::Tau);
+        let dag = &mut self.problem.dag;
+        let (from, to) = (dag.constant(part.from.tau()), dag.constant(part.to.tau()));
+        let (is_after, is_before) = (dag.less_eq(from, tau), dag.less_eq(tau, to));
+        let is_within = dag.mul(is_after, is_before);
+        Some(dag.select(is_within, missed, zero))
     }
 
     fn slack_doc(&self, constraint: &ast::Constraint) -> String {
         match &constraint.name {
             Some(name) => format!("By how much `{}` is missed.", name.text),
             None => format!("By how much `{}` is missed.", self.text(constraint.span)),
+        }
+    }
+
+    /// How many values in each interval a number has that is free at every point of the quadrature.
+    pub(super) fn points_within(&self, phase: usize) -> usize {
+        match self.problem.phases[phase].collocation {
+            Collocation::Gauss { points, .. } => points,
+            Collocation::Uniform { .. } => 2,
         }
     }
 
@@ -319,7 +376,7 @@ impl<'a> Elaborator<'a> {
             Some(price) => Some(self.price(cx, price, &over.times(&of))?),
             None => None,
         };
-        Some(Prices { linear, square })
+        Some(Prices { linear, square, written: None })
     }
 
     /// A price whose product with something of dimension `of` has the dimension of the objective.

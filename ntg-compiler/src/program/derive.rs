@@ -21,12 +21,14 @@ pub(super) struct Formulas {
     pub(super) dag: Dag,
     pub(super) values: Vec<NodeId>,
     pub(super) origin: Map<NodeId, Span>, // Looked up, never iterated.
+    /// The values that are norms with limits.
+    pub(super) norms: Vec<NodeId>,
 }
 
 /// Shape and body of the kernel, and where its probes stand. The shape's name and the body's
 /// names and labels are the caller's.
 pub(super) fn derive(formulas: Formulas, slots: usize, data: usize, mode: Mode) -> (Kernel, KernelBody, Vec<Span>) {
-    let Formulas { mut dag, values, origin } = formulas;
+    let Formulas { mut dag, values, origin, norms } = formulas;
     let (inputs, rows) = (slots + data, values.len());
     let variables = ids(0, slots);
     let is_slot = |input: InputId| (input.0 as usize) < slots;
@@ -54,7 +56,7 @@ pub(super) fn derive(formulas: Formulas, slots: usize, data: usize, mode: Mode) 
             second.push(value);
         }
     }
-    let (probes, spans) = probes(&mut dag, &values, &origin);
+    let (probes, spans) = probes(&mut dag, (&values, &norms), &origin);
     let shape = Kernel {
         name: String::new(),
         slots,

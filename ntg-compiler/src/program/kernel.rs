@@ -38,6 +38,8 @@ pub(super) struct Root<'a> {
     pub(super) body: NodeId,
     pub(super) loops: &'a [Loop],
     pub(super) label: String,
+    /// Whether it is a norm with a limit, at whose tip nothing fails (docs/maths.md, section 11.14).
+    pub(super) is_norm: bool,
 }
 
 /// Makes the kernel (or finds the equal one) and the call for several functions at one place.
@@ -50,6 +52,7 @@ pub(super) fn call(lowering: &mut Lowering<'_>, name: &str, mode: Mode, roots: &
     let names = inputs.names();
     let Inputs { slots, reductions, data, .. } = inputs;
 
+    let formulas = Formulas { norms: values_of_norms(&formulas.values, roots), ..formulas };
     let (mut shape, mut body, probes) = derive(formulas, slots.len() + reductions.len(), data.len(), mode);
     shape.name = name.to_owned();
     shape.probes = probes.into_iter().map(|span| lowering.place(span)).collect();
@@ -77,7 +80,14 @@ fn by_position(dag: &Dag, values: &[NodeId], origin: &Map<NodeId, Span>, inputs:
             spans.entry(new).or_insert(*span);
         }
     }
-    Formulas { dag: out, values: values.iter().map(|v| map[v]).collect(), origin: spans }
+    Formulas { dag: out, values: values.iter().map(|v| map[v]).collect(), origin: spans, norms: vec![] }
+}
+
+/// The values that are norms with limits.
+fn values_of_norms(values: &[NodeId], roots: &[Root<'_>]) -> Vec<NodeId> {
+    let own = values.iter().zip(roots).filter(|(_, root)| root.is_norm).map(|(value, _)| *value);
+    // What is a norm with a limit and a part of the objective is one with a tip.
+    own.filter(|own| values.iter().zip(roots).all(|(value, root)| value != own || root.is_norm)).collect()
 }
 
 struct Copy<'a, 'b> {
@@ -255,7 +265,7 @@ impl Copy<'_, '_> {
             Fold::Min => ReduceOp::Min,
             Fold::Max => ReduceOp::Max,
         };
-        let root = Root { body, loops: &inner, label: "member".to_owned() };
+        let root = Root { body, loops: &inner, label: "member".to_owned(), is_norm: false };
         let body = call(self.lowering, "member", self.mode, &[root]);
         let name = match op {
             ReduceOp::Sum => "sum_r",

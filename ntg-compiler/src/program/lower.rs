@@ -18,6 +18,7 @@ use super::pieces::{Piece, Role, part_of, split};
 use super::points::point_sets;
 use super::{KernelBody, Program};
 use crate::expr::{Dag, Map, Node, NodeId};
+use crate::model::norms::is_norm;
 use crate::model::problem::{self as model, Constraint, Imposed, Loop, Problem};
 use crate::source::{Lines, Source, Span};
 
@@ -184,7 +185,7 @@ impl Lowering<'_> {
         let label = |piece: &Piece| self.source.snippet(piece.span);
         let roots: Vec<Root<'_>> = found
             .iter()
-            .map(|(_, body, piece)| Root { body: *body, loops: &piece.loops, label: label(piece) })
+            .map(|(_, body, piece)| Root { body: *body, loops: &piece.loops, label: label(piece), is_norm: false })
             .collect();
         let axes: Vec<(usize, usize)> = found.iter().map(|(axis, ..)| *axis).collect();
         (!axes.is_empty()).then(|| Arguments { group, shown, call: call(self, "arguments", Mode::Show, &roots), axes })
@@ -267,11 +268,21 @@ impl Lowering<'_> {
 
     fn group(&mut self, gathered: Gathered) -> Group {
         let Gathered { loops, domain, purpose, pieces, .. } = gathered;
-        let roots: Vec<Root<'_>> =
-            pieces.iter().map(|p| Root { body: p.body, loops: &p.loops, label: self.source.snippet(p.span) }).collect();
+        let roots: Vec<Root<'_>> = pieces.iter().map(|piece| self.root(piece)).collect();
         let call = call(self, purpose, Mode::Solve, &roots);
         let (rows, bounds) = self.rows(&pieces);
         Group { loops, domain, call, rows, bounds }
+    }
+
+    /// The function of a piece.
+    fn root<'p>(&self, piece: &'p Piece) -> Root<'p> {
+        let is_limit = matches!(piece.role, Role::Constraint { .. });
+        Root {
+            body: piece.body,
+            loops: &piece.loops,
+            label: self.source.snippet(piece.span),
+            is_norm: is_limit && is_norm(&self.problem, piece.body),
+        }
     }
 
     /// What the rows are, and the call that computes their bounds.
@@ -302,8 +313,10 @@ impl Lowering<'_> {
             })
             .collect();
         let call = (!list.is_empty()).then(|| {
-            let roots: Vec<Root<'_>> =
-                list.iter().map(|(n, l, text)| Root { body: *n, loops: l, label: text.clone() }).collect();
+            let roots: Vec<Root<'_>> = list
+                .iter()
+                .map(|(n, l, text)| Root { body: *n, loops: l, label: text.clone(), is_norm: false })
+                .collect();
             call(self, "bounds", Mode::Setup, &roots)
         });
         (rows, call)

@@ -149,7 +149,7 @@ pub(super) fn measurements(lowering: &mut Lowering<'_>) -> Vec<out::Measurement>
     let list = lowering.problem.measurements.clone();
     list.into_iter()
         .map(|m| {
-            let root = Root { body: m.residual, loops: &m.loops, label: "residual".to_owned() };
+            let root = Root { body: m.residual, loops: &m.loops, label: "residual".to_owned(), is_norm: false };
             out::Measurement {
                 term: m.term,
                 unit: m.unit,
@@ -176,7 +176,7 @@ pub(super) fn named(lowering: &mut Lowering<'_>) -> Vec<out::Named> {
                 }
             };
             let last = n.loops.last().filter(|_| n.family).map(family);
-            let root = Root { body: n.body, loops: &n.loops, label: n.name.clone() };
+            let root = Root { body: n.body, loops: &n.loops, label: n.name.clone(), is_norm: false };
             let call = call(lowering, &format!("let_{}", super::names::identifier(&n.name)), Mode::Show, &[root]);
             out::Named {
                 name: n.name,
@@ -236,7 +236,8 @@ fn bounds(lowering: &mut Lowering<'_>, limits: &Bounds, loops: &[Loop], name: &s
 }
 
 fn setup(lowering: &mut Lowering<'_>, name: &str, rows: &[NodeId], loops: &[Loop]) -> Call {
-    let roots: Vec<Root<'_>> = rows.iter().map(|row| Root { body: *row, loops, label: name.to_owned() }).collect();
+    let roots: Vec<Root<'_>> =
+        rows.iter().map(|row| Root { body: *row, loops, label: name.to_owned(), is_norm: false }).collect();
     call(lowering, name, Mode::Setup, &roots)
 }
 

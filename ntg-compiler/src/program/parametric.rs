@@ -249,5 +249,10 @@ fn reordered(body: &KernelBody, positions: &[usize]) -> Formulas {
         };
         image.insert(node, new);
     }
-    Formulas { dag, values: body.values.iter().map(|value| image[value]).collect(), origin: Map::default() }
+    Formulas {
+        dag,
+        values: body.values.iter().map(|value| image[value]).collect(),
+        origin: Map::default(),
+        norms: vec![],
+    }
 }

@@ -5,14 +5,15 @@ use ntg_structure::{Block, Points, is_helper};
 use super::clocks::is_clock;
 use super::pieces::{Piece, Role};
 use crate::expr::Node;
-use crate::model::problem::{Collocation, Domain, Leaf, PhaseAt, Problem};
+use crate::model::problem::{Collocation, Domain, Imposed, Leaf, PhaseAt, Problem};
 
 /// The point sets at which a piece along a phase is evaluated.
 ///
 /// Integrands stand at quadrature points, equalities at the collocation points, inequalities at
 /// the quadrature points and at both ends of every interval: once where the function is
 /// continuous, from both sides where a derivative in it jumps; `inequalities = points` leaves the ends out.
-/// What holds a helper above a corner is needed where integrands stand, and nowhere else (section 18).
+/// What holds a helper above a corner, or is missed by an amount of its own, is needed where integrands stand, and nowhere
+/// else (section 18).
 pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> Vec<Points> {
     let (points, equalities, ends) = match problem.phases[phase.phase].collocation {
         Collocation::Uniform { points } => return vec![Points::Uniform { points }],
@@ -20,7 +21,7 @@ pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> V
     };
     match &piece.role {
         Role::AtBreakpoints { .. } => vec![Points::Breakpoints],
-        Role::Constraint { constraint, .. } if holds_helper(problem, *constraint, piece) => {
+        Role::Constraint { constraint, .. } if is_at_integrands(problem, *constraint, piece) => {
             vec![Points::Gauss { points }]
         }
         Role::Constraint { bounds, .. } if bounds.lower.is_some() && bounds.lower == bounds.upper => {
@@ -38,13 +39,16 @@ pub(super) fn point_sets(problem: &Problem, phase: &PhaseAt, piece: &Piece) -> V
     }
 }
 
-/// Whether a row holds a helper above a corner.
-fn holds_helper(problem: &Problem, constraint: usize, piece: &Piece) -> bool {
-    problem.constraints[constraint].block == Block::Corner
-        && problem.dag.inputs_of(&[piece.body]).into_iter().any(|input| match problem.leaves.leaf(input) {
-            Leaf::Flat { phase, output, .. } => is_helper(&problem.phases[phase.phase].outputs[*output].name),
-            _ => false,
-        })
+/// Whether a row holds a helper above a corner, or stands at the points of the integrands for another reason.
+fn is_at_integrands(problem: &Problem, constraint: usize, piece: &Piece) -> bool {
+    let own = &problem.constraints[constraint];
+    let is_corner = own.block == Block::Corner;
+    own.imposed == Imposed::AtIntegrands
+        || is_corner
+            && problem.dag.inputs_of(&[piece.body]).into_iter().any(|input| match problem.leaves.leaf(input) {
+                Leaf::Flat { phase, output, .. } => is_helper(&problem.phases[phase.phase].outputs[*output].name),
+                _ => false,
+            })
 }
 
 /// Whether the piece jumps at interior breakpoints: it holds a derivative that does, or a condition of time.

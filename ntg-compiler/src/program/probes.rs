@@ -3,7 +3,7 @@
 //! Takes the values of a kernel, gives the subexpressions that can fail, each with its place. A part of a branch counts
 //! where that branch is taken only: elsewhere it may have no value, and nothing is wrong.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::expr::{Binary, Dag, Map, Node, NodeId, Unary};
 use crate::source::Span;
@@ -70,8 +70,14 @@ impl Guards {
 
 /// Operations that can give infinity or NaN from finite operands, then the factors in which their derivatives are
 /// singular. Of an operation with a divisor, `1 / d` or a negative power of it and the tangent with its cosine, the probe is
-/// the inverse of the divisor: a change of its sign is a pole, whatever the dividend does.
-pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span>) -> (Vec<NodeId>, Vec<Span>) {
+/// the inverse of the divisor: a change of its sign is a pole, whatever the dividend does. `norms` are those of the values
+/// that are norms with limits: nothing fails at their tips (docs/maths.md, section 11.14).
+pub(super) fn probes(
+    dag: &mut Dag,
+    (values, norms): (&[NodeId], &[NodeId]),
+    origin: &Map<NodeId, Span>,
+) -> (Vec<NodeId>, Vec<Span>) {
+    let limited = limited(dag, values, norms);
     // What the compiler has made itself, such as `1 / T`, is of no help to a person.
     let guards = Guards::of(dag, values);
     let schedule: Vec<NodeId> = dag.schedule(values).into_iter().filter(|id| origin.contains_key(id)).collect();
@@ -88,6 +94,7 @@ pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span
     }
     for id in schedule {
         let singular = match *dag.node(id) {
+            _ if limited.contains(&id) => continue,
             Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, _, _) => id,
             Node::Unary(Unary::Asin | Unary::Acos, a) => {
                 let square = dag.powi(a, 2);
@@ -101,6 +108,35 @@ pub(super) fn probes(dag: &mut Dag, values: &[NodeId], origin: &Map<NodeId, Span
         spans.resize(nodes.len(), origin[&id]);
     }
     (nodes, spans)
+}
+
+/// The roots that norms with limits are, or are products and quotients of, and that stand nowhere else.
+fn limited(dag: &Dag, values: &[NodeId], norms: &[NodeId]) -> HashSet<NodeId> {
+    let is_root = |id: NodeId| matches!(dag.node(id), Node::Unary(Unary::Sqrt, _) | Node::Binary(Binary::Hypot, _, _));
+    let mut elsewhere: Vec<NodeId> = values.iter().copied().filter(|value| !norms.contains(value)).collect();
+    let (mut found, mut open) = (HashSet::new(), norms.to_vec());
+    while let Some(id) = open.pop() {
+        match *dag.node(id) {
+            _ if is_root(id) => {
+                found.insert(id);
+                elsewhere.extend(dag.node(id).operands());
+            }
+            Node::Binary(Binary::Div, a, b) => {
+                open.push(a);
+                elsewhere.push(b);
+            }
+            Node::Binary(Binary::Mul, a, b) if is_root(a) != is_root(b) => {
+                let (root, factor) = if is_root(a) { (a, b) } else { (b, a) };
+                open.push(root);
+                elsewhere.push(factor);
+            }
+            _ => elsewhere.push(id),
+        }
+    }
+    for id in dag.schedule(&elsewhere) {
+        found.remove(&id);
+    }
+    found
 }
 
 fn inverse(dag: &mut Dag, of: NodeId) -> NodeId {

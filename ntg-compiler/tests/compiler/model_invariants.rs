@@ -9,7 +9,7 @@ use ntg_compiler::source::Source;
 fn moved(text: &str) -> Vec<(String, &'static str)> {
     let problem = good(text);
     let told = |imposed: &Imposed| match imposed {
-        Imposed::Everywhere | Imposed::AtBreakpoints(_) => None,
+        Imposed::Everywhere | Imposed::AtBreakpoints(_) | Imposed::AtIntegrands => None,
         Imposed::AtStart(_) => Some("start"),
         Imposed::Nowhere => Some("nowhere"),
     };

@@ -11,7 +11,7 @@ use super::error::SetupError;
 use super::names;
 use super::node::{Node, NodeWork};
 use super::points::fine_set;
-use ntg_structure::Place;
+use ntg_structure::{Place, Structure};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -40,8 +40,8 @@ impl fmt::Display for Singular {
     }
 }
 
-/// Every expression that is singular for these variables, in the order in which they are evaluated, but for norms that are
-/// bounded: their squares are solved for (docs/maths.md, section 11.14).
+/// Every expression that is singular for these variables, in the order in which they are evaluated. Norms that are bounded
+/// have no probes at their tips (docs/maths.md, section 11.14); corners of equations for which helpers stand are left out.
 pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
     let mut found: Vec<Singular> = vec![];
     if this.model.structure.kernels.iter().all(|kernel| kernel.probes.is_empty()) {
@@ -57,13 +57,15 @@ pub(crate) fn singular(this: &Transcription, x: &[f64]) -> Vec<Singular> {
             add(&mut found, node, place, &not_finite(values), &point);
         });
     }
-    let structure = &this.model.structure;
-    let norms: Vec<&Place> = structure.norms.iter().map(|norm| &structure.constraints[*norm].place).collect();
-    let is_norm = |found: &Singular| {
-        norms.iter().any(|norm| norm.line == found.place.line && norm.text.contains(&found.place.text))
-    };
-    found.retain(|found| !is_norm(found));
+    leave_out_replaced(&this.model.structure, &mut found);
     found
+}
+
+/// Leaves out the corners of equations in whose place helpers are solved for: the equations as they are written have no part then.
+fn leave_out_replaced(structure: &Structure, found: &mut Vec<Singular>) {
+    let replaced = structure.relaxations.iter().filter(|own| !own.is_exact).flat_map(|own| &own.corners);
+    let replaced: Vec<&Place> = replaced.collect();
+    found.retain(|own| !replaced.contains(&&own.place));
 }
 
 /// Every expression that has a pole or no value somewhere along these variables of which the points tell nothing, looked for
@@ -98,6 +100,7 @@ pub(crate) fn poles(this: &Transcription, x: &[f64], samples: usize) -> Result<V
             });
         }
     }
+    leave_out_replaced(structure, &mut found);
     Ok(found)
 }
 
