@@ -21,8 +21,8 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Below which part of what is small a duration is small. A fit: as the second form begins, the first one takes twice as many
-    /// iterations.
+    /// Below which part of [`Shrinking::small`] a duration counts as small. A fit: equations alone take fewer iterations where a
+    /// duration counts as small later, all rows where it does sooner.
     fn part(self) -> f64 {
         match self {
             Self::Equations => 0.1,

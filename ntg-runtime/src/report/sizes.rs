@@ -225,9 +225,9 @@ fn parts(nlp: &Transcription, x: &[f64]) -> Vec<f64> {
 }
 
 impl Sizes {
-    /// The sizes of the members of all trajectory constraints along the solution; where all terms are 0, and elsewhere than
-    /// along a trajectory, of what integrals are in too, the largest slope of the member's rows. `at` holds first derivatives where they are finite, and
-    /// zeros elsewhere.
+    /// The sizes of the members of all trajectory constraints along the solution; where all terms are 0, and elsewhere than along a
+    /// trajectory, of what integrals are in too, the largest slope of the member's rows. `at` holds first derivatives where they are
+    /// finite, and zeros elsewhere.
     pub(super) fn at(nlp: &Transcription, (outcome, at): (&Outcome, &Evaluation)) -> Self {
         let relations = &nlp.elements.relations;
         let scale = nlp.grown_sizes(&outcome.x);
