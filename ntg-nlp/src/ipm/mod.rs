@@ -127,7 +127,7 @@ fn solve_erased(
     options: &Options,
 ) -> Outcome {
     let began = Instant::now();
-    let has_others = !nlp.limits().shrinking.is_empty();
+    let has_others = Form::differ(nlp.limits());
     let most = if has_others { options.max_iterations.min(AS_WRITTEN) } else { options.max_iterations };
     let first = Options { max_iterations: most, ..options.clone() };
     // The last solve may have ended in the other form, whose blocks differ.

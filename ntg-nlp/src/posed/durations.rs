@@ -21,6 +21,11 @@ pub(crate) enum Form {
 }
 
 impl Form {
+    /// Whether there are rows that only one of the forms poses otherwise.
+    pub(crate) fn differ(limits: &Limits) -> bool {
+        limits.shrinking.iter().any(|own| !own.is_equation_of_one(limits))
+    }
+
     /// Below which part of [`Shrinking::small`] a duration counts as small. A fit: equations alone take fewer iterations where a
     /// duration counts as small later, all rows where it does sooner.
     fn part(self) -> f64 {

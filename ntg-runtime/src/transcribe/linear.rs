@@ -191,13 +191,19 @@ mod tests {
 
     #[test]
     fn what_is_left_of_a_coefficient_by_rounding_says_nothing() {
-        // Rest in x[1] - x[0] and in x[2] - 2 x[1] + x[0], which are steep, and only then the place x[2] that all of them have.
+        // The rate, the curvature and the place of a spline at its end, in SI of a move of 0.8 us.
         let mut system = LinearSystem::default();
-        let curved = row(&[(0, 0.3e13), (1, -0.6e13), (2, 0.3e13)], 0.0);
-        let all = [row(&[(1, -0.1e7 * 7.0), (2, 0.7e6)], 0.0), curved.clone(), row(&[(2, 1.0)], -1.613)];
+        let (rate, curvature) = (5.0 / 0.7996e-6, 20.0 / (0.7996e-6 * 0.7996e-6));
+        let curved = |times: f64| {
+            let own = curvature * times;
+            row(&[(3, own * 1.1), (4, -own * 2.3), (5, own * 1.2)], 0.0)
+        };
+        let all = [row(&[(4, -rate), (5, rate)], 0.0), curved(1.0), row(&[(5, 1.0)], -1.613)];
         assert!(all.iter().all(|row| system.add(row).is_ok()));
-        let known = system.known(&curved).expect("all three are determined");
-        assert!(known.constant.abs() <= known.tolerance(), "{known:?}");
+        for times in [0.1, 0.3, 0.7, 1.0 / 3.0, 1.0 / 7.0, 1.0 / 11.0] {
+            let known = system.known(&curved(times)).expect("all three are determined");
+            assert!(known.constant.abs() <= known.tolerance(), "{times}: {known:?}");
+        }
     }
 
     #[test]
